@@ -1,0 +1,1 @@
+//! Collision detection for the plane and for space.
