@@ -1,0 +1,277 @@
+//! Axis-aligned boxes.
+
+use core::fmt;
+
+use super::{BoundingVolume, Ray};
+use crate::math::{Point, Pose, Real, Vector, max, min};
+
+/// The points between two corners, the faces included.
+///
+/// `mins ≤ maxs` on every axis and nothing is NaN. Faces may be infinite: such a box is unbounded.
+/// Zero extents are allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Aabb<N: Real, const D: usize> {
+    mins: Point<N, D>,
+    maxs: Point<N, D>,
+}
+
+/// Why two corners make no box. The number is the axis at fault: 0 for x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AabbError {
+    /// A coordinate on this axis is NaN.
+    NotANumber(usize),
+    /// On this axis the first corner lies beyond the second.
+    Inverted(usize),
+}
+
+impl fmt::Display for AabbError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotANumber(axis) => write!(f, "a box coordinate on axis {axis} is not a number"),
+            Self::Inverted(axis) => write!(f, "the box is inverted on axis {axis}"),
+        }
+    }
+}
+
+impl std::error::Error for AabbError {}
+
+impl<N: Real, const D: usize> Aabb<N, D> {
+    /// The box between two corners.
+    ///
+    /// # Panics
+    /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis; [`Aabb::try_new`] returns these.
+    #[must_use]
+    pub fn new(mins: Point<N, D>, maxs: Point<N, D>) -> Self {
+        match Self::try_new(mins, maxs) {
+            Ok(aabb) => aabb,
+            Err(error) => panic!("{error}: mins {mins}, maxs {maxs}"),
+        }
+    }
+
+    /// The box between two corners.
+    ///
+    /// # Errors
+    /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis.
+    pub fn try_new(mins: Point<N, D>, maxs: Point<N, D>) -> Result<Self, AabbError> {
+        for axis in 0..D {
+            let (low, high) = (mins[axis], maxs[axis]);
+            if low > high {
+                return Err(AabbError::Inverted(axis));
+            }
+            let ordered = low <= high;
+            if !ordered {
+                return Err(AabbError::NotANumber(axis));
+            }
+        }
+        Ok(Self { mins, maxs })
+    }
+
+    /// The box around `center` that reaches `half_extents` along each axis; for trusted numbers.
+    pub(crate) fn around(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
+        Self { mins: center - half_extents, maxs: center + half_extents }
+    }
+
+    /// The smallest box around some points; `None` for no points or a NaN among them.
+    #[must_use]
+    pub fn from_points(points: &[Point<N, D>]) -> Option<Self> {
+        let first = points.first()?;
+        let mut aabb = Self { mins: *first, maxs: *first };
+        for point in points {
+            aabb.mins = Point::from(aabb.mins.coords.zip_map(&point.coords, min));
+            aabb.maxs = Point::from(aabb.maxs.coords.zip_map(&point.coords, max));
+        }
+        let usable = points.iter().all(|p| p.iter().all(|x| x.partial_cmp(x).is_some()));
+        usable.then_some(aabb)
+    }
+
+    /// The box of everything.
+    #[must_use]
+    pub fn unbounded() -> Self {
+        let infinity = Vector::<N, D>::repeat(N::INFINITY);
+        Self { mins: Point::from(-infinity), maxs: Point::from(infinity) }
+    }
+
+    /// The corner of least coordinates.
+    #[inline]
+    pub const fn mins(&self) -> &Point<N, D> {
+        &self.mins
+    }
+
+    /// The corner of greatest coordinates.
+    #[inline]
+    pub const fn maxs(&self) -> &Point<N, D> {
+        &self.maxs
+    }
+
+    /// The middle; not finite where the box is unbounded.
+    pub fn center(&self) -> Point<N, D> {
+        self.mins + self.half_extents()
+    }
+
+    /// Half the size along each axis; infinite where the box is unbounded.
+    pub fn half_extents(&self) -> Vector<N, D> {
+        (self.maxs - self.mins) * N::HALF
+    }
+
+    /// Every face is finite.
+    pub fn is_bounded(&self) -> bool {
+        self.mins.iter().chain(self.maxs.iter()).all(|x| x.is_finite_number())
+    }
+
+    /// The smallest box, in the outer frame, around this box placed at `pose`.
+    ///
+    /// An unbounded axis of the local box makes every outer axis it leans on unbounded.
+    #[must_use]
+    pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
+        if !self.is_bounded() {
+            return self.unbounded_transformed_by(pose);
+        }
+        let reach = pose.rotation.abs() * self.half_extents();
+        Self::around(pose.point(&self.center()), reach)
+    }
+
+    /// Sums the two ends of each axis apart, so that 0 · ∞ never arises.
+    fn unbounded_transformed_by(&self, pose: &Pose<N, D>) -> Self {
+        let (mut mins, mut maxs) = (pose.translation, pose.translation);
+        for row in 0..D {
+            for column in 0..D {
+                let factor = pose.rotation[(row, column)];
+                if factor == N::ZERO {
+                    continue;
+                }
+                let (a, b) = (factor * self.mins[column], factor * self.maxs[column]);
+                mins[row] += min(a, b);
+                maxs[row] += max(a, b);
+            }
+        }
+        Self { mins: Point::from(mins), maxs: Point::from(maxs) }
+    }
+
+    /// The times at which the ray enters and leaves the box, cut off at `t = 0`; `None` for a miss.
+    ///
+    /// Slab test (Kay and Kajiya 1986); a ray that runs in a face hits.
+    pub fn ray_interval(&self, ray: &Ray<N, D>) -> Option<(N, N)> {
+        let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
+        for axis in 0..D {
+            let (origin, speed) = (ray.origin[axis], ray.dir[axis]);
+            if speed == N::ZERO {
+                if origin < self.mins[axis] || origin > self.maxs[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((self.mins[axis] - origin) / speed, (self.maxs[axis] - origin) / speed);
+            enter = max(enter, min(a, b));
+            leave = min(leave, max(a, b));
+        }
+        (enter <= leave).then_some((enter, leave))
+    }
+
+    /// The distance from the box to a point, zero inside.
+    pub fn distance_to_point(&self, point: &Point<N, D>) -> N {
+        let below = (self.mins - point).map(|x| max(x, N::ZERO));
+        let above = (point - self.maxs).map(|x| max(x, N::ZERO));
+        (below + above).norm()
+    }
+}
+
+impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
+    type Point = Point<N, D>;
+    type Ray = Ray<N, D>;
+
+    #[inline]
+    fn intersects(&self, other: &Self) -> bool {
+        (0..D)
+            .all(|axis| self.mins[axis] <= other.maxs[axis] && other.mins[axis] <= self.maxs[axis])
+    }
+
+    #[inline]
+    fn contains(&self, other: &Self) -> bool {
+        (0..D)
+            .all(|axis| self.mins[axis] <= other.mins[axis] && other.maxs[axis] <= self.maxs[axis])
+    }
+
+    fn merged(&self, other: &Self) -> Self {
+        Self {
+            mins: Point::from(self.mins.coords.zip_map(&other.mins.coords, min)),
+            maxs: Point::from(self.maxs.coords.zip_map(&other.maxs.coords, max)),
+        }
+    }
+
+    fn loosened(&self, margin: N) -> Self {
+        let reach = Vector::<N, D>::repeat(margin);
+        Self { mins: self.mins - reach, maxs: self.maxs + reach }
+    }
+
+    fn contains_point(&self, point: &Point<N, D>) -> bool {
+        (0..D).all(|axis| self.mins[axis] <= point[axis] && point[axis] <= self.maxs[axis])
+    }
+
+    fn intersects_ray(&self, ray: &Ray<N, D>) -> bool {
+        self.ray_interval(ray).is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::BoundingVolume;
+    use super::*;
+    use crate::math::Isometry2;
+
+    type P = Point<f64, 2>;
+
+    fn unit_box() -> Aabb<f64, 2> {
+        Aabb::new(P::new(0.0, 0.0), P::new(1.0, 1.0))
+    }
+
+    #[test]
+    fn bad_corners_are_refused() {
+        let nan = Aabb::try_new(P::new(0.0, f64::NAN), P::new(1.0, 1.0));
+        assert_eq!(nan, Err(AabbError::NotANumber(1)), "NaN on y");
+        let inverted = Aabb::try_new(P::new(2.0, 0.0), P::new(1.0, 1.0));
+        assert_eq!(inverted, Err(AabbError::Inverted(0)), "inverted on x");
+    }
+
+    #[test]
+    fn touching_boxes_intersect() {
+        let right = Aabb::new(P::new(1.0, 1.0), P::new(2.0, 2.0));
+        assert!(unit_box().intersects(&right), "they share a corner");
+        let beyond = Aabb::new(P::new(1.0 + 1e-9, 0.0), P::new(2.0, 2.0));
+        assert!(!unit_box().intersects(&beyond), "a gap is a gap");
+    }
+
+    #[test]
+    fn rays_through_corners_and_along_faces_hit() {
+        let cases = [
+            ([-1.0, -1.0], [1.0, 1.0], Some((1.0, 2.0))),
+            ([-1.0, 1.0], [1.0, 0.0], Some((1.0, 2.0))),
+            ([-1.0, 1.1], [1.0, 0.0], None),
+            ([0.5, 0.5], [0.0, 0.0], Some((0.0, f64::INFINITY))),
+            ([2.0, 0.5], [1.0, 0.0], None),
+        ];
+        for (origin, dir, expected) in cases {
+            let ray = Ray::new(P::from(origin), Vector::<f64, 2>::from(dir));
+            assert_eq!(unit_box().ray_interval(&ray), expected, "from {origin:?} along {dir:?}");
+        }
+    }
+
+    #[test]
+    fn a_turned_unbounded_box_stays_unbounded_without_nan() {
+        let strip = Aabb::new(P::new(f64::NEG_INFINITY, 0.0), P::new(f64::INFINITY, 1.0));
+        let still = strip.transformed_by(&Pose::identity());
+        assert_eq!(still, strip, "an identity pose changes nothing");
+        let turned = strip.transformed_by(&Pose::from_isometry(&Isometry2::rotation(0.3)));
+        assert_eq!(turned, Aabb::unbounded(), "both axes lean on the infinite one");
+    }
+
+    #[test]
+    fn a_turned_square_fits_its_box() {
+        let turned = unit_box().transformed_by(&Pose::from_isometry(&Isometry2::rotation(
+            std::f64::consts::FRAC_PI_4,
+        )));
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        assert!((turned.maxs() - P::new(half, 2.0 * half)).norm() < 1e-15, "{turned:?}");
+    }
+}

@@ -1,0 +1,36 @@
+//! Simple volumes that enclose shapes: what the broad phase works on.
+
+mod aabb;
+mod ray;
+mod sphere;
+
+pub use aabb::{Aabb, AabbError};
+pub use ray::Ray;
+pub use sphere::{BoundingSphere, BoundingSphereError};
+
+use crate::math::Real;
+
+/// A volume that a broad phase can keep in place of an object.
+///
+/// All tests are closed: volumes that only touch intersect.
+pub trait BoundingVolume<N: Real>: Clone {
+    /// The points of the space that the volume lies in.
+    type Point;
+    /// The rays of the space that the volume lies in.
+    type Ray;
+
+    /// The two volumes have a point in common.
+    fn intersects(&self, other: &Self) -> bool;
+    /// Every point of `other` is a point of this volume.
+    fn contains(&self, other: &Self) -> bool;
+    /// The smallest volume of this kind around both.
+    #[must_use]
+    fn merged(&self, other: &Self) -> Self;
+    /// The volume grown by `margin` (zero or more) on every side.
+    #[must_use]
+    fn loosened(&self, margin: N) -> Self;
+    /// The point lies in the volume.
+    fn contains_point(&self, point: &Self::Point) -> bool;
+    /// The ray, with times from zero on, meets the volume.
+    fn intersects_ray(&self, ray: &Self::Ray) -> bool;
+}

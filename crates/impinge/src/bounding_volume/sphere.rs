@@ -1,0 +1,162 @@
+//! Bounding spheres (disks in the plane).
+
+use core::fmt;
+
+use super::{BoundingVolume, Ray};
+use crate::math::{Point, Pose, Real, max, unit};
+
+/// The points within `radius` of `center`.
+///
+/// The radius may be zero (a point) or infinite (everything).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct BoundingSphere<N: Real, const D: usize> {
+    center: Point<N, D>,
+    radius: N,
+}
+
+/// Why a centre and a radius make no sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BoundingSphereError<N: Real> {
+    /// The radius is negative or NaN.
+    Radius(N),
+    /// The coordinate of the centre on this axis is not finite.
+    Center(usize),
+}
+
+impl<N: Real> fmt::Display for BoundingSphereError<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Radius(radius) => write!(f, "{radius} is no radius of a sphere"),
+            Self::Center(axis) => write!(f, "the sphere's centre is not finite on axis {axis}"),
+        }
+    }
+}
+
+impl<N: Real> std::error::Error for BoundingSphereError<N> {}
+
+impl<N: Real, const D: usize> BoundingSphere<N, D> {
+    /// The sphere around `center`.
+    ///
+    /// # Panics
+    /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns these.
+    #[must_use]
+    pub fn new(center: Point<N, D>, radius: N) -> Self {
+        match Self::try_new(center, radius) {
+            Ok(sphere) => sphere,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The sphere around `center`.
+    ///
+    /// # Errors
+    /// If the radius is negative or NaN or the centre is not finite.
+    pub fn try_new(center: Point<N, D>, radius: N) -> Result<Self, BoundingSphereError<N>> {
+        if let Some(axis) = center.iter().position(|x| !x.is_finite_number()) {
+            return Err(BoundingSphereError::Center(axis));
+        }
+        let usable = radius >= N::ZERO;
+        if usable { Ok(Self { center, radius }) } else { Err(BoundingSphereError::Radius(radius)) }
+    }
+
+    /// The sphere of everything.
+    #[must_use]
+    pub fn unbounded() -> Self {
+        Self { center: Point::origin(), radius: N::INFINITY }
+    }
+
+    /// The centre.
+    pub const fn center(&self) -> &Point<N, D> {
+        &self.center
+    }
+
+    /// The radius.
+    pub const fn radius(&self) -> N {
+        self.radius
+    }
+
+    /// The sphere placed at `pose`.
+    #[must_use]
+    pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
+        Self { center: pose.point(&self.center), radius: self.radius }
+    }
+}
+
+impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
+    type Point = Point<N, D>;
+    type Ray = Ray<N, D>;
+
+    fn intersects(&self, other: &Self) -> bool {
+        (other.center - self.center).norm() <= self.radius + other.radius
+    }
+
+    fn contains(&self, other: &Self) -> bool {
+        (other.center - self.center).norm() + other.radius <= self.radius
+    }
+
+    fn merged(&self, other: &Self) -> Self {
+        if self.contains(other) {
+            return *self;
+        }
+        if other.contains(self) {
+            return *other;
+        }
+        let Some((direction, distance)) = unit(&(other.center - self.center)) else {
+            return Self { radius: max(self.radius, other.radius), ..*self };
+        };
+        let radius = (self.radius + other.radius + distance) * N::HALF;
+        Self { center: self.center + direction * (radius - self.radius), radius }
+    }
+
+    fn loosened(&self, margin: N) -> Self {
+        Self { radius: self.radius + margin, ..*self }
+    }
+
+    fn contains_point(&self, point: &Point<N, D>) -> bool {
+        (point - self.center).norm() <= self.radius
+    }
+
+    fn intersects_ray(&self, ray: &Ray<N, D>) -> bool {
+        let to_center = self.center - ray.origin;
+        let nearest = unit(&ray.dir).map_or(ray.origin, |(direction, _)| {
+            ray.origin + direction * max(direction.dot(&to_center), N::ZERO)
+        });
+        self.contains_point(&nearest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::BoundingVolume;
+    use super::*;
+    use crate::math::Vector;
+
+    type P = Point<f64, 3>;
+
+    #[test]
+    fn merging_encloses_both_tightly() {
+        let left = BoundingSphere::new(P::new(-2.0, 0.0, 0.0), 1.0);
+        let right = BoundingSphere::new(P::new(3.0, 0.0, 0.0), 2.0);
+        let both = left.merged(&right);
+        assert_eq!((both.center().x, both.radius()), (1.0, 4.0), "from -3 to 5");
+        assert_eq!(both.merged(&left), both, "nothing to add");
+    }
+
+    #[test]
+    fn rays_start_at_their_origin() {
+        let sphere = BoundingSphere::new(P::new(0.0, 0.0, 5.0), 1.0);
+        let towards = Ray::new(P::new(0.0, 1.0, 0.0), Vector::<f64, 3>::new(0.0, 0.0, 3.0));
+        assert!(sphere.intersects_ray(&towards), "it grazes the top");
+        let away = Ray::new(P::new(0.0, 1.0, 0.0), Vector::<f64, 3>::new(0.0, 0.0, -3.0));
+        assert!(!sphere.intersects_ray(&away), "the sphere lies behind");
+    }
+
+    #[test]
+    fn bad_radii_are_refused() {
+        let negative = BoundingSphere::try_new(P::origin(), -1.0);
+        assert_eq!(negative, Err(BoundingSphereError::Radius(-1.0)), "negative");
+        assert!(BoundingSphere::try_new(P::origin(), f64::NAN).is_err(), "NaN");
+    }
+}

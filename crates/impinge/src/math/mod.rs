@@ -1,0 +1,30 @@
+//! Numbers, vectors and poses: the only door to nalgebra.
+//!
+//! Everything above this floor names vectors through these aliases. The library is generic over the
+//! scalar `N` (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound that code
+//! which needs something particular to a dimension asks for.
+//!
+//! Arithmetic here keeps the rule "the same bits everywhere": no fused multiply-add, no library
+//! trigonometry, and [`min`]/[`max`] are compare-and-select.
+
+mod pose;
+mod real;
+mod space;
+mod vector;
+
+pub use nalgebra as na;
+pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
+
+pub use pose::Pose;
+pub use real::Real;
+pub use space::Space;
+pub use vector::{
+    centroid, cross, cross2, max, max_component, min, orthonormal_basis, perp, unit, unit_or,
+};
+
+/// A vector of `D` components.
+pub type Vector<N, const D: usize> = nalgebra::SVector<N, D>;
+/// A point of `D` coordinates.
+pub type Point<N, const D: usize> = nalgebra::OPoint<N, nalgebra::Const<D>>;
+/// A square matrix; rotations are stored as such.
+pub type Matrix<N, const D: usize> = nalgebra::SMatrix<N, D, D>;

@@ -1,0 +1,134 @@
+//! A rigid placement with its rotation as a matrix: generic over the dimension, and about twice as
+//! fast to apply as nalgebra's quaternion isometry.
+
+use super::{AbstractRotation, Isometry, Matrix, Point, Real, Vector};
+
+/// Where a solid is: `x ↦ rotation · x + translation` takes its local frame to the world.
+///
+/// `pose12` is, everywhere in the library, the pose of the second solid in the frame of the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<N: Real, const D: usize> {
+    /// The rotation, an orthogonal matrix of determinant 1.
+    pub rotation: Matrix<N, D>,
+    /// The image of the local origin.
+    pub translation: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Pose<N, D> {
+    /// The pose of a solid whose frame is the world's.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self { rotation: Matrix::<N, D>::identity(), translation: Vector::<N, D>::zeros() }
+    }
+
+    /// A translation alone.
+    #[must_use]
+    pub fn from_translation(translation: Vector<N, D>) -> Self {
+        Self { rotation: Matrix::<N, D>::identity(), translation }
+    }
+
+    /// The pose that a nalgebra isometry describes.
+    #[must_use]
+    #[inline]
+    pub fn from_isometry<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
+        let mut rotation = Matrix::<N, D>::identity();
+        for axis in 0..D {
+            let mut e = Vector::<N, D>::zeros();
+            e[axis] = N::ONE;
+            rotation.set_column(axis, &isometry.rotation.transform_vector(&e));
+        }
+        Self { rotation, translation: isometry.translation.vector }
+    }
+
+    /// The pose of `second` in the frame of `first`.
+    ///
+    /// The translations are subtracted first, so that two solids close to each other lose nothing
+    /// by being far from the origin.
+    #[must_use]
+    #[inline]
+    pub fn relative(first: &Self, second: &Self) -> Self {
+        Self {
+            rotation: first.rotation.tr_mul(&second.rotation),
+            translation: first.rotation.tr_mul(&(second.translation - first.translation)),
+        }
+    }
+
+    /// The pose of the first solid in the frame of the second, given that of the second in the first.
+    #[must_use]
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.transpose();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
+
+    /// This pose after `inner`: takes the frame of `inner`'s solid to the outer frame.
+    #[must_use]
+    #[inline]
+    pub fn compose(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            translation: self.rotation * inner.translation + self.translation,
+        }
+    }
+
+    /// A local point, in the outer frame.
+    #[inline]
+    #[must_use]
+    pub fn point(&self, local: &Point<N, D>) -> Point<N, D> {
+        Point::from(self.rotation * local.coords + self.translation)
+    }
+
+    /// A local direction, in the outer frame.
+    #[inline]
+    #[must_use]
+    pub fn vector(&self, local: &Vector<N, D>) -> Vector<N, D> {
+        self.rotation * local
+    }
+
+    /// A point of the outer frame, in the local one.
+    #[inline]
+    #[must_use]
+    pub fn inverse_point(&self, outer: &Point<N, D>) -> Point<N, D> {
+        Point::from(self.rotation.tr_mul(&(outer.coords - self.translation)))
+    }
+
+    /// A direction of the outer frame, in the local one.
+    #[inline]
+    #[must_use]
+    pub fn inverse_vector(&self, outer: &Vector<N, D>) -> Vector<N, D> {
+        self.rotation.tr_mul(outer)
+    }
+
+    /// No component is NaN or infinite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.rotation.iter().chain(self.translation.iter()).all(|x| x.is_finite_number())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Isometry2, Isometry3};
+    use super::*;
+
+    #[test]
+    fn agrees_with_isometries() {
+        let iso = Isometry3::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0), [0.1, -0.7, 0.4].into());
+        let other = Isometry3::new(Vector::<f64, 3>::new(-4.0, 0.5, 3.0), [1.1, 0.2, 0.9].into());
+        let p = Point::<f64, 3>::new(0.3, -1.0, 2.0);
+        let (pose, second) = (Pose::from_isometry(&iso), Pose::from_isometry(&other));
+        assert!((pose.point(&p) - iso * p).norm() < 1e-14, "forward");
+        assert!((pose.inverse_point(&p) - iso.inverse_transform_point(&p)).norm() < 1e-14, "back");
+        let relative = Pose::relative(&pose, &second);
+        assert!((relative.point(&p) - iso.inv_mul(&other) * p).norm() < 1e-14, "relative");
+        assert!((pose.compose(&relative).point(&p) - other * p).norm() < 1e-14, "compose");
+        assert!((relative.inverse().point(&relative.point(&p)) - p).norm() < 1e-14, "inverse");
+    }
+
+    #[test]
+    fn quarter_turn_in_the_plane() {
+        let iso = Isometry2::new(Vector::<f32, 2>::new(1.0, 0.0), std::f32::consts::FRAC_PI_2);
+        let p = Pose::from_isometry(&iso).point(&Point::<f32, 2>::new(1.0, 0.0));
+        assert!((p - Point::<f32, 2>::new(1.0, 1.0)).norm() < 1e-6, "{p}");
+    }
+}
