@@ -2,6 +2,9 @@
 #![forbid(unsafe_code)]
 
 pub mod bounding_volume;
+pub(crate) mod convex;
 pub mod math;
+pub mod query;
+pub mod shape;
 #[doc(hidden)]
 pub mod tables;

@@ -10,7 +10,6 @@ use crate::math::{Point, Pose, Real, Vector, max, min};
 /// `mins ≤ maxs` on every axis and nothing is NaN. Faces may be infinite: such a box is unbounded.
 /// Zero extents are allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aabb<N: Real, const D: usize> {
     mins: Point<N, D>,
     maxs: Point<N, D>,

@@ -9,7 +9,6 @@ use crate::math::{Point, Pose, Real, max, unit};
 ///
 /// The radius may be zero (a point) or infinite (everything).
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BoundingSphere<N: Real, const D: usize> {
     center: Point<N, D>,
     radius: N,

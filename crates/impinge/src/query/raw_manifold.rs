@@ -1,0 +1,58 @@
+//! Manifolds as the narrow phase keeps them: small, flat, in the frame of the first solid.
+
+use smallvec::SmallVec;
+
+use crate::math::{Point, Real, Vector};
+use crate::shape::FeatureId;
+
+/// Which points a manifold shall hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ManifoldRequest<N: Real> {
+    /// Points farther apart than this are left out; zero or more.
+    pub(crate) prediction: N,
+    /// The sine of the angle by which the solids may turn: a point is also kept if turning about the
+    /// nearest point by that angle would bring it within `prediction`.
+    pub(crate) sine: N,
+    /// At most this many points are kept.
+    pub(crate) max_points: usize,
+}
+
+/// One point of a manifold: `point1` on the first solid, `point1 + normal · distance` on the second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RawPoint<N: Real, const D: usize> {
+    pub(crate) point1: Point<N, D>,
+    /// Signed, along the manifold's normal: negative when penetrating.
+    pub(crate) distance: N,
+    pub(crate) feature1: FeatureId,
+    pub(crate) feature2: FeatureId,
+    /// The number of the contact within its pair; kept while the features stay.
+    pub(crate) id: u32,
+}
+
+/// A set of points with one normal, in the frame of the first solid.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RawManifold<N: Real, const D: usize> {
+    /// Unit, from the first solid to the second.
+    pub(crate) normal: Vector<N, D>,
+    /// No point means that the solids are farther apart than the prediction.
+    pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
+}
+
+impl<N: Real, const D: usize> Default for RawManifold<N, D> {
+    fn default() -> Self {
+        Self { normal: Vector::<N, D>::zeros(), points: SmallVec::new() }
+    }
+}
+
+impl<N: Real, const D: usize> RawManifold<N, D> {
+    /// The index of the deepest point, the first of equals; 0 for an empty manifold.
+    pub(crate) fn deepest(&self) -> usize {
+        let mut deepest = 0;
+        for (index, point) in self.points.iter().enumerate() {
+            if point.distance < self.points[deepest].distance {
+                deepest = index;
+            }
+        }
+        deepest
+    }
+}

@@ -1,0 +1,73 @@
+//! Balls (disks in the plane).
+
+use super::error::{or_panic, size};
+use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real, Vector};
+
+/// The points within `radius` of the local origin.
+///
+/// Radius zero is a point. Its only feature is `Face(0)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<N: Real> {
+    radius: N,
+}
+
+impl<N: Real> Ball<N> {
+    /// The ball of a radius, zero or more.
+    ///
+    /// # Panics
+    /// If the radius is negative or not finite; [`Self::try_new`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn new(radius: N) -> Self {
+        or_panic(Self::try_new(radius))
+    }
+
+    /// The ball of a radius, zero or more.
+    ///
+    /// # Errors
+    /// If the radius is negative or not finite.
+    pub fn try_new(radius: N) -> Result<Self, ShapeError> {
+        Ok(Self { radius: size("the radius", radius)? })
+    }
+
+    /// The radius.
+    #[inline]
+    #[must_use]
+    pub const fn radius(&self) -> N {
+        self.radius
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Ball<N> {
+    fn core_support(&self, _: &Vector<N, D>) -> Point<N, D> {
+        Point::origin()
+    }
+
+    fn rounding(&self) -> N {
+        self.radius
+    }
+
+    fn reach(&self) -> N {
+        N::ZERO
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Ball<N> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Ball(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        Aabb::around(Point::origin(), Vector::<N, D>::repeat(self.radius))
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        Aabb::around(Point::from(pose.translation), Vector::<N, D>::repeat(self.radius))
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        BoundingSphere::new(Point::origin(), self.radius)
+    }
+}

@@ -1,0 +1,97 @@
+//! Why numbers make no shape.
+
+use core::fmt;
+
+use crate::math::{Real, Vector};
+
+/// Why a constructor refused its numbers. Values are given as `f64`, exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// A size or coordinate is NaN or infinite.
+    NotFinite {
+        /// Which number, as the constructor names it.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A size is below zero.
+    Negative {
+        /// Which number, as the constructor names it.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// Fewer points than the shape needs.
+    TooFewPoints {
+        /// How many were given.
+        given: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// The coordinate of a point is NaN or infinite.
+    PointNotFinite {
+        /// The index of the point.
+        index: usize,
+    },
+    /// The points do not span the shape: they coincide or lie on a line or in a plane.
+    Degenerate {
+        /// The dimension of what they span: 0 for a point, 1 for a line, 2 for a plane.
+        dimension: usize,
+    },
+    /// The points given as a convex outline turn the wrong way or fold back at this index.
+    NotConvex {
+        /// The index of the point.
+        index: usize,
+    },
+}
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { what, value } => write!(f, "{what} is {value}, which is not finite"),
+            Self::Negative { what, value } => write!(f, "{what} is {value}, below zero"),
+            Self::TooFewPoints { given, needed } => {
+                write!(f, "{given} points were given, at least {needed} are needed")
+            }
+            Self::PointNotFinite { index } => write!(f, "point {index} is not finite"),
+            Self::Degenerate { dimension } => {
+                write!(f, "the points only span something of dimension {dimension}")
+            }
+            Self::NotConvex { index } => write!(f, "the outline is not convex at point {index}"),
+        }
+    }
+}
+
+impl std::error::Error for ShapeError {}
+
+/// A size: finite and not negative.
+pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeError> {
+    if !value.is_finite_number() {
+        return Err(ShapeError::NotFinite { what, value: value.as_f64() });
+    }
+    if value < N::ZERO {
+        return Err(ShapeError::Negative { what, value: value.as_f64() });
+    }
+    Ok(value)
+}
+
+/// Coordinates: all finite.
+pub(super) fn finite<N: Real, const D: usize>(
+    what: &'static str,
+    coordinates: &Vector<N, D>,
+) -> Result<(), ShapeError> {
+    match coordinates.iter().find(|x| !x.is_finite_number()) {
+        Some(value) => Err(ShapeError::NotFinite { what, value: value.as_f64() }),
+        None => Ok(()),
+    }
+}
+
+/// The value, or a panic with the error's text: the end of every panicking constructor.
+#[track_caller]
+pub(super) fn or_panic<S>(result: Result<S, ShapeError>) -> S {
+    match result {
+        Ok(shape) => shape,
+        Err(error) => panic!("{error}"),
+    }
+}

@@ -1,0 +1,104 @@
+//! How queries see a shape: one of a closed set of kinds.
+
+use core::fmt;
+
+use super::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, SupportMap, Triangle,
+};
+use crate::math::Real;
+
+/// The kinds of solid that the pair table knows, in the order in which pairs are named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum ShapeKind {
+    /// [`Ball`].
+    Ball,
+    /// [`Segment`].
+    Segment,
+    /// [`Capsule`].
+    Capsule,
+    /// [`Triangle`].
+    Triangle,
+    /// [`Cuboid`].
+    Cuboid,
+    /// A convex polygon in the plane, a convex hull in space: [`Polytope`].
+    Polytope,
+    /// [`Cylinder`].
+    Cylinder,
+    /// [`Cone`].
+    Cone,
+    /// A convex solid known by its support points only.
+    SupportMap,
+    /// [`Plane`]: the half-space.
+    Plane,
+}
+
+/// A shape as queries see it. Users get one from a built-in shape or from [`Self::support_map`].
+#[derive(Clone, Copy)]
+pub struct Geometry<'a, N: Real, const D: usize>(pub(crate) Kind<'a, N, D>);
+
+/// The closed set. Kinds of one dimension only carry their numbers and a support map, so that this
+/// type needs no bound; their constructors exist in their dimension only.
+#[derive(Clone, Copy)]
+pub(crate) enum Kind<'a, N: Real, const D: usize> {
+    Ball(&'a Ball<N>),
+    Segment(&'a Segment<N, D>),
+    Capsule(&'a Capsule<N, D>),
+    Triangle(&'a Triangle<N, D>),
+    Cuboid(&'a Cuboid<N, D>),
+    Polytope(&'a Polytope<N, D>),
+    Cylinder(&'a Cylinder<N>, &'a dyn SupportMap<N, D>),
+    Cone(&'a Cone<N>, &'a dyn SupportMap<N, D>),
+    SupportMap(&'a dyn SupportMap<N, D>),
+    Plane(&'a Plane<N, D>),
+}
+
+impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
+    /// A convex solid of the user's own.
+    pub fn support_map(map: &'a dyn SupportMap<N, D>) -> Self {
+        Self(Kind::SupportMap(map))
+    }
+
+    /// Which kind it is.
+    #[must_use]
+    pub fn kind(&self) -> ShapeKind {
+        match self.0 {
+            Kind::Ball(_) => ShapeKind::Ball,
+            Kind::Segment(_) => ShapeKind::Segment,
+            Kind::Capsule(_) => ShapeKind::Capsule,
+            Kind::Triangle(_) => ShapeKind::Triangle,
+            Kind::Cuboid(_) => ShapeKind::Cuboid,
+            Kind::Polytope(_) => ShapeKind::Polytope,
+            Kind::Cylinder(..) => ShapeKind::Cylinder,
+            Kind::Cone(..) => ShapeKind::Cone,
+            Kind::SupportMap(_) => ShapeKind::SupportMap,
+            Kind::Plane(_) => ShapeKind::Plane,
+        }
+    }
+
+    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points.
+    #[must_use]
+    pub fn as_support_map(&self) -> Option<&'a dyn SupportMap<N, D>> {
+        Some(match self.0 {
+            Kind::Ball(ball) => ball,
+            Kind::Segment(segment) => segment,
+            Kind::Capsule(capsule) => capsule,
+            Kind::Triangle(triangle) => triangle,
+            Kind::Cuboid(cuboid) => cuboid,
+            Kind::Polytope(polytope) => polytope,
+            Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => map,
+            Kind::Plane(_) => return None,
+        })
+    }
+}
+
+impl ShapeKind {
+    /// How many kinds there are.
+    pub(crate) const COUNT: usize = Self::Plane as usize + 1;
+}
+
+impl<N: Real, const D: usize> fmt::Debug for Geometry<'_, N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Geometry").field(&self.kind()).finish()
+    }
+}

@@ -1,0 +1,68 @@
+//! The solids: what they are, in their own frame, and nothing about pairs or worlds.
+//!
+//! A convex solid is a *core* swollen by a *rounding* radius: a ball is a point swollen by its
+//! radius, a capsule a segment. Algorithms run on cores and subtract the roundings at the end,
+//! which is exact and free. [`Shape`] is what a world stores; [`SupportMap`] is what a convex solid
+//! of a user's own must offer to join every query; [`ConvexPolyhedron`] names the features of solids
+//! with flat faces.
+
+mod ball;
+mod capsule;
+mod cone;
+mod cuboid;
+mod cylinder;
+mod error;
+mod feature;
+mod geometry;
+mod handle;
+mod plane;
+mod polytope;
+mod segment;
+mod support_map;
+mod triangle;
+
+pub use ball::Ball;
+pub use capsule::Capsule;
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use error::ShapeError;
+pub use feature::{Feature, FeatureId};
+pub(crate) use geometry::Kind;
+pub use geometry::{Geometry, ShapeKind};
+pub use handle::ShapeHandle;
+pub use plane::Plane;
+pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
+pub use segment::Segment;
+pub use support_map::{ConvexPolyhedron, SupportMap};
+pub use triangle::Triangle;
+
+use core::fmt::Debug;
+
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Pose, Real};
+
+/// A solid in its own frame.
+///
+/// Implement it for a type of your own to put that type into a world: give its box and say through
+/// [`Shape::geometry`] how queries shall see it.
+pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
+    /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
+    /// geometry of a built-in shape that yours stands for.
+    fn geometry(&self) -> Geometry<'_, N, D>;
+
+    /// A box around the solid in its own frame; as small as is cheap.
+    fn local_aabb(&self) -> Aabb<N, D>;
+
+    /// A box around the solid placed at `pose`; as small as is cheap.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        self.local_aabb().transformed_by(pose)
+    }
+
+    /// A sphere around the solid in its own frame.
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        let aabb = self.local_aabb();
+        let radius = aabb.half_extents().norm();
+        BoundingSphere::try_new(aabb.center(), radius).unwrap_or(BoundingSphere::unbounded())
+    }
+}

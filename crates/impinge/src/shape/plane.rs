@@ -1,0 +1,63 @@
+//! Half-spaces (half-planes in the plane).
+
+use super::{Geometry, Kind, Shape};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Pose, Real, Unit, Vector};
+
+/// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
+///
+/// Its only feature is `Face(0)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<N: Real, const D: usize> {
+    normal: Unit<Vector<N, D>>,
+}
+
+impl<N: Real, const D: usize> Plane<N, D> {
+    /// The half-space that `normal` points out of.
+    #[must_use]
+    pub const fn new(normal: Unit<Vector<N, D>>) -> Self {
+        Self { normal }
+    }
+
+    /// The unit vector out of the solid.
+    #[inline]
+    #[must_use]
+    pub const fn normal(&self) -> &Unit<Vector<N, D>> {
+        &self.normal
+    }
+}
+
+impl<N: Real, const D: usize> Plane<N, D> {
+    /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
+    /// `point`: bounded on one side if the normal lies exactly along an axis, else unbounded.
+    fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
+        let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
+        for axis in 0..D {
+            let alone = (0..D).all(|other| other == axis || normal[other] == N::ZERO);
+            if alone && normal[axis] > N::ZERO {
+                maxs[axis] = point[axis];
+            } else if alone && normal[axis] < N::ZERO {
+                mins[axis] = point[axis];
+            }
+        }
+        Aabb::new(mins, maxs)
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Plane(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        Self::aabb_of(&self.normal, &Vector::<N, D>::zeros())
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        Self::aabb_of(&pose.vector(&self.normal), &pose.translation)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        BoundingSphere::unbounded()
+    }
+}

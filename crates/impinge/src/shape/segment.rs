@@ -1,0 +1,100 @@
+//! Segments.
+
+use super::error::{finite, or_panic};
+use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
+
+/// The points between `a` and `b`, which may coincide.
+///
+/// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in the plane too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<N: Real, const D: usize> {
+    a: Point<N, D>,
+    b: Point<N, D>,
+}
+
+impl<N: Real, const D: usize> Segment<N, D> {
+    /// The segment between two points.
+    ///
+    /// # Panics
+    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    #[must_use]
+    #[track_caller]
+    pub fn new(a: Point<N, D>, b: Point<N, D>) -> Self {
+        or_panic(Self::try_new(a, b))
+    }
+
+    /// The segment between two points.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn try_new(a: Point<N, D>, b: Point<N, D>) -> Result<Self, ShapeError> {
+        finite("a coordinate of the first end", &a.coords)?;
+        finite("a coordinate of the second end", &b.coords)?;
+        Ok(Self { a, b })
+    }
+
+    /// The first end.
+    #[inline]
+    #[must_use]
+    pub const fn a(&self) -> &Point<N, D> {
+        &self.a
+    }
+
+    /// The second end.
+    #[inline]
+    #[must_use]
+    pub const fn b(&self) -> &Point<N, D> {
+        &self.b
+    }
+}
+
+/// The larger of the distances of two points from the origin.
+pub(super) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
+    max(a.coords.norm(), b.coords.norm())
+}
+
+/// The box around two points, grown by `reach`.
+pub(super) fn box_of<N: Real, const D: usize>(
+    a: &Point<N, D>,
+    b: &Point<N, D>,
+    reach: N,
+) -> Aabb<N, D> {
+    let reach = Vector::<N, D>::repeat(reach);
+    let (low, high) = (a.coords.zip_map(&b.coords, min), a.coords.zip_map(&b.coords, max));
+    Aabb::new(Point::from(low - reach), Point::from(high + reach))
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Segment<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        if direction.dot(&(self.b - self.a)) > N::ZERO { self.b } else { self.a }
+    }
+
+    fn center(&self) -> Point<N, D> {
+        centroid(&[self.a, self.b])
+    }
+
+    fn reach(&self) -> N {
+        farther(&self.a, &self.b)
+    }
+
+    fn core_feature(&self, _: &Vector<N, D>, out: &mut Feature<N, D>) {
+        let ends = [(FeatureId::Vertex(0), self.a), (FeatureId::Vertex(1), self.b)];
+        out.set_segment(FeatureId::Edge(0), ends);
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Segment<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Segment(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        box_of(&self.a, &self.b, N::ZERO)
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        box_of(&pose.point(&self.a), &pose.point(&self.b), N::ZERO)
+    }
+}

@@ -1,0 +1,98 @@
+//! What a convex solid offers to the algorithms.
+
+use super::{Feature, FeatureId};
+use crate::math::{Point, Real, Vector, max, unit};
+
+/// A convex solid: a core, known by its support points, swollen by a rounding radius.
+///
+/// All in the local frame. Without rounding (the default) the core is the solid itself.
+pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
+    /// A point of the core farthest along `direction`.
+    ///
+    /// `direction` is finite, of any length; for the zero vector any point of the core will do. The
+    /// answer depends on nothing but `direction`, and not on its length.
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D>;
+
+    /// The radius by which the core is swollen; zero or more.
+    fn rounding(&self) -> N {
+        N::ZERO
+    }
+
+    /// A point well inside the core.
+    fn center(&self) -> Point<N, D> {
+        Point::origin()
+    }
+
+    /// A length that no point of the core exceeds in distance from the local origin, and that is
+    /// not much larger than needed: tolerances are in proportion to it.
+    fn reach(&self) -> N {
+        let mut squared = N::ZERO;
+        for axis in 0..D {
+            let mut direction = Vector::<N, D>::zeros();
+            direction[axis] = N::ONE;
+            let high = self.core_support(&direction)[axis].abs();
+            let low = self.core_support(&-direction)[axis].abs();
+            squared += max(high, low) * max(high, low);
+        }
+        squared.sqrt()
+    }
+
+    /// A point of the whole solid farthest along `direction`.
+    fn support_point(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        let core = self.core_support(direction);
+        match unit(direction) {
+            Some((along, _)) => core + along * self.rounding(),
+            None => core,
+        }
+    }
+
+    /// The part of the core that faces the unit vector `direction`: the widest of point, segment
+    /// and polygon whose supporting plane comes nearest to being perpendicular to it.
+    ///
+    /// A polytope answers with the face whose normal is most aligned. The default is the support
+    /// point alone, named `Face(0)`: right for surfaces that are curved everywhere.
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        out.set_point(FeatureId::Face(0), self.core_support(direction));
+    }
+}
+
+/// A convex solid whose core has flat faces: the geometry of its features.
+///
+/// All in the local frame, of the core (for a rounded solid the faces lie `rounding` inside its
+/// surface). Asking for a feature that the solid does not have panics, and the message names it.
+pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
+    /// The position of a vertex.
+    ///
+    /// # Panics
+    /// If `id` is not a vertex of the solid.
+    fn vertex(&self, id: FeatureId) -> Point<N, D>;
+
+    /// The two ends of an edge and their names (in the plane: of a side).
+    ///
+    /// # Panics
+    /// If `id` is not an edge of the solid (in the plane: a face).
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2];
+
+    /// A face, as a polygon (in the plane: as a segment with a normal).
+    ///
+    /// # Panics
+    /// If `id` is not a face of the solid.
+    fn face(&self, id: FeatureId, out: &mut Feature<N, D>);
+
+    /// A unit vector that points away from the solid on the feature: the face's normal, or the
+    /// normalised sum of the normals of the faces around a vertex or an edge.
+    ///
+    /// # Panics
+    /// If `id` is not a feature of the solid.
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, D>;
+
+    /// The face whose normal is most aligned with the unit vector `direction`.
+    fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>);
+
+    /// The largest feature that touches the supporting plane in `direction`, once the solid may be
+    /// turned by up to `angle` radians: a face, else an edge, else a vertex.
+    fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);
+
+    /// The name of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
+    fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId;
+}

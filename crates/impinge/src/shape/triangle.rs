@@ -1,0 +1,86 @@
+//! Triangles: filled in the plane, flat in space.
+
+use super::error::{finite, or_panic};
+use super::segment::{box_of, farther};
+use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Point, Pose, Real, Vector, centroid, max};
+
+/// The points between three corners, which may be given in either order and may coincide or lie on
+/// a line.
+///
+/// In space it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
+/// from vertex `i` to the next; they are faces in the plane and edges in space. In space `Face(0)`
+/// is the side that sees `a`, `b`, `c` counter-clockwise and `Face(1)` the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle<N: Real, const D: usize> {
+    corners: [Point<N, D>; 3],
+}
+
+impl<N: Real, const D: usize> Triangle<N, D> {
+    /// The triangle of three corners.
+    ///
+    /// # Panics
+    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    #[must_use]
+    #[track_caller]
+    pub fn new(a: Point<N, D>, b: Point<N, D>, c: Point<N, D>) -> Self {
+        or_panic(Self::try_new(a, b, c))
+    }
+
+    /// The triangle of three corners.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn try_new(a: Point<N, D>, b: Point<N, D>, c: Point<N, D>) -> Result<Self, ShapeError> {
+        finite("a coordinate of the first corner", &a.coords)?;
+        finite("a coordinate of the second corner", &b.coords)?;
+        finite("a coordinate of the third corner", &c.coords)?;
+        Ok(Self { corners: [a, b, c] })
+    }
+
+    /// The corners, in the order given.
+    #[inline]
+    #[must_use]
+    pub const fn corners(&self) -> &[Point<N, D>; 3] {
+        &self.corners
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        let [a, b, c] = &self.corners;
+        let (from_a, from_b) = ((b - a).dot(direction), (c - b).dot(direction));
+        if from_a > N::ZERO {
+            if from_b > N::ZERO { *c } else { *b }
+        } else if (c - a).dot(direction) > N::ZERO {
+            *c
+        } else {
+            *a
+        }
+    }
+
+    fn center(&self) -> Point<N, D> {
+        centroid(&self.corners)
+    }
+
+    fn reach(&self) -> N {
+        let [a, b, c] = &self.corners;
+        max(farther(a, b), c.coords.norm())
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Triangle<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Triangle(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.aabb(&Pose::identity())
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        let [a, b, c] = self.corners.map(|corner| pose.point(&corner));
+        box_of(&a, &b, N::ZERO).merged(&box_of(&c, &c, N::ZERO))
+    }
+}
