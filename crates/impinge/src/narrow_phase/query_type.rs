@@ -1,0 +1,90 @@
+//! What is asked of an object's pairs.
+
+use crate::math::Real;
+
+/// What the narrow phase computes for the pairs of an object.
+///
+/// If either object of a pair has the type `Proximity`, only proximity is computed for the pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum GeometricQueryType<N: Real> {
+    /// Contacts, given the linear prediction and the angular one in radians.
+    ///
+    /// Contact points exist while the solids penetrate or are no farther apart than the *sum* of the
+    /// linear predictions of both objects. The sum of the angular predictions adds the points that
+    /// would come that near if the solids were turned by that angle.
+    Contacts(N, N),
+    /// Proximity, given the margin: farther apart than the *sum* of the margins is disjoint.
+    ///
+    /// An object with the type `Contacts` adds nothing to the sum.
+    Proximity(N),
+}
+
+/// What is asked of a pair: the sums over its two objects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PairQuery<N: Real> {
+    Contacts { linear: N, angular: N },
+    Proximity { margin: N },
+}
+
+impl<N: Real> GeometricQueryType<N> {
+    /// The distance up to which the object wants to know of others; the broad phase adds it to the
+    /// object's box.
+    #[must_use]
+    pub fn query_limit(&self) -> N {
+        match *self {
+            Self::Contacts(linear, _) => linear,
+            Self::Proximity(margin) => margin,
+        }
+    }
+
+    /// What a pair of objects with these types asks.
+    pub(crate) fn pair(self, other: Self) -> PairQuery<N> {
+        match (self, other) {
+            (Self::Contacts(linear1, angular1), Self::Contacts(linear2, angular2)) => {
+                PairQuery::Contacts { linear: linear1 + linear2, angular: angular1 + angular2 }
+            }
+            (Self::Proximity(margin), Self::Contacts(..))
+            | (Self::Contacts(..), Self::Proximity(margin)) => PairQuery::Proximity { margin },
+            (Self::Proximity(margin1), Self::Proximity(margin2)) => {
+                PairQuery::Proximity { margin: margin1 + margin2 }
+            }
+        }
+    }
+
+    /// The first number that is negative or not finite, if there is one.
+    pub(crate) fn bad_number(&self) -> Option<N> {
+        let numbers = match *self {
+            Self::Contacts(linear, angular) => [linear, angular],
+            Self::Proximity(margin) => [margin, N::ZERO],
+        };
+        numbers.into_iter().find(|x| !x.is_finite_number() || *x < N::ZERO)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_and_precedence() {
+        use GeometricQueryType::{Contacts, Proximity};
+        let contacts = Contacts(0.25_f32, 0.5);
+        assert_eq!(
+            contacts.pair(Contacts(0.5, 0.0)),
+            PairQuery::Contacts { linear: 0.75, angular: 0.5 },
+            "both predictions add"
+        );
+        let near = PairQuery::Proximity { margin: 2.0 };
+        assert_eq!(contacts.pair(Proximity(2.0)), near, "proximity wins");
+        assert_eq!(Proximity(2.0).pair(contacts), near, "in both orders");
+        assert_eq!(Proximity(1.5).pair(Proximity(0.5)), near, "margins add");
+    }
+
+    #[test]
+    fn bad_numbers_are_found() {
+        assert_eq!(GeometricQueryType::Contacts(0.0_f32, 0.0).bad_number(), None, "zero is fine");
+        assert_eq!(GeometricQueryType::Contacts(0.0_f32, -1.0).bad_number(), Some(-1.0), "angle");
+        assert!(GeometricQueryType::Proximity(f64::NAN).bad_number().is_some(), "NaN");
+    }
+}
