@@ -13,7 +13,7 @@ use crate::math::Real;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId {
     /// The number of the pair, never given twice.
-    pub(crate) pair: u32,
+    pub(crate) pair: u64,
     /// The number of the contact within the pair, never given twice.
     pub(crate) number: u32,
 }
