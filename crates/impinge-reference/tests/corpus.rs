@@ -1,0 +1,255 @@
+//! The reference against the corpus of known answers: cases on which published libraries erred, with expected values
+//! that were found independently of this crate.
+
+use impinge_reference::geometry::vector::{norm, sub};
+use impinge_reference::geometry::{
+    Pose, Reference, Solid, point_signed_distance, ray_cast, separation_along, signed_distance,
+};
+use serde_json::Value;
+
+fn read(name: &str) -> Value {
+    let path = format!("{}/../impinge/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect("the corpus is part of the repository");
+    serde_json::from_str(&text).expect("the corpus is JSON")
+}
+
+fn cases(corpus: &Value) -> &[Value] {
+    corpus["cases"].as_array().expect("a list of cases")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("a number, not {value}"))
+}
+
+fn numbers<const N: usize>(value: &Value) -> [f64; N] {
+    let list = value.as_array().unwrap_or_else(|| panic!("a list, not {value}"));
+    std::array::from_fn(|i| number(&list[i]))
+}
+
+/// The solid, and its pose in the frame of the shape: the corpus has cylinders and cones along any axis.
+fn solid<const D: usize>(shape: &Value) -> Option<(Solid<D>, Pose<D>)> {
+    let radius = || number(shape.get("radius").unwrap_or(&shape["r"]));
+    let points = |keys: &[&str]| keys.iter().map(|key| numbers(&shape[key])).collect();
+    let on_axis = |sign: f64| {
+        let height = number(&shape["half_height"]);
+        std::array::from_fn(|i| if i == 1 { sign * height } else { 0.0 })
+    };
+    let found = match shape["type"].as_str()? {
+        "ball" => Solid::ball(radius()),
+        "point" => Solid::ball(0.0),
+        "cuboid" => Solid::cuboid(numbers(&shape["half_extents"])),
+        "round_cuboid" => Solid::round_cuboid(numbers(&shape["half_extents"]), radius()),
+        "capsule" => Solid::capsule(numbers(&shape["a"]), numbers(&shape["b"]), radius()),
+        "capsule_y" => Solid::capsule(on_axis(-1.0), on_axis(1.0), radius()),
+        "segment" => Solid::polytope(points(&["a", "b"])),
+        "triangle" => Solid::polytope(points(&["a", "b", "c"])),
+        "convex" | "convex_polygon" | "convex_hull" => {
+            Solid::polytope(shape["points"].as_array()?.iter().map(numbers).collect())
+        }
+        "halfspace" => Solid::half_space(numbers(&shape["normal"])),
+        "cylinder" | "cylinder_y" => {
+            Solid::Cylinder { half_height: number(&shape["half_height"]), radius: radius() }
+        }
+        "cone" | "cone_y" => {
+            Solid::Cone { half_height: number(&shape["half_height"]), radius: radius() }
+        }
+        _ => return None,
+    };
+    let mut tilt = Pose::identity();
+    match shape["axis"].as_str() {
+        // y to x about z, and y to z about x.
+        Some("x") => (tilt.rotation[0], tilt.rotation[1]) = (unit(1), unit(0).map(|x: f64| -x)),
+        Some("z") => (tilt.rotation[1], tilt.rotation[2]) = (unit(2).map(|x: f64| -x), unit(1)),
+        _ => (),
+    }
+    Some((found, tilt))
+}
+
+fn unit<const D: usize>(index: usize) -> [f64; D] {
+    std::array::from_fn(|i| if i == index { 1.0 } else { 0.0 })
+}
+
+/// Poses are written in different ways in the plane and in space.
+trait ReadPose: Sized {
+    fn read(value: &Value) -> Self;
+    /// The pose of the second shape in the frame of the first.
+    fn read_pos12(value: &Value) -> Self;
+}
+
+impl ReadPose for Pose<2> {
+    fn read(value: &Value) -> Self {
+        Self::from_angle(numbers(&value["t"]), number(&value["angle"]))
+    }
+
+    fn read_pos12(value: &Value) -> Self {
+        let complex = [number(&value["cos"]), number(&value["sin"])];
+        Self::from_complex(numbers(&value["translation"]), complex)
+    }
+}
+
+impl ReadPose for Pose<3> {
+    fn read(value: &Value) -> Self {
+        Self::from_quaternion(numbers(&value["t"]), numbers(&value["q"]))
+    }
+
+    fn read_pos12(value: &Value) -> Self {
+        Self::from_quaternion(numbers(&value["translation"]), numbers(&value["rotation_xyzw"]))
+    }
+}
+
+struct Pair<const D: usize> {
+    solid1: Solid<D>,
+    pose1: Pose<D>,
+    solid2: Solid<D>,
+    pose2: Pose<D>,
+}
+
+impl<const D: usize> Pair<D> {
+    fn new(case: &Value, pose1: Pose<D>, pose2: Pose<D>) -> Option<Self> {
+        let (solid1, tilt1) = solid(&case["shape1"])?;
+        let (solid2, tilt2) = solid(&case["shape2"])?;
+        Some(Self { solid1, pose1: pose1.compose(&tilt1), solid2, pose2: pose2.compose(&tilt2) })
+    }
+
+    fn signed_distance(&self) -> Reference<D> {
+        signed_distance(&self.solid1, &self.pose1, &self.solid2, &self.pose2)
+    }
+
+    fn swapped(&self) -> Reference<D> {
+        signed_distance(&self.solid2, &self.pose2, &self.solid1, &self.pose1)
+    }
+
+    /// How much worse a normal is than the best one. The normals of half-spaces are compared as they are, and
+    /// those of vectors of the corpus need not be unit to the last digit.
+    fn normal_loss(&self, found: &Reference<D>, normal: &[f64; D]) -> f64 {
+        let along = separation_along(&self.solid1, &self.pose1, &self.solid2, &self.pose2, normal);
+        if along.is_finite() {
+            return found.upper - along;
+        }
+        norm(&sub(normal, &found.normal.expect("bounded")))
+    }
+
+    fn is_curved(&self) -> bool {
+        let curved = |s: &Solid<D>| matches!(s, Solid::Cylinder { .. } | Solid::Cone { .. });
+        curved(&self.solid1) || curved(&self.solid2)
+    }
+}
+
+fn check_regression<const D: usize>(case: &Value) -> bool
+where
+    Pose<D>: ReadPose,
+{
+    let poses = (Pose::read(&case["pose1"]), Pose::read(&case["pose2"]));
+    let Some(pair) = Pair::new(case, poses.0, poses.1) else { return false };
+    let expected = number(&case["expected"]["signed_distance"]);
+    let tolerance = number(&case["tolerance"]["f64"]);
+    for found in [pair.signed_distance(), pair.swapped()] {
+        let error = found.error_of(expected);
+        assert!(error <= tolerance, "{}: {found:?}, not {expected}", case["id"]);
+        assert!(found.upper - found.lower <= 1e-4, "{}: {found:?} is wide", case["id"]);
+    }
+    if case["expected"]["normal1"].is_array() {
+        let loss = pair.normal_loss(&pair.signed_distance(), &numbers(&case["expected"]["normal1"]));
+        assert!(loss.abs() <= 10.0 * tolerance, "{}: normal loses {loss}", case["id"]);
+    }
+    true
+}
+
+#[test]
+fn regression_signed_distances() {
+    let corpus = read("regression_cases.json");
+    let (mut done, mut left_out) = (0, Vec::new());
+    for case in cases(&corpus).iter().filter(|case| case["query"] == "signed_distance") {
+        let known =
+            if case["dim"] == 2 { check_regression::<2>(case) } else { check_regression::<3>(case) };
+        if known {
+            done += 1;
+        } else {
+            left_out.push(case["id"].as_str().expect("an id"));
+        }
+    }
+    assert_eq!(left_out, ["mujoco-EllipsoidSlowConvergence"]);
+    assert_eq!(done, 88);
+}
+
+fn check_narrow_phase<const D: usize>(case: &Value) -> f64
+where
+    Pose<D>: ReadPose,
+{
+    let pair = Pair::new(case, Pose::identity(), Pose::read_pos12(&case["pos12"]))
+        .unwrap_or_else(|| panic!("{} has an unknown shape", case["id"]));
+    let size = number(&case["size"]);
+    let share = if pair.is_curved() { 1e-7 } else { 1e-12 };
+    let expected = number(&case["expected_signed_distance"]);
+    let found = pair.signed_distance();
+    let error = found.error_of(expected).max((found.lower - expected).abs()) / size;
+    assert!(error <= share, "{}: {found:?}, not {expected}", case["id"]);
+    assert!((found.upper - found.lower) / size <= 1e-6, "{}: {found:?} is wide", case["id"]);
+    let normal = found.normal.expect("bounded");
+    let loss = pair.normal_loss(&found, &normal) / size;
+    assert!(loss.abs() <= 1e-6, "{}: normal loses {loss}", case["id"]);
+    error
+}
+
+#[test]
+fn narrow_phase_signed_distances() {
+    let corpus = read("narrow_phase_cases.json");
+    let (mut penetrating, mut done) = (0, 0);
+    for case in cases(&corpus) {
+        let _ = if case["dim"] == 2 {
+            check_narrow_phase::<2>(case)
+        } else {
+            check_narrow_phase::<3>(case)
+        };
+        done += 1;
+        penetrating += u32::from(number(&case["expected_signed_distance"]) < 0.0);
+    }
+    assert!(done > 1500 && penetrating > done / 4, "{done} cases, {penetrating} penetrate");
+}
+
+fn check_ray<const D: usize>(case: &Value) -> bool
+where
+    Pose<D>: ReadPose,
+{
+    let Some((shape, tilt)) = solid::<D>(&case["shape1"]) else { return false };
+    let pose = Pose::read(&case["pose1"]).compose(&tilt);
+    let (params, expected) = (&case["params"], &case["expected"]);
+    let t = ray_cast(&shape, &pose, &numbers(&params["origin"]), &numbers(&params["dir"]));
+    assert_eq!(Some(t.is_some()), expected["hit"].as_bool(), "{}: {t:?}", case["id"]);
+    if let Some(t) = t {
+        let error = (t - number(&expected["t"])).abs();
+        assert!(error <= number(&case["tolerance"]["f64"]), "{}: {t}, not {expected}", case["id"]);
+    }
+    true
+}
+
+#[test]
+fn regression_rays() {
+    let corpus = read("regression_cases.json");
+    let rays = cases(&corpus).iter().filter(|case| case["query"] == "ray");
+    let done =
+        rays.filter(|case| if case["dim"] == 2 { check_ray::<2>(case) } else { check_ray::<3>(case) });
+    // The others are on height fields and meshes.
+    assert_eq!(done.count(), 13);
+}
+
+#[test]
+fn regression_point_distances() {
+    let corpus = read("regression_cases.json");
+    let mut done = 0;
+    for case in cases(&corpus).iter().filter(|case| case["query"] == "point_projection") {
+        let distance = if case["dim"] == 2 {
+            let Some((shape, _)) = solid::<2>(&case["shape1"]) else { continue };
+            let pose = ReadPose::read(&case["pose1"]);
+            point_signed_distance(&shape, &pose, &numbers(&case["params"]["point"]))
+        } else {
+            let Some((shape, _)) = solid::<3>(&case["shape1"]) else { continue };
+            let pose = ReadPose::read(&case["pose1"]);
+            point_signed_distance(&shape, &pose, &numbers(&case["params"]["point"]))
+        };
+        let error = (distance - number(&case["expected"]["distance"])).abs();
+        assert!(error <= number(&case["tolerance"]["f64"]), "{}: {distance}", case["id"]);
+        done += 1;
+    }
+    assert_eq!(done, 4);
+}
