@@ -13,4 +13,4 @@
 pub mod geometry;
 pub mod random;
 pub mod topology;
-//pub mod world;
+pub mod world;

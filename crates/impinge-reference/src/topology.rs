@@ -101,7 +101,8 @@ fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
     let mut turns: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
     for face in faces {
         for k in 0..face.len() {
-            let (before, after) = (face[(k + face.len() - 1) % face.len()], face[(k + 1) % face.len()]);
+            let (before, after) =
+                (face[(k + face.len() - 1) % face.len()], face[(k + 1) % face.len()]);
             turns.entry(face[k]).or_default().insert(after, before);
         }
     }
@@ -174,9 +175,8 @@ pub fn check_polygon(corners: &[[f64; 2]]) -> Result<(), Fault> {
 #[must_use]
 pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     let Some(origin) = corners.first() else { return 0.0 };
-    let cross = |pair: &[[f64; 2]]| {
-        dot(&perpendicular(&[sub(&pair[0], origin)]), &sub(&pair[1], origin))
-    };
+    let cross =
+        |pair: &[[f64; 2]]| dot(&perpendicular(&[sub(&pair[0], origin)]), &sub(&pair[1], origin));
     corners.windows(2).map(cross).sum::<f64>() / 2.0
 }
 

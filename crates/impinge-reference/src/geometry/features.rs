@@ -70,9 +70,10 @@ fn distinct<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
 
 /// One face per set of coplanar corners: the one whose defining points are farthest from collinear.
 fn faces<const D: usize>(vertices: &[[f64; D]]) -> Vec<Face<D>> {
+    let size = vertices.iter().map(|v| norm(&sub(v, &vertices[0]))).fold(0.0, f64::max);
     let mut kept: Vec<Face<D>> = Vec::new();
     for corners in subsets(vertices.len(), D) {
-        let Some(face) = face_through(vertices, &corners) else { continue };
+        let Some(face) = face_through(vertices, &corners, size) else { continue };
         match kept.iter_mut().find(|other| other.on == face.on) {
             None => kept.push(face),
             Some(other) if other.quality < face.quality => *other = face,
@@ -100,24 +101,38 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
 /// The plane through some corners, if no corner lies in front of it (with the normal of one sign or of the other).
 ///
 /// Corners count as lying on the plane within the rounding of the heights above it, which grows when the
-/// defining corners are nearly collinear.
-fn face_through<const D: usize>(vertices: &[[f64; D]], corners: &[usize]) -> Option<Face<D>> {
+/// defining corners are nearly collinear. `size` is the largest distance of a corner from the first.
+fn face_through<const D: usize>(
+    vertices: &[[f64; D]],
+    corners: &[usize],
+    size: f64,
+) -> Option<Face<D>> {
     let origin = vertices[corners[0]];
-    let spans: Vec<[f64; D]> = corners[1..].iter().map(|&i| sub(&vertices[i], &origin)).collect();
-    let size = vertices.iter().map(|v| norm(&sub(v, &origin))).fold(0.0, f64::max);
-    let shrunk: Vec<[f64; D]> = spans.iter().map(|span| scale(span, 1.0 / size)).collect();
-    let product = perpendicular(&shrunk);
+    let shrunk: [[f64; D]; D] =
+        std::array::from_fn(|k| scale(&sub(&vertices[corners[k]], &origin), 1.0 / size));
+    let product = perpendicular(&shrunk[1..]);
     let quality = norm(&product);
     if quality <= 1e-15 {
         return None;
     }
     let normal = scale(&product, 1.0 / quality);
-    let heights: Vec<f64> = vertices.iter().map(|v| dot(&sub(v, &origin), &normal)).collect();
     let slack = 1e-14 * size / quality.min(1.0);
-    let supports =
-        heights.iter().all(|&height| height <= slack) || heights.iter().all(|&height| height >= -slack);
-    let on = (0..vertices.len()).filter(|&i| corners.contains(&i) || heights[i].abs() <= slack);
-    supports.then(|| Face { normal, on: on.collect(), quality })
+    let (mut behind, mut before) = (false, false);
+    let mut on = Vec::new();
+    for (index, vertex) in vertices.iter().enumerate() {
+        let height = dot(&sub(vertex, &origin), &normal);
+        if corners.contains(&index) || height.abs() <= slack {
+            on.push(index);
+        } else if height < 0.0 {
+            behind = true;
+        } else {
+            before = true;
+        }
+        if behind && before {
+            return None;
+        }
+    }
+    Some(Face { normal, on, quality })
 }
 
 /// The pairs of corners that share two faces; all pairs if the corners lie in one plane or on one line.

@@ -101,7 +101,9 @@ impl<const D: usize> Solid<D> {
             Self::HalfSpace { normal } if norm(&sub(normal, &local)) > 1e-12 => f64::INFINITY,
             Self::HalfSpace { .. } => dot(direction, &pose.translation),
             _ => {
-                self.core_extent(&local) + self.radius() * norm(&local) + dot(direction, &pose.translation)
+                self.core_extent(&local)
+                    + self.radius() * norm(&local)
+                    + dot(direction, &pose.translation)
             }
         }
     }

@@ -14,7 +14,7 @@ use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 type Vector = [f64; 3];
 
 /// The search stops when at most this share of the size of the problem can still be gained.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-11;
 /// Caps on the depth of the cutting and on the triangles of one depth. The second is only met when the maximum is taken on
 /// a whole curve or region, such as for coaxial cylinders; the certificate is wider then.
 const MAX_DEPTH: usize = 40;
@@ -46,11 +46,7 @@ struct Search<'a> {
 
 /// Maximises h. `seeds` are directions worth a try at the start, of any length; they only save time. `size` is a length of
 /// the problem: the radius of M.
-pub(super) fn maximise(
-    lowest: &dyn Fn(&Vector) -> Vector,
-    seeds: &[Vector],
-    size: f64,
-) -> Bracket {
+pub(super) fn maximise(lowest: &dyn Fn(&Vector) -> Vector, seeds: &[Vector], size: f64) -> Bracket {
     let mut search = Search { lowest, lower: f64::NEG_INFINITY, normal: [0.0; 3] };
     for seed in seeds {
         search.try_direction(seed);
@@ -197,7 +193,9 @@ mod tests {
 
     #[test]
     fn a_box_around_the_origin() {
-        let corner = |i: usize| std::array::from_fn(|k| [[-3.0, 4.0], [-2.0, 9.0], [-5.0, 5.0]][k][i >> k & 1]);
+        let corner = |i: usize| {
+            std::array::from_fn(|k| [[-3.0, 4.0], [-2.0, 9.0], [-5.0, 5.0]][k][i >> k & 1])
+        };
         let points: Vec<Vector> = (0..8).map(corner).collect();
         let found = of_points(&points);
         assert_eq!(found.lower, -2.0);
