@@ -36,8 +36,12 @@ pub enum Fault {
     },
     /// Vertices minus edges plus faces is not two: several pieces, a handle, or a vertex where pieces meet.
     Euler {
-        /// What it is instead. Only the vertices of faces count.
-        characteristic: i64,
+        /// The number of vertices of faces.
+        vertices: usize,
+        /// The number of edges, each counted once for both directions.
+        edges: usize,
+        /// The number of faces.
+        faces: usize,
     },
     /// The corners of a face, or of a polygon, enclose no area.
     NoArea {
@@ -64,10 +68,9 @@ pub fn check_surface(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Result<(), 
         return Err(Fault::OpenEdge { edge });
     }
     let used: BTreeSet<usize> = faces.iter().flatten().copied().collect();
-    let count = |n: usize| i64::try_from(n).expect("counts are small");
-    let characteristic = count(used.len()) - count(edges.len() / 2) + count(faces.len());
-    if characteristic != 2 || !vertices_have_one_fan(faces) {
-        return Err(Fault::Euler { characteristic });
+    let (vertices, edges, count) = (used.len(), edges.len() / 2, faces.len());
+    if vertices + count != edges + 2 || !vertices_have_one_fan(faces) {
+        return Err(Fault::Euler { vertices, edges, faces: count });
     }
     Ok(())
 }
@@ -240,13 +243,19 @@ mod tests {
         let vertices = [CORNERS, shifted].concat();
         let second = tetrahedron().into_iter().map(|face| face.iter().map(|i| i + 4).collect());
         let faces: Vec<Vec<usize>> = tetrahedron().into_iter().chain(second).collect();
-        assert_eq!(check_surface(&vertices, &faces), Err(Fault::Euler { characteristic: 4 }));
+        assert_eq!(
+            check_surface(&vertices, &faces),
+            Err(Fault::Euler { vertices: 8, edges: 12, faces: 8 })
+        );
         // Glued at one vertex: the vertex has two fans.
         let glued: Vec<Vec<usize>> = faces
             .iter()
             .map(|face| face.iter().map(|&i| if i == 4 { 1 } else { i }).collect())
             .collect();
-        assert_eq!(check_surface(&vertices, &glued), Err(Fault::Euler { characteristic: 3 }));
+        assert_eq!(
+            check_surface(&vertices, &glued),
+            Err(Fault::Euler { vertices: 7, edges: 12, faces: 8 })
+        );
     }
 
     #[test]

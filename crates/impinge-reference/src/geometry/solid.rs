@@ -154,7 +154,7 @@ impl<const D: usize> Solid<D> {
         match self {
             Self::Rounded { vertices, .. } => *vertices
                 .iter()
-                .max_by(|a, b| dot(*a, direction).total_cmp(&dot(*b, direction)))
+                .max_by(|a, b| dot(a, direction).total_cmp(&dot(b, direction)))
                 .expect("a solid has at least one vertex"),
             Self::HalfSpace { .. } => panic!("a half-space has no support point"),
             Self::Cylinder { half_height, radius } => {

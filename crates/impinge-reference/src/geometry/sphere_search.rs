@@ -186,7 +186,7 @@ mod tests {
 
     fn of_points(points: &[Vector]) -> Bracket {
         let lowest = |n: &Vector| {
-            *points.iter().min_by(|a, b| dot(*a, n).total_cmp(&dot(*b, n))).expect("points")
+            *points.iter().min_by(|a, b| dot(a, n).total_cmp(&dot(b, n))).expect("points")
         };
         maximise(&lowest, &[], points.iter().map(norm).fold(0.0, f64::max))
     }

@@ -27,6 +27,7 @@ pub use events::{ContactEvent, Events, Proximity, ProximityEvent};
 pub use groups::{ALL, Groups};
 pub use shape::{Shape, Union};
 
+use crate::geometry::vector::{norm, sub};
 use crate::geometry::{Pose, Solid};
 use events::PairState;
 use std::collections::{BTreeMap, BTreeSet};
@@ -287,20 +288,36 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         if !self.is_allowed(object1, object2) {
             return state;
         }
+        let query_types = (object1.query_type, object2.query_type);
+        let margin = match query_types {
+            (Contacts(margin1), Contacts(margin2)) | (Proximity(margin1), Proximity(margin2)) => {
+                margin1 + margin2
+            }
+            (Proximity(margin), Contacts(_)) | (Contacts(_), Proximity(margin)) => margin,
+        };
+        if is_far(object1, object2, margin) {
+            return state;
+        }
         let distance = self.signed_distance(object1, object2);
-        match (object1.query_type, object2.query_type) {
-            (Contacts(prediction1), Contacts(prediction2)) => {
-                state.touching = distance.is_finite() && distance <= prediction1 + prediction2;
-            }
-            (Proximity(margin1), Proximity(margin2)) => {
-                state.proximity = classify(distance, margin1 + margin2);
-            }
-            (Proximity(margin), Contacts(_)) | (Contacts(_), Proximity(margin)) => {
-                state.proximity = classify(distance, margin);
-            }
+        if let (Contacts(_), Contacts(_)) = query_types {
+            state.touching = distance.is_finite() && distance <= margin;
+        } else {
+            state.proximity = classify(distance, margin);
         }
         state
     }
+}
+
+/// Whether the balls around two objects are so far apart that the exact distance need not be asked. It may say no for any pair.
+fn is_far<const D: usize, S: Shape<D>>(
+    object1: &Object<D, S>,
+    object2: &Object<D, S>,
+    margin: f64,
+) -> bool {
+    let between = norm(&sub(&object2.pose.translation, &object1.pose.translation));
+    let reach = object1.shape.bounding_radius() + object2.shape.bounding_radius() + margin;
+    // A percent is far more than all rounding.
+    between > 1.01 * reach
 }
 
 fn classify(distance: f64, margin: f64) -> Proximity {

@@ -1,5 +1,6 @@
 //! What the world must know about a shape; a test may plug in its own.
 
+use crate::geometry::vector::norm;
 use crate::geometry::{
     Pose, Solid, contains_point, point_signed_distance, ray_cast, signed_distance,
 };
@@ -8,6 +9,9 @@ use crate::geometry::{
 pub trait Shape<const D: usize> {
     /// The signed distance; minus infinity for solids that overlap without bound and so have no contact.
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64;
+
+    /// The radius of a ball about the local origin that holds the shape; infinity is always right, but slow.
+    fn bounding_radius(&self) -> f64;
 
     /// The first `t >= 0` at which a ray is in the shape.
     fn ray_cast(&self, pose: &Pose<D>, origin: &[f64; D], direction: &[f64; D]) -> Option<f64>;
@@ -22,6 +26,10 @@ pub trait Shape<const D: usize> {
 impl<const D: usize> Shape<D> for Solid<D> {
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64 {
         signed_distance(self, pose, other, other_pose).lower
+    }
+
+    fn bounding_radius(&self) -> f64 {
+        Self::bounding_radius(self)
     }
 
     fn ray_cast(&self, pose: &Pose<D>, origin: &[f64; D], direction: &[f64; D]) -> Option<f64> {
@@ -77,6 +85,12 @@ impl<const D: usize> Shape<D> for Union<D> {
         least
     }
 
+    fn bounding_radius(&self) -> f64 {
+        let reach =
+            |(local, part): &(Pose<D>, Solid<D>)| norm(&local.translation) + part.bounding_radius();
+        self.parts.iter().map(reach).fold(0.0, f64::max)
+    }
+
     fn ray_cast(&self, pose: &Pose<D>, origin: &[f64; D], direction: &[f64; D]) -> Option<f64> {
         let hits =
             self.placed(pose).filter_map(|(at, part)| ray_cast(part, &at, origin, direction));
@@ -112,6 +126,7 @@ mod tests {
     fn union_by_hand() {
         let (union, pose) = (pair_of_boxes(), Pose::from_complex([10.0, 0.0], [0.0, 1.0]));
         assert_eq!(union.aabb(&pose), ([9.0, -3.0], [11.0, 3.0]));
+        assert_eq!(union.bounding_radius(), 2.0 + 2f64.sqrt());
         assert_eq!(union.point_signed_distance(&pose, &[10.0, 0.25]), 0.75);
         assert_eq!(union.point_signed_distance(&pose, &[10.0, 1.25]), -0.25);
         assert!(!union.contains_point(&pose, &[10.0, 0.0]), "in the gap");
