@@ -4,6 +4,7 @@
 //! translation that separates the interiors otherwise. Normals are unit, in the world frame, and point
 //! from the first solid to the second.
 
+mod cast;
 mod distance;
 mod features;
 mod point;
@@ -13,7 +14,8 @@ mod solid;
 mod sphere_search;
 pub mod vector;
 
+pub use cast::{Cast, linear_cast, ray_cast};
 pub use distance::{Reference, separation_along, signed_distance};
-pub use point::{PointMeter, contains_point, point_signed_distance, ray_cast};
+pub use point::{PointMeter, contains_point, point_signed_distance};
 pub use pose::Pose;
 pub use solid::Solid;

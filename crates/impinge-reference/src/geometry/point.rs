@@ -1,10 +1,10 @@
-//! Points and rays against one solid.
+//! Points against one solid.
 
 use super::features::Features;
 use super::polytope;
 use super::pose::Pose;
 use super::solid::Solid;
-use super::vector::{add, dot, norm, scale};
+use super::vector::{dot, norm, scale};
 
 /// Measures the signed distance of many points from one solid, in its local frame.
 #[derive(Clone, Debug)]
@@ -83,71 +83,6 @@ pub fn contains_point<const D: usize>(solid: &Solid<D>, pose: &Pose<D>, point: &
     point_signed_distance(solid, pose, point) <= 0.0
 }
 
-/// The least `t >= 0` at which `origin + t * direction` is in the solid; zero if the origin is. `direction` may have any
-/// length; at length zero only the origin is asked.
-///
-/// The signed distance from a convex solid is convex along the ray. Its minimum is found by shrinking an
-/// interval, and the first zero before that by bisection. The answer is good to about 1e-14 of the distances
-/// involved. Flat solids count as 1e-12 (of these distances) thick, and so does a ray that only grazes.
-#[must_use]
-pub fn ray_cast<const D: usize>(
-    solid: &Solid<D>,
-    pose: &Pose<D>,
-    origin: &[f64; D],
-    direction: &[f64; D],
-) -> Option<f64> {
-    let start = pose.inverse_apply(origin);
-    let meter = PointMeter::new(solid);
-    if meter.measure(&start).0 <= 0.0 {
-        return Some(0.0);
-    }
-    let speed = norm(direction);
-    if speed <= 0.0 {
-        return None;
-    }
-    let along = scale(&pose.inverse_rotate(direction), 1.0 / speed);
-    let height = |t: f64| meter.measure(&add(&start, &scale(&along, t))).0;
-    // Behind this the ray has left the ball around the solid; the plane of a half-space is met once, far or near.
-    let end = match solid {
-        Solid::HalfSpace { normal } => {
-            return (dot(normal, &along) < 0.0).then(|| -height(0.0) / dot(normal, &along) / speed);
-        }
-        _ => norm(&start) + solid.bounding_radius(),
-    };
-    let thickness = 1e-12 * end;
-    let lowest = lowest_of_convex(&height, end);
-    let level = if height(lowest) < -thickness { 0.0 } else { thickness };
-    (height(lowest) <= level).then(|| first_below(&height, level, lowest) / speed)
-}
-
-/// A minimum of a convex function on `[0, end]`: the interval shrinks by a third at each step.
-fn lowest_of_convex(height: &impl Fn(f64) -> f64, end: f64) -> f64 {
-    let (mut low, mut high) = (0.0, end);
-    for _ in 0..100 {
-        let (left, right) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-        if height(left) <= height(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    0.5 * (low + high)
-}
-
-/// The first t at which a function that falls on `[0, inside]` is at most `level`.
-fn first_below(height: &impl Fn(f64) -> f64, level: f64, inside: f64) -> f64 {
-    let (mut outside, mut inside) = (0.0, inside);
-    for _ in 0..100 {
-        let middle = 0.5 * (outside + inside);
-        if height(middle) <= level {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    inside
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,40 +109,5 @@ mod tests {
         let beside_mantle = [1.5 + 0.8, 0.6, 0.0];
         assert!((point_signed_distance(&cone, &pose, &beside_mantle) - 1.0).abs() < 1e-15);
         assert_eq!(point_signed_distance(&cone, &pose, &[0.0, 3.0, 0.0]), 1.0);
-    }
-
-    #[test]
-    fn rays_by_hand() {
-        let pose = Pose::identity();
-        let ball = Solid::ball(1.0);
-        let t = ray_cast(&ball, &pose, &[-3.0, 0.0, 0.0], &[2.0, 0.0, 0.0]).expect("hits");
-        assert!((t - 1.0).abs() < 1e-14, "t {t}");
-        assert_eq!(ray_cast(&ball, &pose, &[-3.0, 0.0, 0.0], &[-2.0, 0.0, 0.0]), None);
-        assert_eq!(ray_cast(&ball, &pose, &[-3.0, 1.01, 0.0], &[2.0, 0.0, 0.0]), None);
-        assert_eq!(ray_cast(&ball, &pose, &[0.5, 0.0, 0.0], &[0.0; 3]), Some(0.0));
-        assert_eq!(ray_cast(&ball, &pose, &[1.5, 0.0, 0.0], &[0.0; 3]), None);
-    }
-
-    #[test]
-    fn rays_on_flat_solids_by_hand() {
-        let pose = Pose::identity();
-        let triangle = Solid::triangle([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]);
-        let t = ray_cast(&triangle, &pose, &[0.25, 0.25, 5.0], &[0.0, 0.0, -1.0]).expect("hits");
-        assert!((t - 5.0).abs() < 1e-11, "t {t}");
-        assert_eq!(ray_cast(&triangle, &pose, &[0.75, 0.75, 5.0], &[0.0, 0.0, -1.0]), None);
-        let segment = Solid::segment([10.0, 1.0], [10.0, -1.0]);
-        let t = ray_cast(&segment, &Pose::identity(), &[0.0, 0.0], &[4.0, 0.0]).expect("hits");
-        assert!((t - 2.5).abs() < 1e-11, "t {t}");
-        let t = ray_cast(&segment, &Pose::identity(), &[10.0, 4.0], &[0.0, -1.0]).expect("end on");
-        assert!((t - 3.0).abs() < 1e-10, "t {t}");
-    }
-
-    #[test]
-    fn rays_on_half_spaces_by_hand() {
-        let ground = Solid::half_space([0.0, 1.0]);
-        let pose = Pose::at([0.0, 2.0]);
-        assert_eq!(ray_cast(&ground, &pose, &[0.0, 6.0], &[1.0, -2.0]), Some(2.0));
-        assert_eq!(ray_cast(&ground, &pose, &[0.0, 6.0], &[1.0, 0.0]), None);
-        assert_eq!(ray_cast(&ground, &pose, &[0.0, 1.0], &[1.0, 0.0]), Some(0.0));
     }
 }

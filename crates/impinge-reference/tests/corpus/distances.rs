@@ -3,7 +3,8 @@
 use crate::read::{ReadPose, cases, number, numbers, read, solid};
 use impinge_reference::geometry::vector::{norm, sub};
 use impinge_reference::geometry::{
-    Pose, Reference, Solid, point_signed_distance, ray_cast, separation_along, signed_distance,
+    Pose, Reference, Solid, linear_cast, point_signed_distance, ray_cast, separation_along,
+    signed_distance,
 };
 use serde_json::Value;
 
@@ -165,4 +166,40 @@ fn regression_point_distances() {
         done += 1;
     }
     assert_eq!(done, 4);
+}
+
+fn check_cast<const D: usize>(case: &Value) -> bool
+where
+    Pose<D>: ReadPose,
+{
+    let poses = (Pose::read(&case["pose1"]), Pose::read(&case["pose2"]));
+    let Some(pair) = Pair::<D>::new(case, poses.0, poses.1) else { return false };
+    let (params, expected) = (&case["params"], &case["expected"]);
+    let found = linear_cast(
+        (&pair.solid1, &pair.pose1, &numbers(&params["vel1"])),
+        (&pair.solid2, &pair.pose2, &numbers(&params["vel2"])),
+        number(&params["max_time_of_impact"]),
+    );
+    assert_eq!(Some(found.time_of_impact.is_some()), expected["hit"].as_bool(), "{}", case["id"]);
+    let tolerance = case["tolerance"]["f64"].as_f64().unwrap_or(0.0);
+    if let Some(time) = found.time_of_impact {
+        let error = (time - number(&expected["time_of_impact"])).abs();
+        assert!(error <= tolerance, "{}: {found:?}, not {expected}", case["id"]);
+    }
+    if let Some(least) = expected["min_signed_distance_on_path"].as_f64() {
+        let error = (found.least_distance - least).abs();
+        assert!(error <= tolerance, "{}: {found:?}, not {expected}", case["id"]);
+    }
+    true
+}
+
+#[test]
+fn regression_casts() {
+    let corpus = read("regression_cases.json");
+    let casts = cases(&corpus).iter().filter(|case| case["query"] == "linear_cast");
+    let run = |case: &&Value| {
+        if case["dim"] == 2 { check_cast::<2>(case) } else { check_cast::<3>(case) }
+    };
+    // The other two are on height fields.
+    assert_eq!(casts.filter(run).count(), 25);
 }
