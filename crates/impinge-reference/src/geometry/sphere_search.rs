@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-11;
 /// the maximum is taken on a whole curve or region, such as for coaxial cylinders; the certificate
 /// is wider then.
 const MAX_DEPTH: usize = 40;
-const MAX_CELLS: usize = 3000;
+const MAX_CELLS: usize = 10_000;
 
 /// The maximum lies between `lower`, which is `h(normal)`, and `upper`.
 pub(super) struct Bracket {
