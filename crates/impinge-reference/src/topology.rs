@@ -1,0 +1,281 @@
+//! Is this list of faces the convex hull that it claims to be?
+//!
+//! Faces are lists of vertex indices, counter-clockwise as seen from outside. Nothing is repaired
+//! and nothing is assumed: each property is counted or measured on its own.
+
+use crate::geometry::vector::{add, dot, norm, perpendicular, scale, sub};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What is wrong with a list of faces, before any length is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A face has less than three vertices, or a polygon has.
+    TooFewVertices {
+        /// The index of the face; zero for a polygon.
+        face: usize,
+    },
+    /// A face names a vertex that does not exist.
+    NoSuchVertex {
+        /// The index of the face.
+        face: usize,
+    },
+    /// A face, or a polygon, meets the same vertex twice.
+    RepeatedVertex {
+        /// The index of the face; zero for a polygon.
+        face: usize,
+    },
+    /// Two faces run along the same edge in the same direction.
+    EdgeTwice {
+        /// The vertices of the edge in that direction.
+        edge: (usize, usize),
+    },
+    /// No face runs along this edge in the opposite direction.
+    OpenEdge {
+        /// The vertices of the edge in the direction that a face has.
+        edge: (usize, usize),
+    },
+    /// Vertices minus edges plus faces is not two: several pieces, a handle, or a vertex where
+    /// pieces meet.
+    Euler {
+        /// The number of vertices of faces.
+        vertices: usize,
+        /// The number of edges, each counted once for both directions.
+        edges: usize,
+        /// The number of faces.
+        faces: usize,
+    },
+    /// The corners of a face, or of a polygon, enclose no area.
+    NoArea {
+        /// The index of the face; zero for a polygon.
+        face: usize,
+    },
+}
+
+/// Checks that the faces form one closed surface like that of a ball, each edge used once in each
+/// direction.
+///
+/// # Errors
+/// The first [`Fault`] in the order of the faces.
+pub fn check_surface(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Result<(), Fault> {
+    let mut edges = BTreeSet::new();
+    for (index, face) in faces.iter().enumerate() {
+        check_face(vertices, face, index)?;
+        for edge in around(face) {
+            if !edges.insert(edge) {
+                return Err(Fault::EdgeTwice { edge });
+            }
+        }
+    }
+    if let Some(&edge) = edges.iter().find(|&&(from, to)| !edges.contains(&(to, from))) {
+        return Err(Fault::OpenEdge { edge });
+    }
+    let used: BTreeSet<usize> = faces.iter().flatten().copied().collect();
+    let (vertices, edges, count) = (used.len(), edges.len() / 2, faces.len());
+    if vertices + count != edges + 2 || !vertices_have_one_fan(faces) {
+        return Err(Fault::Euler { vertices, edges, faces: count });
+    }
+    Ok(())
+}
+
+fn check_face(vertices: &[[f64; 3]], face: &[usize], index: usize) -> Result<(), Fault> {
+    if face.len() < 3 {
+        return Err(Fault::TooFewVertices { face: index });
+    }
+    if face.iter().any(|&i| i >= vertices.len()) {
+        return Err(Fault::NoSuchVertex { face: index });
+    }
+    let different: BTreeSet<usize> = face.iter().copied().collect();
+    if different.len() < face.len() {
+        return Err(Fault::RepeatedVertex { face: index });
+    }
+    if norm(&area(vertices, face)) <= 0.0 {
+        return Err(Fault::NoArea { face: index });
+    }
+    Ok(())
+}
+
+/// The directed edges of a face.
+fn around(face: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
+    (0..face.len()).map(|k| (face[k], face[(k + 1) % face.len()]))
+}
+
+/// Whether the faces at each vertex form a single closed fan: walking from face to face about the
+/// vertex meets all of them. Needs a closed surface.
+fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
+    // For each vertex: from the next vertex of a face at it to the previous one, where the
+    // neighbour face begins.
+    let mut turns: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
+    for face in faces {
+        for k in 0..face.len() {
+            let (before, after) =
+                (face[(k + face.len() - 1) % face.len()], face[(k + 1) % face.len()]);
+            turns.entry(face[k]).or_default().insert(after, before);
+        }
+    }
+    turns.values().all(|turn| {
+        let start = turn.keys().next().copied();
+        let walk = std::iter::successors(start, |at| turn.get(at).copied());
+        let steps = walk.skip(1).take(turn.len()).position(|at| Some(at) == start);
+        steps == Some(turn.len() - 1)
+    })
+}
+
+/// Twice the area of a face, along its normal: the sum of the cross products about its first
+/// corner.
+fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
+    let origin = vertices[face[0]];
+    let mut sum = [0.0; 3];
+    for pair in face[1..].windows(2) {
+        let spans = [sub(&vertices[pair[0]], &origin), sub(&vertices[pair[1]], &origin)];
+        sum = add(&sum, &perpendicular(&spans));
+    }
+    sum
+}
+
+/// How far the farthest of `points` lies in front of the plane of a face; negative if all lie
+/// strictly inside, minus infinity if there are no points or no faces.
+///
+/// With `points` the vertices themselves this measures convexity: zero (up to rounding, or up to
+/// how far faces with more than three corners are from flat) if and only if a closed surface is
+/// convex and its faces look outward.
+///
+/// # Panics
+/// If a face names a vertex that does not exist; [`check_surface`] tells before.
+#[must_use]
+pub fn highest_above(vertices: &[[f64; 3]], faces: &[Vec<usize>], points: &[[f64; 3]]) -> f64 {
+    let mut highest = f64::NEG_INFINITY;
+    for face in faces {
+        let product = area(vertices, face);
+        let normal = scale(&product, 1.0 / norm(&product));
+        for point in points {
+            highest = highest.max(dot(&normal, &sub(point, &vertices[face[0]])));
+        }
+    }
+    highest
+}
+
+/// The volume that a closed surface encloses; negative if its faces look inward.
+#[must_use]
+pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
+    let Some(origin) = faces.first().map(|face| vertices[face[0]]) else { return 0.0 };
+    let cone = |face: &Vec<usize>| dot(&area(vertices, face), &sub(&vertices[face[0]], &origin));
+    faces.iter().map(cone).sum::<f64>() / 6.0
+}
+
+/// Checks that a closed polygon, counter-clockwise, has at least three corners, all different, and
+/// encloses an area.
+///
+/// # Errors
+/// The [`Fault`], with face 0.
+pub fn check_polygon(corners: &[[f64; 2]]) -> Result<(), Fault> {
+    if corners.len() < 3 {
+        return Err(Fault::TooFewVertices { face: 0 });
+    }
+    if (1..corners.len()).any(|k| corners[..k].contains(&corners[k])) {
+        return Err(Fault::RepeatedVertex { face: 0 });
+    }
+    if polygon_area(corners) <= 0.0 {
+        return Err(Fault::NoArea { face: 0 });
+    }
+    Ok(())
+}
+
+/// The area that a closed polygon encloses; positive if it is counter-clockwise.
+#[must_use]
+pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
+    let Some(origin) = corners.first() else { return 0.0 };
+    let cross =
+        |pair: &[[f64; 2]]| dot(&perpendicular(&[sub(&pair[0], origin)]), &sub(&pair[1], origin));
+    corners.windows(2).map(cross).sum::<f64>() / 2.0
+}
+
+/// How far the farthest of `points` lies to the right of an edge of a closed polygon: the twin of
+/// [`highest_above`] in the plane. With the corners themselves as points it is zero (up to
+/// rounding) if and only if a polygon that passes [`check_polygon`] is convex and
+/// counter-clockwise.
+#[must_use]
+pub fn farthest_outside(corners: &[[f64; 2]], points: &[[f64; 2]]) -> f64 {
+    let mut farthest = f64::NEG_INFINITY;
+    for (k, from) in corners.iter().enumerate() {
+        let along = sub(&corners[(k + 1) % corners.len()], from);
+        let left = scale(&perpendicular(&[along]), 1.0 / norm(&along));
+        for point in points {
+            farthest = farthest.max(-dot(&left, &sub(point, from)));
+        }
+    }
+    farthest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    fn tetrahedron() -> Vec<Vec<usize>> {
+        vec![vec![0, 2, 1], vec![0, 3, 2], vec![0, 1, 3], vec![1, 2, 3]]
+    }
+
+    #[test]
+    fn a_tetrahedron_passes() {
+        assert_eq!(check_surface(&CORNERS, &tetrahedron()), Ok(()));
+        assert_eq!(highest_above(&CORNERS, &tetrahedron(), &CORNERS), 0.0);
+        assert!((volume(&CORNERS, &tetrahedron()) - 1.0 / 6.0).abs() < 1e-15, "volume");
+        let outside = highest_above(&CORNERS, &tetrahedron(), &[[1.0, 1.0, 1.0]]);
+        assert!((outside - 2.0 / 3f64.sqrt()).abs() < 1e-15, "outside {outside}");
+    }
+
+    #[test]
+    fn faults_are_found() {
+        let mut faces = tetrahedron();
+        faces[3].reverse();
+        assert_eq!(check_surface(&CORNERS, &faces), Err(Fault::EdgeTwice { edge: (3, 2) }));
+        faces.pop();
+        assert_eq!(check_surface(&CORNERS, &faces), Err(Fault::OpenEdge { edge: (1, 3) }));
+        let mut faces = tetrahedron();
+        faces[1] = vec![0, 3, 3];
+        assert_eq!(check_surface(&CORNERS, &faces), Err(Fault::RepeatedVertex { face: 1 }));
+        faces[1] = vec![0, 3, 9];
+        assert_eq!(check_surface(&CORNERS, &faces), Err(Fault::NoSuchVertex { face: 1 }));
+        let inward: Vec<Vec<usize>> =
+            tetrahedron().into_iter().map(|face| face.into_iter().rev().collect()).collect();
+        assert_eq!(check_surface(&CORNERS, &inward), Ok(()));
+        assert!(highest_above(&CORNERS, &inward, &CORNERS) > 0.5, "faces look inward");
+    }
+
+    #[test]
+    fn two_pieces_are_found() {
+        let shifted = CORNERS.map(|corner| add(&corner, &[5.0, 0.0, 0.0]));
+        let vertices = [CORNERS, shifted].concat();
+        let second = tetrahedron().into_iter().map(|face| face.iter().map(|i| i + 4).collect());
+        let faces: Vec<Vec<usize>> = tetrahedron().into_iter().chain(second).collect();
+        assert_eq!(
+            check_surface(&vertices, &faces),
+            Err(Fault::Euler { vertices: 8, edges: 12, faces: 8 })
+        );
+        // Glued at one vertex: the vertex has two fans.
+        let glued: Vec<Vec<usize>> = faces
+            .iter()
+            .map(|face| face.iter().map(|&i| if i == 4 { 1 } else { i }).collect())
+            .collect();
+        assert_eq!(
+            check_surface(&vertices, &glued),
+            Err(Fault::Euler { vertices: 7, edges: 12, faces: 8 })
+        );
+    }
+
+    #[test]
+    fn polygons() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        assert_eq!(check_polygon(&square), Ok(()));
+        assert_eq!(polygon_area(&square), 4.0);
+        assert_eq!(farthest_outside(&square, &square), 0.0);
+        assert_eq!(farthest_outside(&square, &[[1.0, 5.0], [1.5, 1.0]]), 3.0);
+        let dented = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.5], [0.0, 2.0]];
+        assert!(farthest_outside(&dented, &dented) > 0.1, "dented");
+        let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 0.0]];
+        assert_eq!(check_polygon(&clockwise), Err(Fault::NoArea { face: 0 }));
+        assert_eq!(check_polygon(&[[0.0; 2]; 3]), Err(Fault::RepeatedVertex { face: 0 }));
+    }
+}

@@ -1,0 +1,385 @@
+//! The naive collision world: every update looks at every pair and compares with what it saw
+//! before.
+//!
+//! The rules, one by one:
+//!
+//! - A handle is an index and a generation. A removed object's index is used again, the last freed
+//!   one first, with the next generation; while none is free the next index is the number of
+//!   objects ever added.
+//! - A pair may interact if the groups allow it and all filters agree. The filters see the two
+//!   indices, the smaller handle's first, and only for pairs that the groups allow.
+//! - If both objects query contacts, the pair is touching when the signed distance is at most the
+//!   sum of the predictions, and finite: solids that overlap without bound have no contact points.
+//! - If at least one queries proximity only the proximity is computed: intersecting when the signed
+//!   distance is at most zero, within margin when it is at most the sum of the margins, else
+//!   disjoint. An object that queries contacts has margin zero.
+//! - An update yields the differences to the update before, whatever caused them: motion, another
+//!   shape, groups, query type or filter. A pair that goes from contacts to proximity stops
+//!   touching, and starts from disjoint.
+//! - Removing an object ends its pairs at once: what was touching stops, what was not disjoint
+//!   becomes disjoint, as of the last update. These events come first in the batch of the next
+//!   update. An object that came and went between two updates leaves no trace.
+//! - Changes have no effect on events and pair states before the next update; queries see them at
+//!   once.
+//! - Angular predictions add contact points but do not make contact, and self-collision is not
+//!   modelled.
+
+mod events;
+mod groups;
+mod shape;
+
+pub use events::{ContactEvent, Events, Proximity, ProximityEvent};
+pub use groups::{ALL, Groups};
+pub use shape::{Shape, Union};
+
+use crate::geometry::vector::{norm, sub};
+use crate::geometry::{Pose, Solid};
+use events::PairState;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Names one object for ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Handle {
+    /// The place in the table; used again after a removal.
+    pub index: usize,
+    /// How many objects had that place before.
+    pub generation: u32,
+}
+
+/// A handle whose object is gone, or was given twice to a removal. Nothing has been changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StaleHandle(pub Handle);
+
+/// What is computed about the pairs of an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QueryType {
+    /// Contact points, closer than the sum of these predictions.
+    Contacts(f64),
+    /// The proximity, with this margin.
+    Proximity(f64),
+}
+
+/// One object of the world.
+#[derive(Clone, Debug)]
+pub struct Object<const D: usize, S> {
+    /// Names it.
+    pub handle: Handle,
+    /// How many objects were added before it, removed ones included.
+    pub order: u64,
+    /// Where it is.
+    pub pose: Pose<D>,
+    /// What it is.
+    pub shape: S,
+    /// With whom it interacts.
+    pub groups: Groups,
+    /// What is computed.
+    pub query_type: QueryType,
+}
+
+type Filter = Box<dyn Fn(usize, usize) -> bool>;
+
+/// See the module. The default shape is a single convex solid.
+pub struct NaiveWorld<const D: usize, S = Solid<D>> {
+    slots: Vec<Slot<D, S>>,
+    /// Indices without an object, the last freed one at the end.
+    free: Vec<usize>,
+    added: u64,
+    filters: BTreeMap<String, Filter>,
+    /// The pairs that were not in the default state at the last update.
+    states: BTreeMap<(Handle, Handle), PairState>,
+    /// From removals since the last update.
+    queued: Events,
+}
+
+/// A place in the table.
+#[derive(Debug)]
+struct Slot<const D: usize, S> {
+    generation: u32,
+    object: Option<Object<D, S>>,
+}
+
+impl<const D: usize, S> std::fmt::Debug for NaiveWorld<D, S> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let count = self.slots.len() - self.free.len();
+        f.debug_struct("NaiveWorld").field("objects", &count).finish_non_exhaustive()
+    }
+}
+
+impl<const D: usize, S: Shape<D>> Default for NaiveWorld<D, S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Objects and what belongs to them.
+impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
+    /// An empty world.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            slots: Vec::new(),
+            free: Vec::new(),
+            added: 0,
+            filters: BTreeMap::new(),
+            states: BTreeMap::new(),
+            queued: Events::default(),
+        }
+    }
+
+    /// Adds an object.
+    pub fn add(
+        &mut self,
+        pose: Pose<D>,
+        shape: S,
+        groups: Groups,
+        query_type: QueryType,
+    ) -> Handle {
+        let index = self.free.pop().unwrap_or(self.slots.len());
+        if index == self.slots.len() {
+            self.slots.push(Slot { generation: 0, object: None });
+        }
+        let handle = Handle { index, generation: self.slots[index].generation };
+        let order = self.added;
+        self.added += 1;
+        self.slots[index].object = Some(Object { handle, order, pose, shape, groups, query_type });
+        handle
+    }
+
+    /// Removes objects; their places become free in the order of the list.
+    ///
+    /// # Errors
+    /// The first handle that is stale or repeated; then no object is removed.
+    pub fn remove(&mut self, handles: &[Handle]) -> Result<(), StaleHandle> {
+        for (k, &handle) in handles.iter().enumerate() {
+            if self.object(handle).is_none() || handles[..k].contains(&handle) {
+                return Err(StaleHandle(handle));
+            }
+        }
+        let gone = |pair: &(Handle, Handle)| handles.contains(&pair.0) || handles.contains(&pair.1);
+        for (&pair, &state) in self.states.iter().filter(|(pair, _)| gone(pair)) {
+            self.queued.push_change(pair, state, PairState::default());
+        }
+        self.states.retain(|pair, _| !gone(pair));
+        for &handle in handles {
+            let slot = &mut self.slots[handle.index];
+            slot.object = None;
+            slot.generation += 1;
+            self.free.push(handle.index);
+        }
+        Ok(())
+    }
+
+    /// The object of a handle, or `None` if it was removed.
+    #[must_use]
+    pub fn object(&self, handle: Handle) -> Option<&Object<D, S>> {
+        let object = self.slots.get(handle.index)?.object.as_ref()?;
+        (object.handle == handle).then_some(object)
+    }
+
+    /// All objects, sorted by handle.
+    pub fn objects(&self) -> impl Iterator<Item = &Object<D, S>> {
+        self.slots.iter().filter_map(|slot| slot.object.as_ref())
+    }
+
+    /// Moves an object.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_position(&mut self, handle: Handle, pose: Pose<D>) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.pose = pose)
+    }
+
+    /// Gives an object another shape.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_shape(&mut self, handle: Handle, shape: S) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.shape = shape)
+    }
+
+    /// Gives an object other groups.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_groups(&mut self, handle: Handle, groups: Groups) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.groups = groups)
+    }
+
+    /// Gives an object another query type.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_query_type(&mut self, handle: Handle, query: QueryType) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.query_type = query)
+    }
+
+    fn object_mut(&mut self, handle: Handle) -> Result<&mut Object<D, S>, StaleHandle> {
+        let object = self.slots.get_mut(handle.index).and_then(|slot| slot.object.as_mut());
+        object.filter(|object| object.handle == handle).ok_or(StaleHandle(handle))
+    }
+
+    /// Adds a filter of pairs; another one with the same name is replaced.
+    pub fn register_filter(&mut self, name: &str, filter: impl Fn(usize, usize) -> bool + 'static) {
+        self.filters.insert(name.to_owned(), Box::new(filter));
+    }
+
+    /// Removes the filter of this name; says whether there was one.
+    pub fn unregister_filter(&mut self, name: &str) -> bool {
+        self.filters.remove(name).is_some()
+    }
+}
+
+/// Pairs and events.
+impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
+    /// Computes all pairs and yields what is different since the update before.
+    pub fn update(&mut self) -> Events {
+        let mut events = std::mem::take(&mut self.queued);
+        events.close_removals();
+        let before = std::mem::take(&mut self.states);
+        self.states = self.compute_states();
+        let pairs: BTreeSet<_> = before.keys().chain(self.states.keys()).copied().collect();
+        for pair in pairs {
+            let state = |states: &BTreeMap<_, _>| states.get(&pair).copied().unwrap_or_default();
+            events.push_change(pair, state(&before), state(&self.states));
+        }
+        events
+    }
+
+    /// The pairs that had contact points at the last update, sorted, the smaller handle first.
+    #[must_use]
+    pub fn touching_pairs(&self) -> Vec<(Handle, Handle)> {
+        self.states.iter().filter(|(_, state)| state.touching).map(|(&pair, _)| pair).collect()
+    }
+
+    /// The pairs that were not disjoint at the last update, sorted, the smaller handle first. Pairs
+    /// of two objects that query contacts have no proximity.
+    #[must_use]
+    pub fn close_pairs(&self) -> Vec<(Handle, Handle, Proximity)> {
+        let close = self.states.iter().filter(|(_, state)| state.proximity != Proximity::Disjoint);
+        close.map(|(&(handle1, handle2), state)| (handle1, handle2, state.proximity)).collect()
+    }
+
+    /// Whether groups and filters allow a pair.
+    #[must_use]
+    pub fn is_allowed(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> bool {
+        let uids = (object1.handle.index, object2.handle.index);
+        object1.groups.can_interact(object2.groups)
+            && self.filters.values().all(|filter| filter(uids.0, uids.1))
+    }
+
+    /// The signed distance of two objects as they are now.
+    #[must_use]
+    pub fn signed_distance(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> f64 {
+        object1.shape.signed_distance(&object1.pose, &object2.shape, &object2.pose)
+    }
+
+    fn compute_states(&self) -> BTreeMap<(Handle, Handle), PairState> {
+        let objects: Vec<&Object<D, S>> = self.objects().collect();
+        let mut states = BTreeMap::new();
+        for (k, object1) in objects.iter().enumerate() {
+            for object2 in &objects[k + 1..] {
+                let state = self.compute_state(object1, object2);
+                if state != PairState::default() {
+                    states.insert((object1.handle, object2.handle), state);
+                }
+            }
+        }
+        states
+    }
+
+    fn compute_state(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> PairState {
+        use QueryType::{Contacts, Proximity};
+        let mut state = PairState::default();
+        if !self.is_allowed(object1, object2) {
+            return state;
+        }
+        let query_types = (object1.query_type, object2.query_type);
+        let margin = match query_types {
+            (Contacts(margin1), Contacts(margin2)) | (Proximity(margin1), Proximity(margin2)) => {
+                margin1 + margin2
+            }
+            (Proximity(margin), Contacts(_)) | (Contacts(_), Proximity(margin)) => margin,
+        };
+        if is_far(object1, object2, margin) {
+            return state;
+        }
+        let distance = self.signed_distance(object1, object2);
+        if let (Contacts(_), Contacts(_)) = query_types {
+            state.touching = distance.is_finite() && distance <= margin;
+        } else {
+            state.proximity = classify(distance, margin);
+        }
+        state
+    }
+}
+
+/// Whether the balls around two objects are so far apart that the exact distance need not be asked.
+/// It may say no for any pair.
+fn is_far<const D: usize, S: Shape<D>>(
+    object1: &Object<D, S>,
+    object2: &Object<D, S>,
+    margin: f64,
+) -> bool {
+    let between = norm(&sub(&object2.pose.translation, &object1.pose.translation));
+    let reach = object1.shape.bounding_radius() + object2.shape.bounding_radius() + margin;
+    // A percent is far more than all rounding.
+    between > 1.01 * reach
+}
+
+fn classify(distance: f64, margin: f64) -> Proximity {
+    if distance <= 0.0 {
+        Proximity::Intersecting
+    } else if distance <= margin {
+        Proximity::WithinMargin
+    } else {
+        Proximity::Disjoint
+    }
+}
+
+/// Queries. They ask the objects as they are now, not as of the last update, and answer sorted by
+/// handle.
+impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
+    /// The objects able to interact with `groups` that a ray meets, and where.
+    #[must_use]
+    pub fn interferences_with_ray(
+        &self,
+        origin: &[f64; D],
+        direction: &[f64; D],
+        groups: Groups,
+    ) -> Vec<(Handle, f64)> {
+        let hit = |object: &Object<D, S>| {
+            Some((object.handle, object.shape.ray_cast(&object.pose, origin, direction)?))
+        };
+        self.able(groups).filter_map(hit).collect()
+    }
+
+    /// The objects able to interact with `groups` that hold a point.
+    #[must_use]
+    pub fn interferences_with_point(&self, point: &[f64; D], groups: Groups) -> Vec<Handle> {
+        let holds = |object: &&Object<D, S>| object.shape.contains_point(&object.pose, point);
+        self.able(groups).filter(holds).map(|object| object.handle).collect()
+    }
+
+    /// The objects able to interact with `groups` whose own boxes meet or touch the box with these
+    /// corners.
+    #[must_use]
+    pub fn interferences_with_aabb(
+        &self,
+        least: &[f64; D],
+        greatest: &[f64; D],
+        groups: Groups,
+    ) -> Vec<Handle> {
+        let meets = |object: &&Object<D, S>| {
+            let (low, high) = object.shape.aabb(&object.pose);
+            (0..D).all(|i| low[i] <= greatest[i] && least[i] <= high[i])
+        };
+        self.able(groups).filter(meets).map(|object| object.handle).collect()
+    }
+
+    fn able(&self, groups: Groups) -> impl Iterator<Item = &Object<D, S>> {
+        self.objects().filter(move |object| object.groups.can_interact(groups))
+    }
+}
+
+#[cfg(test)]
+mod tests;
