@@ -1,9 +1,9 @@
 //! Slow and obvious answers that impinge's tests are held against.
 //!
-//! Nothing here shares code with the library: vectors are plain arrays of `f64`, distances are found by
-//! trying every direction that can matter, and the world looks at every pair at every update.
-//! Whoever doubts an answer of the library asks here, and whoever doubts an answer of this crate can
-//! check it with a pencil.
+//! Nothing here shares code with the library: vectors are plain arrays of `f64`, distances are
+//! found by trying every direction that can matter, and the world looks at every pair at every
+//! update. Whoever doubts an answer of the library asks here, and whoever doubts an answer of this
+//! crate can check it with a pencil.
 //!
 //! - [`geometry`]: poses, convex solids, signed distance, points, rays, boxes
 //! - [`world`]: the naive collision world and its event log

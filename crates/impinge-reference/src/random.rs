@@ -1,8 +1,9 @@
-//! The small deterministic generator of all tests: the same numbers on every machine, in every build.
+//! The small deterministic generator of all tests: the same numbers on every machine, in every
+//! build.
 //!
-//! `SplitMix64` (Guy Steele, Doug Lea, Christine Flood: Fast Splittable Pseudorandom Number Generators, 2014): a counter
-//! that is mixed well. Nothing but the four operations and the square root is used, so the values
-//! are the same to the last bit.
+//! `SplitMix64` (Guy Steele, Doug Lea, Christine Flood: Fast Splittable Pseudorandom Number
+//! Generators, 2014): a counter that is mixed well. Nothing but the four operations and the square
+//! root is used, so the values are the same to the last bit.
 
 use crate::geometry::Pose;
 use crate::geometry::vector::{axis, norm, perpendicular, scale};
@@ -39,8 +40,8 @@ impl Random {
         low + (high - low) * self.share()
     }
 
-    /// A number in [low, low * 2^doublings) in which all powers of two are equally likely; `low` itself if there are no
-    /// doublings.
+    /// A number in [low, low * 2^doublings) in which all powers of two are equally likely; `low`
+    /// itself if there are no doublings.
     pub fn magnitude(&mut self, low: f64, doublings: u32) -> f64 {
         let Ok(count @ 1..) = usize::try_from(doublings) else { return low };
         let doubled = (0..self.below(count)).fold(low, |value, _| 2.0 * value);
@@ -70,15 +71,16 @@ impl Random {
         &items[self.below(items.len())]
     }
 
-    /// A multiple of 2^-k in [-limit, limit]: sums and differences of a few of them are exact in `f32` too.
+    /// A multiple of 2^-k in [-limit, limit]: sums and differences of a few of them are exact in
+    /// `f32` too.
     pub fn grid(&mut self, limit: u32, k: u32) -> f64 {
         let steps = u64::from(limit) << k;
         let step = self.bits() % (2 * steps + 1);
         (step as f64 - steps as f64) / (1u64 << k) as f64
     }
 
-    /// A number in [low, high) or the `f32` next to it toward zero: representable in `f32` without rounding, as long as
-    /// it is within the normal range of `f32`.
+    /// A number in [low, high) or the `f32` next to it toward zero: representable in `f32` without
+    /// rounding, as long as it is within the normal range of `f32`.
     pub fn single(&mut self, low: f64, high: f64) -> f64 {
         f32_toward_zero(self.range(low, high))
     }
@@ -90,7 +92,8 @@ impl Random {
 
     /// A direction; all are equally likely.
     pub fn unit_vector<const D: usize>(&mut self) -> [f64; D] {
-        // Points of the cube are drawn until one lies in the ball; the innermost ones would lose digits.
+        // Points of the cube are drawn until one lies in the ball; the innermost ones would lose
+        // digits.
         loop {
             let v = self.vector::<D>(1.0);
             let length = norm(&v);
@@ -117,8 +120,8 @@ impl Random {
             rows[1] = perpendicular(&[first]);
             return rows;
         }
-        // The part of a second direction that is perpendicular to the first, and the cross product of both. A
-        // direction nearly along the first one is drawn again.
+        // The part of a second direction that is perpendicular to the first, and the cross product
+        // of both. A direction nearly along the first one is drawn again.
         loop {
             let cross = perpendicular::<D>(&[first, self.unit_vector()]);
             let length = norm(&cross);

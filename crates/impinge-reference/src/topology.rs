@@ -1,7 +1,7 @@
 //! Is this list of faces the convex hull that it claims to be?
 //!
-//! Faces are lists of vertex indices, counter-clockwise as seen from outside. Nothing is repaired and nothing is
-//! assumed: each property is counted or measured on its own.
+//! Faces are lists of vertex indices, counter-clockwise as seen from outside. Nothing is repaired
+//! and nothing is assumed: each property is counted or measured on its own.
 
 use crate::geometry::vector::{add, dot, norm, perpendicular, scale, sub};
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,7 +34,8 @@ pub enum Fault {
         /// The vertices of the edge in the direction that a face has.
         edge: (usize, usize),
     },
-    /// Vertices minus edges plus faces is not two: several pieces, a handle, or a vertex where pieces meet.
+    /// Vertices minus edges plus faces is not two: several pieces, a handle, or a vertex where
+    /// pieces meet.
     Euler {
         /// The number of vertices of faces.
         vertices: usize,
@@ -50,7 +51,8 @@ pub enum Fault {
     },
 }
 
-/// Checks that the faces form one closed surface like that of a ball, each edge used once in each direction.
+/// Checks that the faces form one closed surface like that of a ball, each edge used once in each
+/// direction.
 ///
 /// # Errors
 /// The first [`Fault`] in the order of the faces.
@@ -97,10 +99,11 @@ fn around(face: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
     (0..face.len()).map(|k| (face[k], face[(k + 1) % face.len()]))
 }
 
-/// Whether the faces at each vertex form a single closed fan: walking from face to face about the vertex meets all of
-/// them. Needs a closed surface.
+/// Whether the faces at each vertex form a single closed fan: walking from face to face about the
+/// vertex meets all of them. Needs a closed surface.
 fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
-    // For each vertex: from the next vertex of a face at it to the previous one, where the neighbour face begins.
+    // For each vertex: from the next vertex of a face at it to the previous one, where the
+    // neighbour face begins.
     let mut turns: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
     for face in faces {
         for k in 0..face.len() {
@@ -117,7 +120,8 @@ fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
     })
 }
 
-/// Twice the area of a face, along its normal: the sum of the cross products about its first corner.
+/// Twice the area of a face, along its normal: the sum of the cross products about its first
+/// corner.
 fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
     let origin = vertices[face[0]];
     let mut sum = [0.0; 3];
@@ -128,11 +132,12 @@ fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
     sum
 }
 
-/// How far the farthest of `points` lies in front of the plane of a face; negative if all lie strictly inside, minus
-/// infinity if there are no points or no faces.
+/// How far the farthest of `points` lies in front of the plane of a face; negative if all lie
+/// strictly inside, minus infinity if there are no points or no faces.
 ///
-/// With `points` the vertices themselves this measures convexity: zero (up to rounding, or up to how far faces
-/// with more than three corners are from flat) if and only if a closed surface is convex and its faces look outward.
+/// With `points` the vertices themselves this measures convexity: zero (up to rounding, or up to
+/// how far faces with more than three corners are from flat) if and only if a closed surface is
+/// convex and its faces look outward.
 ///
 /// # Panics
 /// If a face names a vertex that does not exist; [`check_surface`] tells before.
@@ -157,7 +162,8 @@ pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     faces.iter().map(cone).sum::<f64>() / 6.0
 }
 
-/// Checks that a closed polygon, counter-clockwise, has at least three corners, all different, and encloses an area.
+/// Checks that a closed polygon, counter-clockwise, has at least three corners, all different, and
+/// encloses an area.
 ///
 /// # Errors
 /// The [`Fault`], with face 0.
@@ -183,9 +189,10 @@ pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(cross).sum::<f64>() / 2.0
 }
 
-/// How far the farthest of `points` lies to the right of an edge of a closed polygon: the twin of [`highest_above`] in
-/// the plane. With the corners themselves as points it is zero (up to rounding) if and only if a polygon that passes
-/// [`check_polygon`] is convex and counter-clockwise.
+/// How far the farthest of `points` lies to the right of an edge of a closed polygon: the twin of
+/// [`highest_above`] in the plane. With the corners themselves as points it is zero (up to
+/// rounding) if and only if a polygon that passes [`check_polygon`] is convex and
+/// counter-clockwise.
 #[must_use]
 pub fn farthest_outside(corners: &[[f64; 2]], points: &[[f64; 2]]) -> f64 {
     let mut farthest = f64::NEG_INFINITY;

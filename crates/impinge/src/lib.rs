@@ -5,6 +5,7 @@ pub mod bounding_volume;
 pub(crate) mod convex;
 pub mod math;
 pub mod narrow_phase;
+pub mod pairs;
 pub mod query;
 pub mod shape;
 #[doc(hidden)]

@@ -5,15 +5,53 @@
 //! this crate, at this crate's optimisation level; callers reach them by function pointer. This
 //! module is the one place that floors below may see of floors above.
 
-use core::fmt::Debug;
-use core::marker::PhantomData;
+use core::fmt;
 
-use crate::math::Real;
+use crate::convex::Separation;
+use crate::math::{Real, Space};
+use crate::narrow_phase::{
+    ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed, proximity_of,
+};
+use crate::query::{ContactManifold, ManifoldRequest, Pair, Proximity, RawManifold};
 
 /// Function pointers to the entry points for one scalar and dimension.
-#[derive(Debug)]
-pub struct Tables<N: Real, const D: usize> {
-    pub(crate) marker: PhantomData<N>,
+pub struct Tables<N: Space<D>, const D: usize> {
+    /// The one fact about a pair of solids; see [`crate::query`].
+    pub(crate) separation: SeparationFn<N, D>,
+    /// Contact points from that fact and the features of the two solids.
+    pub(crate) manifold: ManifoldFn<N, D>,
+    pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
+    pub(crate) public_manifold:
+        fn(&ContactState<N, D>, &Posed<'_, N, D>, u64) -> ContactManifold<N, D>,
+    pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
+    pub(crate) update_pairs: UpdatePairsFn<N, D>,
+}
+
+pub(crate) type SeparationFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
+pub(crate) type ManifoldFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+pub(crate) type UpdatePairsFn<N, const D: usize> =
+    fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events);
+
+impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tables").finish_non_exhaustive()
+    }
+}
+
+impl<N: Space<D>, const D: usize> Tables<N, D> {
+    /// The tables around what differs by dimension.
+    const fn around(separation: SeparationFn<N, D>, manifold: ManifoldFn<N, D>) -> Self {
+        Self {
+            separation,
+            manifold,
+            update_contacts: ContactState::update,
+            public_manifold: ContactState::manifold,
+            proximity: proximity_of,
+            update_pairs: DefaultNarrowPhase::update_pairs_here,
+        }
+    }
 }
 
 /// A scalar whose tables are compiled in this crate. Sealed by being unnameable outside.
@@ -28,12 +66,12 @@ pub trait Compiled: Sized {
         Self: Real;
 }
 
-static PLANE_F32: Tables<f32, 2> = Tables { marker: PhantomData };
-static SPACE_F32: Tables<f32, 3> = Tables { marker: PhantomData };
+static PLANE_F32: Tables<f32, 2> = Tables::around(separation2, build2);
+static SPACE_F32: Tables<f32, 3> = Tables::around(separation3, build3);
 #[cfg(feature = "f64")]
-static PLANE_F64: Tables<f64, 2> = Tables { marker: PhantomData };
+static PLANE_F64: Tables<f64, 2> = Tables::around(separation2, build2);
 #[cfg(feature = "f64")]
-static SPACE_F64: Tables<f64, 3> = Tables { marker: PhantomData };
+static SPACE_F64: Tables<f64, 3> = Tables::around(separation3, build3);
 
 impl Compiled for f32 {
     fn plane() -> &'static Tables<Self, 2> {
@@ -54,4 +92,24 @@ impl Compiled for f64 {
     fn space() -> &'static Tables<Self, 3> {
         &SPACE_F64
     }
+}
+fn separation2<N: Real>(_: &Pair<'_, N, 2>, _: N) -> Option<Separation<N, 2>> {
+    None
+}
+fn separation3<N: Real>(_: &Pair<'_, N, 3>, _: N) -> Option<Separation<N, 3>> {
+    None
+}
+fn build2<N: Real>(
+    _: &Pair<'_, N, 2>,
+    _: &Separation<N, 2>,
+    _: &ManifoldRequest<N>,
+    _: &mut RawManifold<N, 2>,
+) {
+}
+fn build3<N: Real>(
+    _: &Pair<'_, N, 3>,
+    _: &Separation<N, 3>,
+    _: &ManifoldRequest<N>,
+    _: &mut RawManifold<N, 3>,
+) {
 }

@@ -1,8 +1,8 @@
 //! Rays, and solids that move along a line.
 //!
-//! The signed distance of two convex solids is the maximum over all normals of functions that are linear in the
-//! translation. So it is convex along any straight motion: its minimum is found by shrinking an interval, and
-//! the first zero before that by bisection.
+//! The signed distance of two convex solids is the maximum over all normals of functions that are
+//! linear in the translation. So it is convex along any straight motion: its minimum is found by
+//! shrinking an interval, and the first zero before that by bisection.
 
 use super::distance::signed_distance;
 use super::point::PointMeter;
@@ -10,11 +10,11 @@ use super::pose::Pose;
 use super::solid::Solid;
 use super::vector::{add, dot, norm, scale, sub};
 
-/// The least `t >= 0` at which `origin + t * direction` is in the solid; zero if the origin is. `direction` may have any
-/// length; at length zero only the origin is asked.
+/// The least `t >= 0` at which `origin + t * direction` is in the solid; zero if the origin is.
+/// `direction` may have any length; at length zero only the origin is asked.
 ///
-/// The answer is good to about 1e-14 of the distances
-/// involved. Flat solids count as 1e-12 (of these distances) thick, and so does a ray that only grazes.
+/// The answer is good to about 1e-14 of the distances involved. Flat solids count as 1e-12 (of
+/// these distances) thick, and so does a ray that only grazes.
 #[must_use]
 pub fn ray_cast<const D: usize>(
     solid: &Solid<D>,
@@ -33,7 +33,8 @@ pub fn ray_cast<const D: usize>(
     }
     let along = scale(&pose.inverse_rotate(direction), 1.0 / speed);
     let height = |t: f64| meter.measure(&add(&start, &scale(&along, t))).0;
-    // Behind this the ray has left the ball around the solid; the plane of a half-space is met once, far or near.
+    // Behind this the ray has left the ball around the solid; the plane of a half-space is met
+    // once, far or near.
     let end = match solid {
         Solid::HalfSpace { normal } => {
             return (dot(normal, &along) < 0.0).then(|| -height(0.0) / dot(normal, &along) / speed);
@@ -48,14 +49,16 @@ pub fn ray_cast<const D: usize>(
 pub struct Cast {
     /// The first time at which the signed distance is at most zero; zero if it is from the start.
     pub time_of_impact: Option<f64>,
-    /// The least signed distance on the path: tells a clear hit or miss from a graze, which rounding may decide.
+    /// The least signed distance on the path: tells a clear hit or miss from a graze, which
+    /// rounding may decide.
     pub least_distance: f64,
 }
 
-/// Moves two solids along their velocities, without rotation, from time zero to `max_time` (which may be infinite).
+/// Moves two solids along their velocities, without rotation, from time zero to `max_time` (which
+/// may be infinite).
 ///
-/// The time is good to about 1e-14 of the distances involved, over the speed of approach; to 1e-9 for cylinders and cones.
-/// A graze within 1e-12 (or 1e-9) of these distances counts as a hit.
+/// The time is good to about 1e-14 of the distances involved, over the speed of approach; to 1e-9
+/// for cylinders and cones. A graze within 1e-12 (or 1e-9) of these distances counts as a hit.
 #[must_use]
 pub fn linear_cast<const D: usize>(
     (solid1, pose1, velocity1): (&Solid<D>, &Pose<D>, &[f64; D]),
@@ -72,7 +75,8 @@ pub fn linear_cast<const D: usize>(
     let along = scale(&velocity, 1.0 / speed);
     let between = norm(&sub(&pose2.translation, &pose1.translation));
     let reach = solid1.bounding_radius() + solid2.bounding_radius();
-    // Behind this the solids only move apart. Half-spaces keep their normal: twice the way to contact is enough.
+    // Behind this the solids only move apart. Half-spaces keep their normal: twice the way to
+    // contact is enough.
     let horizon = if reach.is_finite() {
         between + reach
     } else {
@@ -110,7 +114,8 @@ impl Descent {
     }
 }
 
-/// Where the minimum is of a convex function on `[0, end]`: the interval shrinks by a third at each step.
+/// Where the minimum is of a convex function on `[0, end]`: the interval shrinks by a third at each
+/// step.
 fn lowest_of_convex(height: &impl Fn(f64) -> f64, end: f64) -> f64 {
     let (mut low, mut high) = (0.0, end);
     for _ in 0..100 {

@@ -1,8 +1,10 @@
-//! The corners, edges and faces of a convex hull, found without any topology: a plane through D corners that has all
-//! others on one side is a face, and two corners that share two faces are joined by an edge.
+//! The corners, edges and faces of a convex hull, found without any topology: a plane through D
+//! corners that has all others on one side is a face, and two corners that share two faces are
+//! joined by an edge.
 //!
-//! The lists may hold more than the true features (a diagonal of a face that is flat up to rounding); they never
-//! hold less. That is harmless, since every direction that is derived from them is only tried, never trusted.
+//! The lists may hold more than the true features (a diagonal of a face that is flat up to
+//! rounding); they never hold less. That is harmless, since every direction that is derived from
+//! them is only tried, never trusted.
 
 use super::pose::Pose;
 use super::vector::{axis, dot, norm, perpendicular, scale, sub, unit};
@@ -12,12 +14,13 @@ use super::vector::{axis, dot, norm, perpendicular, scale, sub, unit};
 pub(super) struct Features<const D: usize> {
     /// All given points, each once.
     pub(super) vertices: Vec<[f64; D]>,
-    /// One point and the unit direction of each edge; empty in the plane, where the edges are the faces.
+    /// One point and the unit direction of each edge; empty in the plane, where the edges are the
+    /// faces.
     pub(super) edges: Vec<([f64; D], [f64; D])>,
     /// Each direction of an edge once; the opposite direction counts as the same.
     pub(super) directions: Vec<[f64; D]>,
-    /// A unit normal of each face, of either sign. Where the points lie on a line in space or coincide: some directions
-    /// perpendicular to them.
+    /// A unit normal of each face, of either sign. Where the points lie on a line in space or
+    /// coincide: some directions perpendicular to them.
     pub(super) normals: Vec<[f64; D]>,
 }
 
@@ -31,7 +34,8 @@ struct Face<const D: usize> {
 }
 
 impl<const D: usize> Features<D> {
-    /// All features of the convex hull of `points`. The cost grows with the fourth power of their number in space.
+    /// All features of the convex hull of `points`. The cost grows with the fourth power of their
+    /// number in space.
     pub(super) fn new(points: &[[f64; D]]) -> Self {
         let vertices = distinct(points);
         let faces = faces(&vertices);
@@ -98,10 +102,12 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
     sets
 }
 
-/// The plane through some corners, if no corner lies in front of it (with the normal of one sign or of the other).
+/// The plane through some corners, if no corner lies in front of it (with the normal of one sign or
+/// of the other).
 ///
-/// Corners count as lying on the plane within the rounding of the heights above it, which grows when the
-/// defining corners are nearly collinear. `size` is the largest distance of a corner from the first.
+/// Corners count as lying on the plane within the rounding of the heights above it, which grows
+/// when the defining corners are nearly collinear. `size` is the largest distance of a corner from
+/// the first.
 fn face_through<const D: usize>(
     vertices: &[[f64; D]],
     corners: &[usize],
@@ -135,7 +141,8 @@ fn face_through<const D: usize>(
     Some(Face { normal, on, quality })
 }
 
-/// The pairs of corners that share two faces; all pairs if the corners lie in one plane or on one line.
+/// The pairs of corners that share two faces; all pairs if the corners lie in one plane or on one
+/// line.
 fn edges<const D: usize>(vertices: &[[f64; D]], faces: &[Face<D>]) -> Vec<([f64; D], [f64; D])> {
     let flat = faces.iter().all(|face| face.on.len() == vertices.len());
     let shares = |i: usize, j: usize| {

@@ -17,8 +17,9 @@ pub struct PointMeter<const D: usize> {
 enum Core<const D: usize> {
     Plane([f64; D]),
     Polytope(Features<D>),
-    /// A solid of revolution about the y axis, by its section with a half-plane through the axis and the mirror image
-    /// of that. The closest points lie in the half-plane of the point, so the question is one of the plane.
+    /// A solid of revolution about the y axis, by its section with a half-plane through the axis
+    /// and the mirror image of that. The closest points lie in the half-plane of the point, so the
+    /// question is one of the plane.
     Revolved(Features<2>),
 }
 
@@ -39,8 +40,9 @@ impl<const D: usize> PointMeter<D> {
         Self { core, radius: solid.radius() }
     }
 
-    /// The signed distance of a local point, and a unit direction from the solid to the point: the shortest way out if
-    /// the point lies inside. On an edge or a corner, or in the middle, it is one of several.
+    /// The signed distance of a local point, and a unit direction from the solid to the point: the
+    /// shortest way out if the point lies inside. On an edge or a corner, or in the middle, it is
+    /// one of several.
     #[must_use]
     pub fn measure(&self, point: &[f64; D]) -> (f64, [f64; D]) {
         let (distance, normal) = match &self.core {

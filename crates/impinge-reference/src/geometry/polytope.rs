@@ -1,14 +1,14 @@
 //! Signed distance of two convex polytopes by trying every direction that can be the answer.
 //!
-//! The signed distance is the maximum of `h(n) = min n·b - max n·a` over the unit vectors n, with a in the first
-//! and b in the second polytope. Where is that maximum?
+//! The signed distance is the maximum of `h(n) = min n·b - max n·a` over the unit vectors n, with a
+//! in the first and b in the second polytope. Where is that maximum?
 //!
-//! - Disjoint: the line between the closest points, hence perpendicular to the features that hold them:
-//!   corner and corner, corner and edge, corner and face, edge and edge.
-//! - Interpenetrating: the normal of a face of the Minkowski difference, hence a face normal of one of the two, or
-//!   perpendicular to an edge of each.
-//! - The difference is flat (both polytopes lie in one plane, or on one line) and holds the origin: the depth is zero,
-//!   along the thin direction, which is again one of those above.
+//! - Disjoint: the line between the closest points, hence perpendicular to the features that hold
+//!   them: corner and corner, corner and edge, corner and face, edge and edge.
+//! - Interpenetrating: the normal of a face of the Minkowski difference, hence a face normal of one
+//!   of the two, or perpendicular to an edge of each.
+//! - The difference is flat (both polytopes lie in one plane, or on one line) and holds the origin:
+//!   the depth is zero, along the thin direction, which is again one of those above.
 //!
 //! No tried direction gives more than the truth, so a direction too many costs nothing but time.
 
@@ -51,8 +51,8 @@ fn interval<const D: usize>(vertices: &[[f64; D]], normal: &[f64; D]) -> (f64, f
     range
 }
 
-/// The signed distance of two polytopes in one frame, and a normal from the first to the second along which it is
-/// measured. Exact up to a few roundings of the coordinates.
+/// The signed distance of two polytopes in one frame, and a normal from the first to the second
+/// along which it is measured. Exact up to a few roundings of the coordinates.
 pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> (f64, [f64; D]) {
     let mut best = Best {
         vertices1: &one.vertices,
@@ -62,7 +62,8 @@ pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> 
     };
     try_face_directions(&mut best, one, two);
     // If the origin lies strictly behind all faces of the difference then it lies inside: the rest
-    // would only find less deep candidates again. (For a flat difference the thin direction keeps this above zero.)
+    // would only find less deep candidates again. (For a flat difference the thin direction keeps
+    // this above zero.)
     let size = one.vertices.iter().chain(&two.vertices).map(norm).fold(0.0, f64::max);
     if best.distance >= -1e-12 * size {
         try_corner_directions(&mut best, one, two);

@@ -5,8 +5,8 @@ use super::vector::{add, axis, dot, norm, sub};
 /// Where a solid stands: `world = rotation * local + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<const D: usize> {
-    /// The rows of the rotation matrix. Rows and columns are unit and perpendicular, the determinant is +1; nothing
-    /// checks that.
+    /// The rows of the rotation matrix. Rows and columns are unit and perpendicular, the
+    /// determinant is +1; nothing checks that.
     pub rotation: [[f64; D]; D],
     /// The world position of the local origin.
     pub translation: [f64; D],
@@ -74,7 +74,8 @@ impl Pose<2> {
         Self::from_complex(translation, [angle.cos(), angle.sin()])
     }
 
-    /// Turned by the angle of the complex number `[cosine, sine]`, which is brought to length one first.
+    /// Turned by the angle of the complex number `[cosine, sine]`, which is brought to length one
+    /// first.
     #[must_use]
     pub fn from_complex(translation: [f64; 2], complex: [f64; 2]) -> Self {
         let length = norm(&complex);

@@ -8,7 +8,8 @@ use super::vector::{add, axis, dot, negate, norm, scale, sub, unit};
 pub enum Solid<const D: usize> {
     /// All points within `radius` of the convex hull of `vertices`.
     ///
-    /// Points that are not corners of the hull, coincident, collinear and coplanar vertices do no harm.
+    /// Points that are not corners of the hull, coincident, collinear and coplanar vertices do no
+    /// harm.
     Rounded {
         /// At least one point.
         vertices: Vec<[f64; D]>,
@@ -91,7 +92,8 @@ impl<const D: usize> Solid<D> {
         Self::HalfSpace { normal: unit(&normal).expect("the normal is not zero") }
     }
 
-    /// How far the solid reaches along `direction`: the maximum of `direction · x` over its world points.
+    /// How far the solid reaches along `direction`: the maximum of `direction · x` over its world
+    /// points.
     ///
     /// Infinite for a half-space, unless the direction is its normal to within 1e-12.
     #[must_use]
@@ -108,8 +110,8 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// The smallest axis-aligned box around the solid, as its least and greatest corner. A half-space that is not
-    /// aligned with an axis reaches to infinity on all sides.
+    /// The smallest axis-aligned box around the solid, as its least and greatest corner. A
+    /// half-space that is not aligned with an axis reaches to infinity on all sides.
     #[must_use]
     pub fn aabb(&self, pose: &Pose<D>) -> ([f64; D], [f64; D]) {
         (
@@ -146,7 +148,8 @@ impl<const D: usize> Solid<D> {
         dot(&self.core_support(direction), direction)
     }
 
-    /// A point of the solid without its rounding that lies farthest along `direction`, in the local frame.
+    /// A point of the solid without its rounding that lies farthest along `direction`, in the local
+    /// frame.
     ///
     /// # Panics
     /// For a half-space, which has none.
@@ -170,7 +173,8 @@ impl<const D: usize> Solid<D> {
     }
 }
 
-/// The point of the circle about the y axis that lies farthest along `direction`; its centre if no point does.
+/// The point of the circle about the y axis that lies farthest along `direction`; its centre if no
+/// point does.
 fn rim<const D: usize>(direction: &[f64; D], radius: f64) -> [f64; D] {
     let flat = std::array::from_fn(|i| if i == 1 { 0.0 } else { direction[i] });
     unit(&flat).map_or([0.0; D], |outward| scale(&outward, radius))

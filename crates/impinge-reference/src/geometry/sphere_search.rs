@@ -1,13 +1,15 @@
 //! The maximum of a separation function over all directions of space, with a certificate.
 //!
-//! For a convex set M given by support points, let `h(n) = min n·m` over m in M. The sphere of directions is cut into
-//! eight triangles, and each of them again and again into four, as long as it may hold something better than
-//! the best direction found so far. No local search that could be trapped, no topology.
+//! For a convex set M given by support points, let `h(n) = min n·m` over m in M. The sphere of
+//! directions is cut into eight triangles, and each of them again and again into four, as long as
+//! it may hold something better than the best direction found so far. No local search that could be
+//! trapped, no topology.
 //!
-//! Bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n of the triangle is
-//! `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so `h(n) <= max nᵢ·m / |Σ λᵢ nᵢ|`. The length below the fraction is
-//! at most 1, and at least the distance of the flat triangle from the origin. The bound holds for every m; it is
-//! best for one on the triangle of the support points of the corners, found as the value of a 3 x 3 matrix game.
+//! Bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n of the
+//! triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so `h(n) <= max nᵢ·m / |Σ λᵢ nᵢ|`.
+//! The length below the fraction is at most 1, and at least the distance of the flat triangle from
+//! the origin. The bound holds for every m; it is best for one on the triangle of the support
+//! points of the corners, found as the value of a 3 x 3 matrix game.
 
 use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 
@@ -15,10 +17,11 @@ type Vector = [f64; 3];
 
 /// The search stops when at most this share of the size of the problem can still be gained.
 const TOLERANCE: f64 = 1e-11;
-/// Caps on the depth of the cutting and on the triangles of one depth. The second is only met when the maximum is taken on
-/// a whole curve or region, such as for coaxial cylinders; the certificate is wider then.
+/// Caps on the depth of the cutting and on the triangles of one depth. The second is only met when
+/// the maximum is taken on a whole curve or region, such as for coaxial cylinders; the certificate
+/// is wider then.
 const MAX_DEPTH: usize = 40;
-const MAX_CELLS: usize = 3000;
+const MAX_CELLS: usize = 10_000;
 
 /// The maximum lies between `lower`, which is `h(normal)`, and `upper`.
 pub(super) struct Bracket {
@@ -44,8 +47,8 @@ struct Search<'a> {
     normal: Vector,
 }
 
-/// Maximises h. `seeds` are directions worth a try at the start, of any length; they only save time. `size` is a length of
-/// the problem: the radius of M.
+/// Maximises h. `seeds` are directions worth a try at the start, of any length; they only save
+/// time. `size` is a length of the problem: the radius of M.
 pub(super) fn maximise(lowest: &dyn Fn(&Vector) -> Vector, seeds: &[Vector], size: f64) -> Bracket {
     let mut search = Search { lowest, lower: f64::NEG_INFINITY, normal: [0.0; 3] };
     for seed in seeds {
@@ -134,8 +137,9 @@ fn flatness([a, b, c]: &[Vector; 3]) -> f64 {
     unit(&perpendicular(&[sub(b, a), sub(c, a)])).map_or(1.0, |normal| dot(&normal, a).abs())
 }
 
-/// Where the maximum of a triangle may well be: along the normal of the plane of the support points (right when M has a
-/// face there), or else along the lowest point of that plane's triangle (right when M is round there).
+/// Where the maximum of a triangle may well be: along the normal of the plane of the support points
+/// (right when M has a face there), or else along the lowest point of that plane's triangle (right
+/// when M is round there).
 fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> Vector {
     let [a, b, c] = supports;
     let face = perpendicular(&[sub(b, a), sub(c, a)]);
@@ -144,10 +148,11 @@ fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> V
     scale(&best, dot(&best, &inner).signum())
 }
 
-/// The least, over all weights w >= 0 with sum 1, of the greatest row sum `Σⱼ wⱼ game[i][j]`; and these weights.
+/// The least, over all weights w >= 0 with sum 1, of the greatest row sum `Σⱼ wⱼ game[i][j]`; and
+/// these weights.
 ///
-/// The greatest row sum is convex and piecewise linear in w, so its minimum is taken at a corner of the triangle
-/// of weights, where two rows are equal on a side, or where all three rows are equal.
+/// The greatest row sum is convex and piecewise linear in w, so its minimum is taken at a corner of
+/// the triangle of weights, where two rows are equal on a side, or where all three rows are equal.
 fn game_value(game: &[[f64; 3]; 3]) -> (f64, [f64; 3]) {
     let row_sum = |row: &[f64; 3], w: &[f64; 3]| dot(row, w);
     let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
@@ -219,7 +224,8 @@ mod tests {
 
     #[test]
     fn the_game_by_hand() {
-        // Mixing the two columns equally makes the first two rows equal; the third column is never used.
+        // Mixing the two columns equally makes the first two rows equal; the third column is never
+        // used.
         let (value, weights) = game_value(&[[1.0, -1.0, 9.0], [-1.0, 1.0, 9.0], [-5.0, -5.0, 9.0]]);
         assert_eq!((value, weights), (0.0, [0.5, 0.5, 0.0]));
         let (value, _) = game_value(&[[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);

@@ -49,7 +49,8 @@ pub fn unit<const D: usize>(a: &[f64; D]) -> Option<[f64; D]> {
 
 /// The part of `a` that is perpendicular to the unit vector `direction`.
 ///
-/// The projection is taken away twice, as the first time leaves a rest of the size of the rounding of `a`.
+/// The projection is taken away twice, as the first time leaves a rest of the size of the rounding
+/// of `a`.
 #[must_use]
 pub fn reject<const D: usize>(a: &[f64; D], direction: &[f64; D]) -> [f64; D] {
     let once = sub(a, &scale(direction, dot(a, direction)));
@@ -62,8 +63,8 @@ pub fn axis<const D: usize>(index: usize) -> [f64; D] {
     std::array::from_fn(|i| if i == index { 1.0 } else { 0.0 })
 }
 
-/// A vector perpendicular to the D-1 given ones: the quarter turn to the left in the plane, the cross product in
-/// space. Zero if the given vectors are not independent.
+/// A vector perpendicular to the D-1 given ones: the quarter turn to the left in the plane, the
+/// cross product in space. Zero if the given vectors are not independent.
 ///
 /// # Panics
 /// Unless D is 2 or 3 and D-1 vectors are given.

@@ -14,7 +14,8 @@ pub enum Proximity {
     Disjoint,
 }
 
-/// A pair of objects with query type contacts got its first contact point or lost its last. The smaller handle comes first.
+/// A pair of objects with query type contacts got its first contact point or lost its last. The
+/// smaller handle comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactEvent {
     /// From no contact point to at least one.
@@ -46,8 +47,8 @@ pub struct ProximityEvent {
     pub new: Proximity,
 }
 
-/// All events of one update. In both lists the events of removed objects come first, sorted by pair; then those of
-/// living objects, sorted by pair. A pair has at most one event in each list.
+/// All events of one update. In both lists the events of removed objects come first, sorted by
+/// pair; then those of living objects, sorted by pair. A pair has at most one event in each list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Events {
     /// Starts and stops of contacts.

@@ -3,7 +3,8 @@
 /// The 30 groups that exist.
 pub const ALL: u32 = (1 << 30) - 1;
 
-/// Membership, whitelist and blacklist of an object, as bit masks: bit i stands for group i, from 0 to 29.
+/// Membership, whitelist and blacklist of an object, as bit masks: bit i stands for group i, from 0
+/// to 29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Groups {
     /// The groups that the object belongs to.
@@ -38,8 +39,8 @@ impl Groups {
         }
     }
 
-    /// Each is a member of at least one group that the other whitelists, and neither is a member of a group that the
-    /// other blacklists.
+    /// Each is a member of at least one group that the other whitelists, and neither is a member of
+    /// a group that the other blacklists.
     #[must_use]
     pub fn can_interact(self, other: Self) -> bool {
         let wanted =

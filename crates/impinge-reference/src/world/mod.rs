@@ -1,23 +1,28 @@
-//! The naive collision world: every update looks at every pair and compares with what it saw before.
+//! The naive collision world: every update looks at every pair and compares with what it saw
+//! before.
 //!
 //! The rules, one by one:
 //!
-//! - A handle is an index and a generation. A removed object's index is used again, the last freed one first, with
-//!   the next generation; while none is free the next index is the number of objects ever added.
-//! - A pair may interact if the groups allow it and all filters agree. The filters see the two indices, the smaller
-//!   handle's first, and only for pairs that the groups allow.
-//! - If both objects query contacts, the pair is touching when the signed distance is at most the sum of the
-//!   predictions, and finite: solids that overlap without bound have no contact points.
-//! - If at least one queries proximity only the proximity is computed: intersecting when the signed distance is at most
-//!   zero, within margin when it is at most the sum of the margins, else disjoint. An object that queries contacts has
-//!   margin zero.
-//! - An update yields the differences to the update before, whatever caused them: motion, another shape, groups,
-//!   query type or filter. A pair that goes from contacts to proximity stops touching, and starts from disjoint.
-//! - Removing an object ends its pairs at once: what was touching stops, what was not disjoint becomes disjoint,
-//!   as of the last update. These events come first in the batch of the next update. An object that came
-//!   and went between two updates leaves no trace.
-//! - Changes have no effect on events and pair states before the next update; queries see them at once.
-//! - Angular predictions add contact points but do not make contact, and self-collision is not modelled.
+//! - A handle is an index and a generation. A removed object's index is used again, the last freed
+//!   one first, with the next generation; while none is free the next index is the number of
+//!   objects ever added.
+//! - A pair may interact if the groups allow it and all filters agree. The filters see the two
+//!   indices, the smaller handle's first, and only for pairs that the groups allow.
+//! - If both objects query contacts, the pair is touching when the signed distance is at most the
+//!   sum of the predictions, and finite: solids that overlap without bound have no contact points.
+//! - If at least one queries proximity only the proximity is computed: intersecting when the signed
+//!   distance is at most zero, within margin when it is at most the sum of the margins, else
+//!   disjoint. An object that queries contacts has margin zero.
+//! - An update yields the differences to the update before, whatever caused them: motion, another
+//!   shape, groups, query type or filter. A pair that goes from contacts to proximity stops
+//!   touching, and starts from disjoint.
+//! - Removing an object ends its pairs at once: what was touching stops, what was not disjoint
+//!   becomes disjoint, as of the last update. These events come first in the batch of the next
+//!   update. An object that came and went between two updates leaves no trace.
+//! - Changes have no effect on events and pair states before the next update; queries see them at
+//!   once.
+//! - Angular predictions add contact points but do not make contact, and self-collision is not
+//!   modelled.
 
 mod events;
 mod groups;
@@ -246,8 +251,8 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         self.states.iter().filter(|(_, state)| state.touching).map(|(&pair, _)| pair).collect()
     }
 
-    /// The pairs that were not disjoint at the last update, sorted, the smaller handle first. Pairs of two objects that
-    /// query contacts have no proximity.
+    /// The pairs that were not disjoint at the last update, sorted, the smaller handle first. Pairs
+    /// of two objects that query contacts have no proximity.
     #[must_use]
     pub fn close_pairs(&self) -> Vec<(Handle, Handle, Proximity)> {
         let close = self.states.iter().filter(|(_, state)| state.proximity != Proximity::Disjoint);
@@ -308,7 +313,8 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
     }
 }
 
-/// Whether the balls around two objects are so far apart that the exact distance need not be asked. It may say no for any pair.
+/// Whether the balls around two objects are so far apart that the exact distance need not be asked.
+/// It may say no for any pair.
 fn is_far<const D: usize, S: Shape<D>>(
     object1: &Object<D, S>,
     object2: &Object<D, S>,
@@ -330,7 +336,8 @@ fn classify(distance: f64, margin: f64) -> Proximity {
     }
 }
 
-/// Queries. They ask the objects as they are now, not as of the last update, and answer sorted by handle.
+/// Queries. They ask the objects as they are now, not as of the last update, and answer sorted by
+/// handle.
 impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
     /// The objects able to interact with `groups` that a ray meets, and where.
     #[must_use]
@@ -353,7 +360,8 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         self.able(groups).filter(holds).map(|object| object.handle).collect()
     }
 
-    /// The objects able to interact with `groups` whose own boxes meet or touch the box with these corners.
+    /// The objects able to interact with `groups` whose own boxes meet or touch the box with these
+    /// corners.
     #[must_use]
     pub fn interferences_with_aabb(
         &self,

@@ -7,10 +7,12 @@ use crate::geometry::{
 
 /// The geometric questions of the world, about shapes in poses.
 pub trait Shape<const D: usize> {
-    /// The signed distance; minus infinity for solids that overlap without bound and so have no contact.
+    /// The signed distance; minus infinity for solids that overlap without bound and so have no
+    /// contact.
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64;
 
-    /// The radius of a ball about the local origin that holds the shape; infinity is always right, but slow.
+    /// The radius of a ball about the local origin that holds the shape; infinity is always right,
+    /// but slow.
     fn bounding_radius(&self) -> f64;
 
     /// The first `t >= 0` at which a ray is in the shape.
@@ -45,7 +47,8 @@ impl<const D: usize> Shape<D> for Solid<D> {
     }
 }
 
-/// A union of solids, each at a pose in the frame of the whole: compounds, meshes, polylines and height fields.
+/// A union of solids, each at a pose in the frame of the whole: compounds, meshes, polylines and
+/// height fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Union<const D: usize> {
     /// At least one part.
@@ -64,7 +67,8 @@ impl<const D: usize> Union<D> {
         self.parts.iter().map(|(local, solid)| (pose.compose(local), solid))
     }
 
-    /// The signed distance of a point from the nearest part. Inside, it is the depth in the deepest part.
+    /// The signed distance of a point from the nearest part. Inside, it is the depth in the deepest
+    /// part.
     #[must_use]
     pub fn point_signed_distance(&self, pose: &Pose<D>, point: &[f64; D]) -> f64 {
         let distances = self.placed(pose).map(|(at, part)| point_signed_distance(part, &at, point));
@@ -72,8 +76,8 @@ impl<const D: usize> Union<D> {
     }
 }
 
-/// Outside, all answers are those of the union. Where unions interpenetrate, the depth is that of the deepest
-/// pair of parts, which may be less than it takes to separate the whole.
+/// Outside, all answers are those of the union. Where unions interpenetrate, the depth is that of
+/// the deepest pair of parts, which may be less than it takes to separate the whole.
 impl<const D: usize> Shape<D> for Union<D> {
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64 {
         let mut least = f64::INFINITY;

@@ -153,7 +153,8 @@ fn queries_see_changes_at_once() {
     assert_eq!(world.interferences_with_point(&[5.25, 0.0], all), [b]);
 }
 
-/// Whatever happens, started and stopped take turns for each pair, and statuses continue where they ended.
+/// Whatever happens, started and stopped take turns for each pair, and statuses continue where they
+/// ended.
 #[test]
 fn events_of_random_histories_are_coherent() {
     let mut random = Random::new(5);

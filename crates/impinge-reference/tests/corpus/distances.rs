@@ -30,8 +30,8 @@ impl<const D: usize> Pair<D> {
         signed_distance(&self.solid2, &self.pose2, &self.solid1, &self.pose1)
     }
 
-    /// How much worse a normal is than the best one. The normals of half-spaces are compared as they are, and
-    /// those of vectors of the corpus need not be unit to the last digit.
+    /// How much worse a normal is than the best one. The normals of half-spaces are compared as
+    /// they are, and those of vectors of the corpus need not be unit to the last digit.
     fn normal_loss(&self, found: &Reference<D>, normal: &[f64; D]) -> f64 {
         let along = separation_along(&self.solid1, &self.pose1, &self.solid2, &self.pose2, normal);
         if along.is_finite() {

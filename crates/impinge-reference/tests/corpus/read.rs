@@ -22,7 +22,8 @@ pub(crate) fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     std::array::from_fn(|i| number(&list[i]))
 }
 
-/// The solid, and its pose in the frame of the shape: the corpus has cylinders and cones along any axis.
+/// The solid, and its pose in the frame of the shape: the corpus has cylinders and cones along any
+/// axis.
 pub(crate) fn solid<const D: usize>(shape: &Value) -> Option<(Solid<D>, Pose<D>)> {
     let radius = || number(shape.get("radius").unwrap_or(&shape["r"]));
     let points = |keys: &[&str]| keys.iter().map(|key| numbers(&shape[key])).collect();
