@@ -5,6 +5,7 @@ use core::fmt;
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
+use super::step::in_order;
 use super::{
     BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase,
     WorldBroadPhase, WorldError,
@@ -148,7 +149,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (objects, queued) = (&self.objects, &mut self.queued);
         let narrow_phase = &mut self.narrow_phase;
         self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
-            let (first, second) = (handle1.min(handle2), handle1.max(handle2));
+            let (first, second) = in_order(handle1, handle2);
             narrow_phase.handle_removal(queued, objects, first, second);
         });
         for &handle in handles {

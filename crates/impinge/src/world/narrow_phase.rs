@@ -3,7 +3,7 @@
 use super::CollisionObjects;
 use crate::math::Space;
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, ProximityPair,
+    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
 };
 
 /// Pairs with their contacts, in canonical order.
@@ -54,6 +54,12 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         objects: &CollisionObjects<N, D, T>,
         handle: CollisionObjectHandle,
     );
+
+    /// Where the names of contacts come from: handed on when another narrow phase takes over, so that
+    /// no name is given twice.
+    fn ids(&mut self) -> Option<&mut IdAllocator> {
+        None
+    }
 
     /// The contacts of a pair, as of the last update; `None` if there is no such pair or it is asked
     /// for proximity only.
@@ -122,6 +128,10 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle: CollisionObjectHandle,
     ) {
         (N::tables().object_changed)(self, objects.table(), handle.index(), events);
+    }
+
+    fn ids(&mut self) -> Option<&mut IdAllocator> {
+        Some(&mut self.ids)
     }
 
     fn contact_pair<'a>(

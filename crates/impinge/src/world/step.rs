@@ -95,58 +95,63 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// An update in which a phase is replaced. With all proxies new, every pair is reported as
-    /// started: a narrow phase that stays knows these already and is told which of its pairs are not
-    /// among them; a new one starts from nothing, and its events are compared with what was before.
+    /// started: a narrow phase that stays knows most of these already, and is told which of its
+    /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
+    /// what was before.
     fn update_with_other_phases(&mut self) {
-        let before = self.next_narrow_phase.is_some().then(|| self.statuses());
-        if let Some(narrow_phase) = self.next_narrow_phase.take() {
-            self.narrow_phase = narrow_phase;
-        }
-        self.renew_proxies();
-        self.write_changes();
-        let mut pairs = Vec::new();
-        self.update_broad_phase(&mut |pair| pairs.push(pair));
-        self.stop_all_but(pairs);
-        let Some(before) = before else {
+        let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
+            let before = self.renew_proxies();
+            self.write_changes();
+            let now = self.started_pairs();
+            self.stop_all_but(&now, before);
             return self.narrow_phase.update(&self.objects, &mut self.events);
         };
+        let before = self.statuses();
+        if let (Some(old), Some(new)) = (self.narrow_phase.ids(), narrow_phase.ids()) {
+            core::mem::swap(old, new);
+        }
+        self.narrow_phase = narrow_phase;
+        self.renew_proxies();
+        self.write_changes();
+        self.started_pairs();
         self.narrow_phase.update(&self.objects, &mut Events::default());
-        let after = self.statuses();
-        push_differences(&before, &after, &mut self.events);
+        push_differences(&before, &self.statuses(), &mut self.events);
     }
 
-    /// Makes a proxy for every object, in the next broad phase if there is one.
-    fn renew_proxies(&mut self) {
-        let handles: Vec<_> = self.objects.iter().map(|object| object.handle).collect();
+    /// Makes a proxy for every object, in the next broad phase if there is one. Answers which pairs
+    /// there were.
+    fn renew_proxies(&mut self) -> Vec<HandlePair> {
+        let known = self.objects.iter().map(|object| (object.handle, object.proxy_handle));
+        let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
+        let mut pairs = Vec::new();
+        self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
+            pairs.push(in_order(handle1, handle2));
+        });
         if let Some(broad_phase) = self.next_broad_phase.take() {
             self.broad_phase = broad_phase;
-        } else {
-            let proxies: Vec<_> = self.objects.iter().map(|object| object.proxy_handle).collect();
-            self.broad_phase.remove(&proxies, &mut |_, _| {});
         }
         for handle in handles {
             let volume = self.objects.bodies.at(handle.index()).volume();
             let proxy = self.broad_phase.create_proxy(volume, handle);
             self.objects.set_proxy(handle, proxy);
         }
+        pairs
     }
 
-    /// Stops the pairs of the narrow phase that are not among those given.
-    fn stop_all_but(&mut self, mut pairs: Vec<HandlePair>) {
+    /// Updates the broad phase and answers which pairs started, sorted.
+    fn started_pairs(&mut self) -> Vec<HandlePair> {
+        let mut pairs = Vec::new();
+        self.update_broad_phase(&mut |pair| pairs.push(pair));
         pairs.sort_unstable();
-        let (objects, narrow_phase) = (&self.objects, &mut self.narrow_phase);
-        let contacts = narrow_phase.contact_pairs(objects).map(|(h1, h2, _)| (h1, h2));
-        let proximities = narrow_phase.proximity_pairs(objects).map(|(h1, h2, _)| (h1, h2));
-        let known: Vec<HandlePair> = contacts.chain(proximities).collect();
-        for (handle1, handle2) in known {
-            if pairs.binary_search(&(handle1, handle2)).is_err() {
-                narrow_phase.handle_interaction(
-                    &mut self.events,
-                    objects,
-                    handle1,
-                    handle2,
-                    false,
-                );
+        pairs
+    }
+
+    /// Stops the pairs of `before` that are not in the sorted list `now`.
+    fn stop_all_but(&mut self, now: &[HandlePair], before: Vec<HandlePair>) {
+        let (objects, events) = (&self.objects, &mut self.events);
+        for (handle1, handle2) in before {
+            if now.binary_search(&(handle1, handle2)).is_err() {
+                self.narrow_phase.handle_interaction(events, objects, handle1, handle2, false);
             }
         }
     }
