@@ -7,12 +7,20 @@
 
 use core::fmt;
 
+use crate::bounding_volume::Aabb;
+use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Real, Space};
 use crate::narrow_phase::{
-    ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
+    proximity_of,
 };
 use crate::query::{ContactManifold, ManifoldRequest, Pair, Proximity, RawManifold};
+use crate::shape::ShapeHandle;
+use crate::world::{Bodies, WorldBroadPhase};
+
+pub(crate) type FindPairs<N, const D: usize> =
+    fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
@@ -25,6 +33,43 @@ pub struct Tables<N: Space<D>, const D: usize> {
         fn(&ContactState<N, D>, &Posed<'_, N, D>, u64) -> ContactManifold<N, D>,
     pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
     pub(crate) update_pairs: UpdatePairsFn<N, D>,
+    pub(crate) find_pairs: FindPairs<N, D>,
+    pub(crate) world: WorldTables<N, D>,
+}
+
+/// What a world asks of the floors below it, and of its own part that knows no users' data.
+pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
+    pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
+    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry),
+    pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
+    pub(crate) flush: FlushFn<N, D>,
+    pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
+    pub(crate) pair_stopped:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32, &mut Events),
+    pub(crate) object_changed:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, &mut Events),
+}
+
+type FlushFn<N, const D: usize> =
+    fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
+
+impl<N: Space<D>, const D: usize> WorldTables<N, D> {
+    const fn new() -> Self {
+        Self {
+            new_broad_phase,
+            set_isometry: Bodies::set_isometry,
+            set_shape: Bodies::set_shape,
+            flush: Bodies::flush,
+            pair_started: DefaultNarrowPhase::pair_started,
+            pair_stopped: DefaultNarrowPhase::pair_stopped,
+            object_changed: DefaultNarrowPhase::object_changed,
+        }
+    }
+}
+
+/// The broad phase of a new world.
+fn new_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
+    Box::new(DBVTBroadPhase::<N, Aabb<N, D>, CollisionObjectHandle>::new(margin))
 }
 
 pub(crate) type SeparationFn<N, const D: usize> =
@@ -50,6 +95,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             public_manifold: ContactState::manifold,
             proximity: proximity_of,
             update_pairs: DefaultNarrowPhase::update_pairs_here,
+            find_pairs: PairFinder::update,
+            world: WorldTables::new(),
         }
     }
 }

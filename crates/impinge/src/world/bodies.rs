@@ -10,7 +10,7 @@ use crate::shape::ShapeHandle;
 
 /// The broad phase of a world.
 pub(crate) type WorldBroadPhase<N, const D: usize> =
-    dyn BroadPhase<N, Aabb<N, D>, CollisionObjectHandle>;
+    dyn BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync;
 
 /// The hot copy of one object: always as the user left it, never as of the last update.
 #[derive(Clone, Debug)]

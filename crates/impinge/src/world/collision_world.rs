@@ -77,7 +77,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         Ok(Self {
             objects: CollisionObjects::new(),
-            broad_phase: (N::tables().new_broad_phase)(margin),
+            broad_phase: (N::tables().world.new_broad_phase)(margin),
             narrow_phase: Box::new(DefaultNarrowPhase::<N, D>::new()),
             next_broad_phase: None,
             next_narrow_phase: None,
@@ -193,7 +193,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let object = self.objects.fresh(handle)?;
         finite_pose(N::pose(&position), Some(handle))?;
         object.position = position;
-        (N::tables().set_isometry)(&mut self.objects.bodies, handle.index(), position);
+        (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), position);
         Ok(())
     }
 
@@ -222,7 +222,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         for (handle, position) in positions {
             self.objects.fresh(*handle)?.position = *position;
-            (N::tables().set_isometry)(&mut self.objects.bodies, handle.index(), *position);
+            (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), *position);
         }
         Ok(())
     }
@@ -246,7 +246,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: ShapeHandle<N, D>,
     ) -> Result<(), WorldError> {
         self.objects.fresh(handle)?.shape = shape.clone();
-        (N::tables().set_shape)(&mut self.objects.bodies, handle.index(), shape);
+        (N::tables().world.set_shape)(&mut self.objects.bodies, handle.index(), shape);
         Ok(())
     }
 

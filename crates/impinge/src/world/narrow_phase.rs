@@ -104,9 +104,9 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     ) {
         let (index1, index2) = (handle1.index(), handle2.index());
         if started {
-            (N::tables().pair_started)(self, objects.table(), index1, index2);
+            (N::tables().world.pair_started)(self, objects.table(), index1, index2);
         } else {
-            (N::tables().pair_stopped)(self, objects.table(), index1, index2, events);
+            (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
         }
     }
 
@@ -118,7 +118,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle2: CollisionObjectHandle,
     ) {
         let (index1, index2) = (handle1.index(), handle2.index());
-        (N::tables().pair_stopped)(self, objects.table(), index1, index2, events);
+        (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
     }
 
     fn handle_change(
@@ -127,7 +127,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &CollisionObjects<N, D, T>,
         handle: CollisionObjectHandle,
     ) {
-        (N::tables().object_changed)(self, objects.table(), handle.index(), events);
+        (N::tables().world.object_changed)(self, objects.table(), handle.index(), events);
     }
 
     fn ids(&mut self) -> Option<&mut IdAllocator> {

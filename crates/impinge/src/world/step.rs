@@ -29,7 +29,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Brings what the phases read of the objects up to date.
     fn write_changes(&mut self) {
         let CollisionObjects { bodies, table, .. } = &mut self.objects;
-        (N::tables().flush)(bodies, table, &mut *self.broad_phase, &mut self.algorithms);
+        (N::tables().world.flush)(bodies, table, &mut *self.broad_phase, &mut self.algorithms);
         for &index in &self.algorithms {
             let handle = self.objects.bodies.at(index).handle;
             self.narrow_phase.handle_change(&mut self.events, &self.objects, handle);
