@@ -2,6 +2,9 @@
 #![forbid(unsafe_code)]
 
 pub mod bounding_volume;
+pub mod broad_phase;
+pub mod bvh;
 pub mod math;
+pub mod pairs;
 #[doc(hidden)]
 pub mod tables;
