@@ -22,7 +22,7 @@ pub(crate) fn surface_point<N: Real>(
         }
         Kind::Polytope(solid) => polytope::surface_point2(solid, point),
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
-            support_map::surface_point2(map, point)
+            support_map::surface_point(map, point)
         }
         Kind::Plane(solid) => plane::surface_point(solid, point),
     }

@@ -24,7 +24,7 @@ pub(crate) fn surface_point<N: Real>(
         Kind::Polytope(solid) => polytope::surface_point3(solid, point),
         Kind::Cylinder(solid, _) => cylinder::surface_point(solid, point),
         Kind::Cone(solid, _) => cone::surface_point(solid, point),
-        Kind::SupportMap(map) => support_map::surface_point3(map, point),
+        Kind::SupportMap(map) => support_map::surface_point(map, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
     }
 }

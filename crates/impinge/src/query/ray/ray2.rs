@@ -19,7 +19,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Spa
         }
         Kind::Polytope(solid) => polytope::span(solid, ray),
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
-            support_map::span2(map, ray)
+            support_map::span(map, ray)
         }
         Kind::Plane(solid) => plane::span(solid, ray),
     }

@@ -22,7 +22,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
         Kind::Polytope(solid) => polytope::span(solid, ray),
         Kind::Cylinder(solid, _) => cylinder::span(solid, ray),
         Kind::Cone(solid, _) => cone::span(solid, ray),
-        Kind::SupportMap(map) => support_map::span3(map, ray),
+        Kind::SupportMap(map) => support_map::span(map, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
     }
 }
