@@ -229,18 +229,38 @@ impl<N: Real, const D: usize> Facet<N, D> {
 
     /// How far the rounded surface is above a point of the core, along the manifold's normal.
     ///
-    /// The rounded flat part rises by `rounding / cosine`, but nothing rises above the witness: that
-    /// is exact there and wherever the surface is parallel to the facet.
+    /// Above the flat part that is `rounding / cosine`; above the end nearest to the other solid the
+    /// ball around that end. Nothing rises above the witness. Exact for capsules, and wherever the
+    /// surface is parallel to the facet; between the two a rounded polygon may lie a little lower.
     pub(super) fn lift(&self, core: &Point<N, D>, frame: &Frame<N, D>) -> N {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
-        let height = frame.height(core);
-        let room = match self.which {
+        let room = self.below_witness(core, frame);
+        let top = self.corners.iter().fold(&self.corners[0], |top, corner| {
+            let is_nearer =
+                self.below_witness(&corner.point, frame) < self.below_witness(&top.point, frame);
+            if is_nearer { corner } else { top }
+        });
+        let (radius, cosine) = (self.rounding, self.cosine);
+        let away_squared = (frame.flat(core) - top.flat).norm_squared();
+        let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+        let lift = if away_squared < turns_squared {
+            let rise = room - self.below_witness(&top.point, frame);
+            rise + (radius * radius - away_squared).sqrt()
+        } else {
+            radius / cosine
+        };
+        max(min(lift, room), N::ZERO)
+    }
+
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    fn below_witness(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> N {
+        let height = frame.height(point);
+        match self.which {
             Which::First => -height,
             Which::Second => height - frame.witness.distance,
-        };
-        max(min(self.rounding / self.cosine, room), N::ZERO)
+        }
     }
 }
 

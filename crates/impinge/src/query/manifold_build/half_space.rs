@@ -31,7 +31,10 @@ pub(super) fn candidates<N: Real, const D: usize>(
             (0_u32..).zip(polytope.vertices()).for_each(|(i, v)| push(FeatureId::Vertex(i), *v));
         }
         Kind::Triangle(triangle) => {
-            (0_u32..).zip(triangle.corners()).for_each(|(i, v)| push(FeatureId::Vertex(i), *v));
+            let corners = triangle.corners();
+            let is_first = |i: usize| corners[..i].iter().all(|corner| *corner != corners[i]);
+            let named = (0_u32..).zip(corners).filter(|&(i, _)| is_first(i as usize));
+            named.for_each(|(i, v)| push(FeatureId::Vertex(i), *v));
         }
         _ => facet_corners(facet, frame, &mut push),
     }
@@ -50,13 +53,18 @@ fn facet_corners<N: Real, const D: usize>(
     }
 }
 
-/// The vertices of a box and their names, as documented there.
+/// The vertices of a box and their names, as documented there; of vertices that coincide, for the
+/// box is flat, the one with the least number.
 fn cuboid_vertices<N: Real, const D: usize>(
     cuboid: &Cuboid<N, D>,
 ) -> impl Iterator<Item = (FeatureId, Point<N, D>)> {
-    (0..1_u32 << D).map(|corner| {
-        let mut position: Vector<N, D> = *cuboid.half_extents();
-        for axis in (0..D).filter(|&axis| corner >> axis & 1 == 0) {
+    let half_extents = cuboid.half_extents();
+    let has = |corner: u32, axis: usize| corner >> axis & 1 == 1;
+    let is_first =
+        move |&corner: &u32| (0..D).all(|axis| !has(corner, axis) || half_extents[axis] > N::ZERO);
+    (0..1_u32 << D).filter(is_first).map(move |corner| {
+        let mut position: Vector<N, D> = *half_extents;
+        for axis in (0..D).filter(|&axis| !has(corner, axis)) {
             position[axis] = -position[axis];
         }
         (FeatureId::Vertex(corner), Point::from(position))

@@ -18,7 +18,7 @@ mod names;
 mod overlap;
 mod reduce;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
