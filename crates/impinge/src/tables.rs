@@ -5,15 +5,51 @@
 //! this crate, at this crate's optimisation level; callers reach them by function pointer. This
 //! module is the one place that floors below may see of floors above.
 
-use core::fmt::Debug;
-use core::marker::PhantomData;
+use core::fmt;
 
+use crate::convex::Separation;
 use crate::math::Real;
+use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
+use crate::query::{Moving, Placed, advance};
+
+/// The separation of two solids in the world, within a limit.
+type InWorld<N, const D: usize> =
+    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
+/// The time at which two moving solids touch.
+type Advance<N, const D: usize> = fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>;
 
 /// Function pointers to the entry points for one scalar and dimension.
-#[derive(Debug)]
 pub struct Tables<N: Real, const D: usize> {
-    pub(crate) marker: PhantomData<N>,
+    /// The separation of any pair.
+    pub(crate) separation: Algorithm<N, D>,
+    pub(crate) separation_in_world: InWorld<N, D>,
+    pub(crate) time_of_impact: Advance<N, D>,
+}
+
+impl<N: Real, const D: usize> fmt::Debug for Tables<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tables").finish_non_exhaustive()
+    }
+}
+
+impl<N: Real> Tables<N, 2> {
+    const fn in_plane() -> Self {
+        Self {
+            separation: separation_in_plane,
+            separation_in_world: in_world,
+            time_of_impact: advance,
+        }
+    }
+}
+
+impl<N: Real> Tables<N, 3> {
+    const fn in_space() -> Self {
+        Self {
+            separation: separation_in_space,
+            separation_in_world: in_world,
+            time_of_impact: advance,
+        }
+    }
 }
 
 /// A scalar whose tables are compiled in this crate. Sealed by being unnameable outside.
@@ -28,12 +64,12 @@ pub trait Compiled: Sized {
         Self: Real;
 }
 
-static PLANE_F32: Tables<f32, 2> = Tables { marker: PhantomData };
-static SPACE_F32: Tables<f32, 3> = Tables { marker: PhantomData };
+static PLANE_F32: Tables<f32, 2> = Tables::in_plane();
+static SPACE_F32: Tables<f32, 3> = Tables::in_space();
 #[cfg(feature = "f64")]
-static PLANE_F64: Tables<f64, 2> = Tables { marker: PhantomData };
+static PLANE_F64: Tables<f64, 2> = Tables::in_plane();
 #[cfg(feature = "f64")]
-static SPACE_F64: Tables<f64, 3> = Tables { marker: PhantomData };
+static SPACE_F64: Tables<f64, 3> = Tables::in_space();
 
 impl Compiled for f32 {
     fn plane() -> &'static Tables<Self, 2> {

@@ -1,16 +1,24 @@
 //! Questions about one solid or two, answered from nothing but the arguments.
 
+mod closest_points;
 mod contact;
+mod distance;
 mod kinematic;
 mod manifold;
 mod pair;
 mod proximity;
 mod raw_manifold;
+pub(crate) mod separation;
+mod time_of_impact;
 
 pub use crate::bounding_volume::Ray;
-pub use contact::Contact;
+pub use closest_points::{ClosestPoints, closest_points};
+pub use contact::{Contact, contact};
+pub use distance::distance;
 pub use kinematic::{ContactKinematic, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
-pub(crate) use pair::Pair;
-pub use proximity::Proximity;
+pub(crate) use pair::{Pair, Placed, canonical};
+pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
+pub use time_of_impact::time_of_impact;
+pub(crate) use time_of_impact::{Moving, advance};
