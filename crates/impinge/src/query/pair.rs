@@ -105,9 +105,12 @@ fn probed<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Vec<N> {
         numbers.extend_from_slice(map.core_support(&-direction).coords.as_slice());
     }
     for signs in 0..1_usize << D {
-        let diagonal = Vector::<N, D>::from_fn(|axis, _| {
-            if signs >> axis & 1 == 1 { N::ONE } else { -N::ONE }
-        });
+        let diagonal =
+            Vector::<N, D>::from_fn(
+                |axis, _| {
+                    if signs >> axis & 1 == 1 { N::ONE } else { -N::ONE }
+                },
+            );
         numbers.extend_from_slice(map.core_support(&diagonal).coords.as_slice());
     }
     numbers

@@ -1,8 +1,8 @@
 //! When two solids that move without turning first touch.
 
+use super::Pair;
 use super::pair::{Placed, canonical};
 use super::separation::separation;
-use super::Pair;
 use crate::math::{AbstractRotation, Isometry, Real, Space, Vector, max_component};
 use crate::shape::{Geometry, Shape};
 

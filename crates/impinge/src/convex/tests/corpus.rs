@@ -81,14 +81,14 @@ fn slack(name: &str) -> f64 {
     if name.starts_with("point ") || name == "direction" { f64::INFINITY } else { 1.0 }
 }
 
-fn outside<const D: usize>(solid: &dyn crate::shape::SupportMap<f64, D>, point: &Vector<f64, D>) -> f64
+fn outside<const D: usize>(
+    solid: &dyn crate::shape::SupportMap<f64, D>,
+    point: &Vector<f64, D>,
+) -> f64
 where
     f64: Simplicial<D>,
 {
-    let ball = super::solids::Points {
-        points: vec![crate::math::Point::origin()],
-        rounding: 0.0,
-    };
+    let ball = super::solids::Points { points: vec![crate::math::Point::origin()], rounding: 0.0 };
     let pose = Pose::from_translation(*point);
     separation(solid, &ball, &pose, f64::INFINITY).map_or(f64::NAN, |found| found.distance)
 }

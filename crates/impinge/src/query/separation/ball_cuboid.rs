@@ -29,9 +29,7 @@ fn project<N: Real, const D: usize>(
 ) -> Projection<N, D> {
     let clamped = center.coords.zip_map(half_extents, |x, h| max(min(x, h), -h));
     match unit(&(center.coords - clamped)) {
-        Some((outward, distance)) => {
-            Projection { distance, outward, point: Point::from(clamped) }
-        }
+        Some((outward, distance)) => Projection { distance, outward, point: Point::from(clamped) },
         None => project_inside(half_extents, center),
     }
 }

@@ -41,10 +41,7 @@ fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Project
 }
 
 /// The nearest of the three sides, the first of equals.
-fn project_on_sides<N: Real>(
-    corners: &[Point<N, 3>; 3],
-    center: &Point<N, 3>,
-) -> Projection<N, 3> {
+fn project_on_sides<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
     let [a, b, c] = *corners;
     let mut best = ball_segment::project(&[a, b], center);
     for side in [[b, c], [c, a]] {

@@ -196,6 +196,9 @@ mod tests {
         let expected = 2.75 - 2.0 * 2.0_f64.sqrt();
         assert!((found.distance - expected).abs() < 1e-15, "{}", found.distance);
         let world1 = pose1 * found.point1;
-        assert!((world1 - Point::<f64, 3>::new(0.25, 2.0_f64.sqrt(), 0.0)).norm() < 1e-9, "{world1}");
+        assert!(
+            (world1 - Point::<f64, 3>::new(0.25, 2.0_f64.sqrt(), 0.0)).norm() < 1e-9,
+            "{world1}"
+        );
     }
 }

@@ -39,8 +39,7 @@ pub(crate) use table3::separation as separation_in_space;
 pub(crate) use world::in_world;
 
 /// An algorithm for one pair of kinds.
-pub(crate) type Algorithm<N, const D: usize> =
-    fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
+pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
 
 /// One algorithm for each pair of kinds, by row and column in the order of [`ShapeKind`].
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];
@@ -54,10 +53,7 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
 }
 
 /// The algorithm of a table for a pair.
-fn look_up<N: Real, const D: usize>(
-    table: &Table<N, D>,
-    pair: &Pair<'_, N, D>,
-) -> Algorithm<N, D> {
+fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) -> Algorithm<N, D> {
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }
 

@@ -15,8 +15,7 @@ pub(super) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let (Some(solid), Kind::Plane(plane)) =
-        (Geometry(pair.first).as_support_map(), &pair.second)
+    let (Some(solid), Kind::Plane(plane)) = (Geometry(pair.first).as_support_map(), &pair.second)
     else {
         wrong_kinds(pair)
     };
@@ -78,11 +77,8 @@ mod tests {
     #[test]
     fn a_standing_capsule_sinks_in() {
         let (plane, capsule) = (up(), Capsule::<f64, 3>::new(2.0, 0.5));
-        let pair = |pose12| Pair {
-            first: capsule.geometry().0,
-            second: plane.geometry().0,
-            pose12,
-        };
+        let pair =
+            |pose12| Pair { first: capsule.geometry().0, second: plane.geometry().0, pose12 };
         let found = separation(&pair(below(2.25)), 0.0).expect("it reaches down to -2.5");
         assert_eq!(found.distance, -0.25, "the round end is a quarter deep");
         assert_eq!(found.point1, Point::<f64, 3>::new(0.0, -2.5, 0.0), "its lowest point");

@@ -98,7 +98,8 @@ fn apart<N: Real>(
     noise: N,
 ) -> Separation<N, 2> {
     let (near1, near2) = (outline1.support(&best.normal), outline2.support(&-best.normal));
-    let mut points = nearest_points(outline1, outline2, &around(near1, outline1), &around(near2, outline2));
+    let mut points =
+        nearest_points(outline1, outline2, &around(near1, outline1), &around(near2, outline2));
     let mut direct = direct_axis(outline1, outline2, &points, best);
     // Rounding may have hidden the best axis behind another one that is nearly parallel.
     if (points.1 - points.0).norm() - direct.gap > N::lit(4.0) * noise {
@@ -106,7 +107,8 @@ fn apart<N: Real>(
         points = nearest_points(outline1, outline2, &all(outline1), &all(outline2));
         direct = direct_axis(outline1, outline2, &points, best);
     }
-    let distance = if direct.normal == best.normal { best.gap } else { (points.1 - points.0).norm() };
+    let distance =
+        if direct.normal == best.normal { best.gap } else { (points.1 - points.0).norm() };
     Separation { distance, normal: direct.normal, point1: points.0, point2: points.1 }
 }
 
@@ -160,7 +162,12 @@ mod tests {
         Point::<f64, 2>::new(x, y)
     }
 
-    fn of(shape1: &dyn Shape<f64, 2>, shape2: &dyn Shape<f64, 2>, x: f64, y: f64) -> Separation<f64, 2> {
+    fn of(
+        shape1: &dyn Shape<f64, 2>,
+        shape2: &dyn Shape<f64, 2>,
+        x: f64,
+        y: f64,
+    ) -> Separation<f64, 2> {
         let pose12 = Pose::from_translation(Vector::<f64, 2>::new(x, y));
         let pair = Pair { first: shape1.geometry().0, second: shape2.geometry().0, pose12 };
         separation(&pair, f64::INFINITY).expect("nothing is beyond infinity")
@@ -201,7 +208,9 @@ mod tests {
     #[test]
     fn triangle_in_either_order_and_capsule() {
         let capsule = Capsule::<f64, 2>::new(1.0, 0.25);
-        for corners in [[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)], [p(0.0, 3.0), p(4.0, 0.0), p(0.0, 0.0)]] {
+        for corners in
+            [[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)], [p(0.0, 3.0), p(4.0, 0.0), p(0.0, 0.0)]]
+        {
             let [a, b, c] = corners;
             // The right end of the capsule's lower ball is one unit left of the triangle's side.
             let found = of(&capsule, &Triangle::new(a, b, c), 1.25, -1.0);

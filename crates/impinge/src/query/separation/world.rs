@@ -14,8 +14,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let (pair, swapped) =
-        canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
     let first = if swapped { &placed2.pose } else { &placed1.pose };
     let found = super::separation(&pair, limit)?;
     let (normal, point1, point2) =
