@@ -79,7 +79,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     /// The pose of the first solid of the raw pair in the world.
     pub(crate) pose1: &'a Pose<N, D>,
     /// The number of the pair, for the ids.
-    pub(crate) pair: u32,
+    pub(crate) pair: u64,
     /// The user's first solid is the second of the raw pair: all comes out flipped.
     pub(crate) is_swapped: bool,
 }

@@ -65,6 +65,14 @@ impl<N: Real, const D: usize> Default for RawManifold<N, D> {
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
+    /// The points named from the other side, so that they are found again when the solids change
+    /// places.
+    pub(crate) fn flip_names(&mut self) {
+        for point in &mut self.points {
+            core::mem::swap(&mut point.feature1, &mut point.feature2);
+        }
+    }
+
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.
     pub(crate) fn deepest(&self) -> usize {
         let mut deepest = 0;

@@ -13,7 +13,7 @@ mod narrow_phase;
 mod object;
 mod objects;
 mod pairs;
-// mod queries;
+mod queries;
 mod step;
 mod validate;
 

@@ -28,7 +28,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let mut found = Vec::new();
         self.broad_phase.interferences_with_ray(ray, &mut found);
         let meets = |body: &Body<N, D>| body.aabb.intersects_ray(ray);
-        self.candidates(found, meets, groups)
+        self.candidates(found, &meets, groups)
             .filter_map(move |object| Some((object, cast(self.body(object.handle), ray)?)))
     }
 
@@ -41,7 +41,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> {
         let mut found = Vec::new();
         self.broad_phase.interferences_with_point(point, &mut found);
-        self.candidates(found, |_| true, groups)
+        self.candidates(found, &|_| true, groups)
             .filter(move |object| holds(self.body(object.handle), point))
     }
 
@@ -54,7 +54,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> {
         let mut found = Vec::new();
         self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
-        self.candidates(found, |_| true, groups)
+        self.candidates(found, &|_| true, groups)
             .filter(move |object| self.body(object.handle).aabb.intersects(aabb))
     }
 
@@ -96,7 +96,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn candidates<'a>(
         &'a self,
         found: Vec<&CollisionObjectHandle>,
-        may: impl Fn(&Body<N, D>) -> bool,
+        may: &dyn Fn(&Body<N, D>) -> bool,
         groups: &CollisionGroups,
     ) -> impl Iterator<Item = &'a Object<N, D, T>> + use<'a, N, D, T> + 'a {
         let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
