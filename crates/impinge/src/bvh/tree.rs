@@ -398,7 +398,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// The half surfaces of all leaf blocks, summed in their order: what a search pays.
-    pub(super) fn leaf_surface(&self) -> f64 {
+    pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 
