@@ -102,11 +102,8 @@ pub(crate) struct Simplex<N: Real, const D: usize> {
 impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
     /// One point.
     pub(super) fn new(vertex: Vertex<N, D>) -> Self {
-        let mut simplex = Self {
-            vertices: [Vertex::zero(); 4],
-            points: [Vector::<N, D>::zeros(); 4],
-            len: 0,
-        };
+        let mut simplex =
+            Self { vertices: [Vertex::zero(); 4], points: [Vector::<N, D>::zeros(); 4], len: 0 };
         simplex.push(vertex);
         simplex
     }

@@ -31,10 +31,7 @@ impl<N: Real> Simplicial<3> for N {
 }
 
 /// The point of a triangle nearest to the origin. Flatter than the noise, it is its three sides.
-fn nearest_on_triangle<N: Real>(
-    points: &[Vector<N, 3>],
-    [i, j, k]: [usize; 3],
-) -> Nearest<N, 3> {
+fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) -> Nearest<N, 3> {
     let (a, b, c) = (&points[i], &points[j], &points[k]);
     let (e, f) = (b - a, c - a);
     let normal = cross(&e, &f);
@@ -42,8 +39,7 @@ fn nearest_on_triangle<N: Real>(
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     let flat = squared <= noise::<N>() * noise::<N>() * longest;
     // The origin's coordinates in the frame of the sides from `a`: errors grow like 1/size only.
-    let (on_b, on_c) =
-        (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
+    let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
     let mut best: Option<Nearest<N, 3>> = None;
     for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
