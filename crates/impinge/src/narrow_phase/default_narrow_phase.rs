@@ -28,7 +28,7 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     /// Where the state of each pair lies; in step with `pairs`.
     pub(super) locations: Vec<Location>,
     pub(super) lanes: Lanes<N, D>,
-    pub(super) ids: IdAllocator,
+    pub(crate) ids: IdAllocator,
     /// The pairs made due since the last update; some may be gone again.
     pub(super) due: Vec<(u32, u32)>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.

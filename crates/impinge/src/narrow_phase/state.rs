@@ -2,7 +2,7 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::{
-    ContactManifold, ManifoldRequest, Pair, Proximity, RawManifold, canonical, materialise,
+    ContactManifold, ManifoldRequest, Pair, Proximity, Placement, RawManifold, canonical, materialise,
 };
 use crate::shape::Shape;
 
@@ -59,7 +59,9 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         posed: &Posed<'_, N, D>,
         pair_number: u64,
     ) -> ContactManifold<N, D> {
-        materialise(posed, &self.raw, pair_number)
+        let (pair, is_swapped) = posed.canonical();
+        let pose1 = if is_swapped { posed.pose2 } else { posed.pose1 };
+        materialise(&pair, &self.raw, &Placement { pose1, pair: pair_number, is_swapped })
     }
 }
 
