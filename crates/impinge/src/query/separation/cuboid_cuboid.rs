@@ -6,7 +6,7 @@ use super::cuboid_axes::{AxisKind, BoxAxis, Boxes};
 use super::segments::nearest_of_segments;
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, min};
+use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::query::Pair;
 use crate::shape::Kind;
 
@@ -94,9 +94,10 @@ impl<N: Real> Reference<N> {
         self.sign() * point[self.axis] - self.half[self.axis]
     }
 
-    /// The point of the face below a point.
+    /// The point of the face nearest to a point.
     fn onto(&self, point: &Point<N, 3>) -> Point<N, 3> {
-        let mut below = *point;
+        let clamped = point.coords.zip_map(&self.half, |x, h| max(min(x, h), -h));
+        let mut below = Point::from(clamped);
         below[self.axis] = self.sign() * self.half[self.axis];
         below
     }
@@ -112,7 +113,7 @@ impl<N: Real> Reference<N> {
             polygon = clipped(&polygon, axis, -N::ONE, self.half[axis]);
         }
         if polygon.is_empty() {
-            // Only rounding takes the lowest corner out of the face that it is above.
+            // No point is above this face: boxes that are apart, or rounding.
             polygon.extend(facing.iter().map(|corner| pose.point(corner)));
         }
         let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));
