@@ -26,7 +26,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         return None;
     }
     let found = along(&boxes, &best);
-    let attained = best.gap <= N::ZERO || (found.point2 - found.point1).norm() <= best.gap + noise;
+    let beside = found.point2 - found.point1 - best.normal * best.gap;
+    let attained = best.gap <= N::ZERO || beside.norm() <= noise;
     if attained {
         return (found.distance <= limit).then_some(found);
     }
