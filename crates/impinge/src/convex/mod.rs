@@ -24,7 +24,7 @@ mod separation;
 mod simplex;
 mod simplex2;
 mod simplex3;
-#[cfg(any())]
+#[cfg(test)]
 mod tests;
 mod witness;
 
