@@ -2,10 +2,14 @@
 #![forbid(unsafe_code)]
 
 pub mod bounding_volume;
+pub mod broad_phase;
+pub mod bvh;
 pub(crate) mod convex;
 pub mod math;
 pub mod narrow_phase;
+pub mod pairs;
 pub mod query;
 pub mod shape;
 #[doc(hidden)]
 pub mod tables;
+pub mod world;

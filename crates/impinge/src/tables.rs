@@ -5,15 +5,140 @@
 //! this crate, at this crate's optimisation level; callers reach them by function pointer. This
 //! module is the one place that floors below may see of floors above.
 
-use core::fmt::Debug;
-use core::marker::PhantomData;
+use core::fmt;
 
-use crate::math::Real;
+use crate::bounding_volume::{Aabb, Ray};
+use crate::broad_phase::{DBVTBroadPhase, PairFinder};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Space};
+use crate::narrow_phase::{
+    CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
+    proximity_of,
+};
+use crate::query::point::{SurfacePoint, point2, point3};
+use crate::query::ray::{Span, ray2, ray3};
+use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
+use crate::query::{
+    ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold, advance,
+    build2, build3,
+};
+use crate::shape::{Kind, ShapeHandle};
+use crate::world::{Bodies, WorldBroadPhase};
 
 /// Function pointers to the entry points for one scalar and dimension.
-#[derive(Debug)]
-pub struct Tables<N: Real, const D: usize> {
-    pub(crate) marker: PhantomData<N>,
+pub struct Tables<N: Space<D>, const D: usize> {
+    /// The one fact about a pair of solids; see [`crate::query`].
+    pub(crate) separation: Algorithm<N, D>,
+    pub(crate) separation_in_world:
+        fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>,
+    /// The time at which two moving solids touch.
+    pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
+    /// When the line of a ray is inside a solid.
+    pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
+    /// The point of a solid's boundary that is nearest to a point.
+    pub(crate) surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+    /// Contact points from the separation and the features of the two solids.
+    pub(crate) manifold: ManifoldFn<N, D>,
+    pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
+    pub(crate) public_manifold:
+        fn(&ContactState<N, D>, &Posed<'_, N, D>, u64) -> ContactManifold<N, D>,
+    pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
+    pub(crate) update_pairs: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events),
+    /// The step of a broad phase: what is pending, the filter, and what hears of changes.
+    pub(crate) find_pairs: FindPairsFn<N, D>,
+    pub(crate) world: WorldTables<N, D>,
+}
+
+type ManifoldFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+type FindPairsFn<N, const D: usize> =
+    fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
+
+/// What a world asks of the floors below it, and of its own part that knows no users' data.
+pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
+    pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
+    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry),
+    pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
+    pub(crate) flush: FlushFn<N, D>,
+    pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
+    pub(crate) pair_stopped:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32, &mut Events),
+    pub(crate) object_changed:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, &mut Events),
+}
+
+type FlushFn<N, const D: usize> =
+    fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
+
+impl<N: Space<D>, const D: usize> WorldTables<N, D> {
+    const fn new() -> Self {
+        Self {
+            new_broad_phase,
+            set_isometry: Bodies::set_isometry,
+            set_shape: Bodies::set_shape,
+            flush: Bodies::flush,
+            pair_started: DefaultNarrowPhase::pair_started,
+            pair_stopped: DefaultNarrowPhase::pair_stopped,
+            object_changed: DefaultNarrowPhase::object_changed,
+        }
+    }
+}
+
+/// The broad phase of a new world.
+fn new_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
+    Box::new(DBVTBroadPhase::<N, Aabb<N, D>, CollisionObjectHandle>::new(margin))
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tables").finish_non_exhaustive()
+    }
+}
+
+/// What differs by dimension.
+struct Particular<N: Space<D>, const D: usize> {
+    separation: Algorithm<N, D>,
+    manifold: ManifoldFn<N, D>,
+    ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
+    surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+}
+
+impl<N: Real> Particular<N, 2> {
+    const IN_PLANE: Self = Self {
+        separation: separation_in_plane,
+        manifold: build2,
+        ray_span: ray2::span,
+        surface_point: point2::surface_point,
+    };
+}
+
+impl<N: Real> Particular<N, 3> {
+    const IN_SPACE: Self = Self {
+        separation: separation_in_space,
+        manifold: build3,
+        ray_span: ray3::span,
+        surface_point: point3::surface_point,
+    };
+}
+
+impl<N: Space<D>, const D: usize> Tables<N, D> {
+    /// The tables around what differs by dimension.
+    const fn around(particular: &Particular<N, D>) -> Self {
+        Self {
+            separation: particular.separation,
+            separation_in_world: in_world,
+            time_of_impact: advance,
+            ray_span: particular.ray_span,
+            surface_point: particular.surface_point,
+            manifold: particular.manifold,
+            update_contacts: ContactState::update,
+            public_manifold: ContactState::manifold,
+            proximity: proximity_of,
+            update_pairs: DefaultNarrowPhase::update_pairs_here,
+            find_pairs: PairFinder::update,
+            world: WorldTables::new(),
+        }
+    }
 }
 
 /// A scalar whose tables are compiled in this crate. Sealed by being unnameable outside.
@@ -28,12 +153,12 @@ pub trait Compiled: Sized {
         Self: Real;
 }
 
-static PLANE_F32: Tables<f32, 2> = Tables { marker: PhantomData };
-static SPACE_F32: Tables<f32, 3> = Tables { marker: PhantomData };
+static PLANE_F32: Tables<f32, 2> = Tables::around(&Particular::IN_PLANE);
+static SPACE_F32: Tables<f32, 3> = Tables::around(&Particular::IN_SPACE);
 #[cfg(feature = "f64")]
-static PLANE_F64: Tables<f64, 2> = Tables { marker: PhantomData };
+static PLANE_F64: Tables<f64, 2> = Tables::around(&Particular::IN_PLANE);
 #[cfg(feature = "f64")]
-static SPACE_F64: Tables<f64, 3> = Tables { marker: PhantomData };
+static SPACE_F64: Tables<f64, 3> = Tables::around(&Particular::IN_SPACE);
 
 impl Compiled for f32 {
     fn plane() -> &'static Tables<Self, 2> {

@@ -1,13 +1,38 @@
 //! Exact answers for the pairs that the broad phase proposes, kept from update to update.
+//!
+//! [`DefaultNarrowPhase`] keeps the pairs of a world. The traits [`ContactManifoldGenerator`] and
+//! [`ProximityDetector`] stand for the algorithm of one pair, to use alone or to plug in through a
+//! dispatcher. Nothing here knows users' data: objects are rows of an [`ObjectTable`].
 
+mod default_narrow_phase;
+mod detector;
+mod entry;
 mod events;
+mod generator;
+mod group;
 mod handle;
+mod ids;
+mod lanes;
 mod objects;
 mod query_type;
+mod state;
+mod traits;
+mod update;
+mod view;
 
+pub use default_narrow_phase::DefaultNarrowPhase;
+pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
 pub use events::{ContactEvent, Events, ProximityEvent};
+pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
 pub use handle::CollisionObjectHandle;
+pub use ids::IdAllocator;
 pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;
 pub use query_type::GeometricQueryType;
 pub(crate) use query_type::PairQuery;
+pub(crate) use state::{ContactState, Posed, proximity_of};
+pub use traits::{
+    ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
+    ProximityAlgorithm, ProximityDetector, ProximityDispatcher,
+};
+pub use view::{ContactPair, ProximityPair};

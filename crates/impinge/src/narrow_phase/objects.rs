@@ -13,7 +13,7 @@ use crate::shape::ShapeHandle;
 ///
 /// The table also knows which rows were written since [`Self::begin_update`]: pairs of rows that
 /// stand still need no new query.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {
     handles: Vec<CollisionObjectHandle>,
     poses: Vec<Pose<N, D>>,
@@ -38,6 +38,20 @@ pub(crate) struct ObjectRow<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
+    /// A table without rows.
+    pub(crate) const fn new() -> Self {
+        Self {
+            handles: Vec::new(),
+            poses: Vec::new(),
+            shapes: Vec::new(),
+            queries: Vec::new(),
+            isometries: Vec::new(),
+            written: Vec::new(),
+            changed: Vec::new(),
+            update: 0,
+        }
+    }
+
     /// Forgets which rows were written: those written from now on are the changed ones.
     pub(crate) fn begin_update(&mut self) {
         self.update += 1;

@@ -1,6 +1,8 @@
 //! A contact: two points and a normal.
 
-use crate::math::{Point, Real, Unit, Vector};
+use super::pair::Placed;
+use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
+use crate::shape::Shape;
 
 /// Where two solids touch, overlap or come close, in the world frame.
 ///
@@ -24,4 +26,39 @@ impl<N: Real, const D: usize> Contact<N, D> {
     pub fn flipped(&self) -> Self {
         Self { world1: self.world2, world2: self.world1, normal: -self.normal, depth: self.depth }
     }
+}
+
+/// The contact of two solids that overlap, touch, or are at most `prediction` apart.
+///
+/// Where they overlap, the depth is the length of the shortest translation that parts them and the
+/// normal its direction for the second solid. A distance equal to `prediction` counts. A negative
+/// `prediction` asks for contacts at least that deep. `None` if `prediction` is NaN or a pose is not
+/// finite, and for half-spaces that overlap without bound, which have no depth.
+///
+/// ```
+/// use impinge::math::{Isometry3, Vector};
+/// use impinge::query::contact;
+/// use impinge::shape::{Ball, Cuboid};
+///
+/// let floor = Cuboid::new(Vector::<f64, 3>::new(10.0, 1.0, 10.0));
+/// let place = Isometry3::translation(0.0, 1.75, 0.0);
+/// let found = contact(&Isometry3::identity(), &floor, &place, &Ball::new(1.0), 0.0);
+/// let found = found.expect("the ball has sunk in");
+/// assert_eq!((found.depth, found.normal.y), (0.25, 1.0));
+/// ```
+pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    prediction: N,
+) -> Option<Contact<N, D>> {
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    let found = (N::tables().separation_in_world)(&placed1, &placed2, prediction)?;
+    found.distance.is_finite_number().then(|| Contact {
+        world1: found.point1,
+        world2: found.point2,
+        normal: Unit::new_unchecked(found.normal),
+        depth: -found.distance,
+    })
 }

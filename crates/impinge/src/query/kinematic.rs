@@ -1,6 +1,13 @@
 //! How a contact moves with its solids, to first order and without a new query.
 
-use crate::math::{Point, Real, Vector};
+mod side;
+#[cfg(test)]
+mod tests;
+
+use self::side::Side;
+use super::{Contact, Pair, RawPoint};
+use crate::convex::Separation;
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, unit};
 use crate::shape::FeatureId;
 
 /// What the core of a solid looks like near a contact, in its local frame.
@@ -14,9 +21,21 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
     Plane(Vector<N, D>),
 }
 
+/// Where the normal of a moved contact comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum NormalRule {
+    /// It turns with the first solid, a face of which defines it.
+    First,
+    /// It turns with the second solid.
+    Second,
+    /// The points and lines themselves: it is perpendicular to the lines.
+    Geometry,
+}
+
 /// What it takes to predict a contact for new poses of its two solids.
 ///
-/// All in the local frames of the solids, on their cores; the rounding radii are added at the end.
+/// All in the local frames of the solids, on their cores; the rounding radii are added at the end. A
+/// round side counts as its axis, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactKinematic<N: Real, const D: usize> {
     pub(crate) feature1: FeatureId,
@@ -30,4 +49,254 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     /// The normal from the first solid to the second, in the frame of the first: used where the
     /// geometry defines none.
     pub(crate) normal1: Vector<N, D>,
+    /// The same normal in the frame of the second.
+    pub(crate) normal2: Vector<N, D>,
+    rule: NormalRule,
+}
+
+/// Two points of the cores, in the frame of the first solid.
+type Feet<N, const D: usize> = (Point<N, D>, Point<N, D>);
+
+impl<N: Real, const D: usize> ContactKinematic<N, D> {
+    /// The kinematic of a point of a manifold whose normal is given, in the frame of the first solid.
+    pub(crate) fn new(
+        pair: &Pair<'_, N, D>,
+        normal: &Vector<N, D>,
+        point: &RawPoint<N, D>,
+    ) -> Self {
+        let normal2 = pair.pose12.inverse_vector(normal);
+        let point2 = pair.pose12.inverse_point(&(point.point1 + normal * point.distance));
+        let side1 = Side::new(pair.first, point.feature1, normal, &point.point1);
+        let side2 = Side::new(pair.second, point.feature2, &-normal2, &point2);
+        let mut kinematic = Self {
+            feature1: point.feature1,
+            feature2: point.feature2,
+            local1: side1.core,
+            local2: side2.core,
+            geometry1: side1.geometry,
+            geometry2: side2.geometry,
+            rounding1: side1.rounding,
+            rounding2: side2.rounding,
+            normal1: *normal,
+            normal2,
+            rule: NormalRule::Geometry,
+        };
+        if !kinematic.reproduces(&pair.pose12) {
+            let second = side2.alignment > side1.alignment;
+            kinematic.rule = if second { NormalRule::Second } else { NormalRule::First };
+        }
+        kinematic
+    }
+
+    /// The feature of the first solid that touches.
+    #[must_use]
+    pub fn feature1(&self) -> FeatureId {
+        self.feature1
+    }
+
+    /// The feature of the second solid that touches.
+    #[must_use]
+    pub fn feature2(&self) -> FeatureId {
+        self.feature2
+    }
+
+    /// The same features in contact once the solids are at new poses, without a new query.
+    ///
+    /// At the poses of the last update it is the contact itself; for a small motion its error is of
+    /// second order. It does not notice that other features came nearer, or that the contact left its
+    /// features: ask again when the motion is not small. A corner stays on the plane or line of the
+    /// other solid, two crossing lines give their nearest points, two points or a point and a line
+    /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
+    /// points and the normal at the last update move with their solids. Poses that are not finite
+    /// give a contact that is not.
+    #[must_use]
+    pub fn contact<R: AbstractRotation<N, D>>(
+        &self,
+        m1: &Isometry<N, R, D>,
+        m2: &Isometry<N, R, D>,
+    ) -> Contact<N, D> {
+        let pose1 = Pose::from_isometry(m1);
+        let moved = self.predicted(&Pose::relative(&pose1, &Pose::from_isometry(m2)));
+        Contact {
+            world1: pose1.point(&moved.point1),
+            world2: pose1.point(&moved.point2),
+            normal: Unit::new_unchecked(pose1.vector(&moved.normal)),
+            depth: -moved.distance,
+        }
+    }
+
+    /// The same with the solids swapped.
+    pub(crate) fn flipped(&self) -> Self {
+        Self {
+            feature1: self.feature2,
+            feature2: self.feature1,
+            local1: self.local2,
+            local2: self.local1,
+            geometry1: self.geometry2,
+            geometry2: self.geometry1,
+            rounding1: self.rounding2,
+            rounding2: self.rounding1,
+            normal1: -self.normal2,
+            normal2: -self.normal1,
+            rule: match self.rule {
+                NormalRule::First => NormalRule::Second,
+                NormalRule::Second => NormalRule::First,
+                NormalRule::Geometry => NormalRule::Geometry,
+            },
+        }
+    }
+
+    /// The contact in the frame of the first solid, for a pose of the second in it.
+    pub(crate) fn predicted(&self, pose12: &Pose<N, D>) -> Separation<N, D> {
+        let point2 = pose12.point(&self.local2);
+        let geometry2 = self.geometry2.moved(pose12);
+        let normal = self.normal(&point2, geometry2, pose12);
+        let (foot1, foot2) = feet(
+            (&self.local1, self.geometry1.moved(&Pose::identity())),
+            (&point2, geometry2),
+            &normal,
+        );
+        let distance = normal.dot(&(foot2 - foot1)) - self.rounding1 - self.rounding2;
+        let point1 = foot1 + normal * self.rounding1;
+        Separation { distance, normal, point1, point2: point1 + normal * distance }
+    }
+
+    /// The geometry alone gives the normal that the manifold has, up to rounding.
+    fn reproduces(&self, pose12: &Pose<N, D>) -> bool {
+        let is_flat = |geometry| matches!(geometry, NeighborhoodGeometry::Plane(_));
+        if is_flat(self.geometry1) || is_flat(self.geometry2) {
+            return false;
+        }
+        let difference = self.predicted(pose12).normal - self.normal1;
+        difference.norm() <= N::lit(4096.0) * N::EPSILON
+    }
+
+    fn normal(
+        &self,
+        point2: &Point<N, D>,
+        geometry2: NeighborhoodGeometry<N, D>,
+        pose12: &Pose<N, D>,
+    ) -> Vector<N, D> {
+        match self.rule {
+            NormalRule::First => self.normal1,
+            NormalRule::Second => pose12.vector(&self.normal2),
+            NormalRule::Geometry => {
+                let lines = Lines::along(self.geometry1, geometry2);
+                let size = self.local1.coords.norm() + point2.coords.norm();
+                lines.connection(&(point2 - self.local1), &self.normal1, size)
+            }
+        }
+    }
+}
+
+impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
+    /// The same, seen from the frame that `pose` leads to.
+    fn moved(self, pose: &Pose<N, D>) -> Self {
+        match self {
+            Self::Point => Self::Point,
+            Self::Line(along) => Self::Line(pose.vector(&along)),
+            Self::Plane(normal) => Self::Plane(pose.vector(&normal)),
+        }
+    }
+}
+
+/// Orthonormal directions that a contact may slide along: none, one or two.
+struct Lines<N: Real, const D: usize> {
+    first: Vector<N, D>,
+    second: Vector<N, D>,
+    are_two: bool,
+}
+
+impl<N: Real, const D: usize> Lines<N, D> {
+    fn along(geometry1: NeighborhoodGeometry<N, D>, geometry2: NeighborhoodGeometry<N, D>) -> Self {
+        let direction = |geometry| match geometry {
+            NeighborhoodGeometry::Line(along) => along,
+            _ => Vector::<N, D>::zeros(),
+        };
+        let (mut first, mut second) = (direction(geometry1), direction(geometry2));
+        if first == Vector::<N, D>::zeros() {
+            core::mem::swap(&mut first, &mut second);
+        }
+        let across = second - first * first.dot(&second);
+        let least = N::lit(LEAST_SINE_SQUARED).sqrt();
+        let across = unit(&across).filter(|&(_, sine)| sine > least).map(|(across, _)| across);
+        Self {
+            first,
+            second: across.unwrap_or_else(Vector::<N, D>::zeros),
+            are_two: across.is_some(),
+        }
+    }
+
+    /// What is left of a vector perpendicular to the lines.
+    fn reject(&self, v: &Vector<N, D>) -> Vector<N, D> {
+        let once = v - self.first * self.first.dot(v);
+        once - self.second * self.second.dot(&once)
+    }
+
+    /// The unit vector of the shortest connection, on the side of `usual`; `usual` itself, made
+    /// perpendicular, where the connection vanishes or two lines leave no choice of direction.
+    fn connection(&self, gap: &Vector<N, D>, usual: &Vector<N, D>, size: N) -> Vector<N, D> {
+        let upright = unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright);
+        if self.are_two {
+            return upright;
+        }
+        let Some((along, length)) = unit(&self.reject(gap)) else { return upright };
+        if length <= N::lit(16.0) * N::EPSILON * size {
+            return upright;
+        }
+        if along.dot(usual) < N::ZERO { -along } else { along }
+    }
+}
+
+/// Below this squared sine of the angle between two lines their crossing is not looked for.
+const LEAST_SINE_SQUARED: f64 = 1e-6;
+
+/// The points of the two cores that face each other along the normal.
+///
+/// A point or line stays where its solid takes it and the plane gives way; both planes: the point on
+/// the first stays.
+fn feet<N: Real, const D: usize>(
+    (point1, geometry1): (&Point<N, D>, NeighborhoodGeometry<N, D>),
+    (point2, geometry2): (&Point<N, D>, NeighborhoodGeometry<N, D>),
+    normal: &Vector<N, D>,
+) -> Feet<N, D> {
+    use NeighborhoodGeometry::{Line, Plane, Point};
+    let gap = point2 - point1;
+    let flat = |v: &Vector<N, D>| v - normal * normal.dot(v);
+    match (geometry1, geometry2) {
+        (_, Plane(face)) => (*point1, point1 + normal * (gap.dot(&face) / normal.dot(&face))),
+        (Plane(face), _) => (point2 - normal * (gap.dot(&face) / normal.dot(&face)), *point2),
+        (Point, Point) => (*point1, *point2),
+        (Point, Line(along)) => (*point1, point2 - along * ratio(&flat(&gap), &flat(&along))),
+        (Line(along), Point) => (point1 + along * ratio(&flat(&gap), &flat(&along)), *point2),
+        (Line(along1), Line(along2)) => {
+            let (a, b) = crossing(&flat(&gap), &flat(&along1), &flat(&along2));
+            (point1 + along1 * a, point2 + along2 * b)
+        }
+    }
+}
+
+/// How far along `side` a vector reaches, in units of `side`; 0 if `side` is zero.
+fn ratio<N: Real, const D: usize>(v: &Vector<N, D>, side: &Vector<N, D>) -> N {
+    let squared = side.norm_squared();
+    if squared > N::ZERO { v.dot(side) / squared } else { N::ZERO }
+}
+
+/// The parameters of the nearest points of two lines whose starting points are `gap` apart; zeros if
+/// the lines are nearly parallel.
+fn crossing<N: Real, const D: usize>(
+    gap: &Vector<N, D>,
+    along1: &Vector<N, D>,
+    along2: &Vector<N, D>,
+) -> (N, N) {
+    let (squared1, squared2) = (along1.norm_squared(), along2.norm_squared());
+    let mixed = along1.dot(along2);
+    let determinant = squared1 * squared2 - mixed * mixed;
+    if !(determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2) {
+        return (N::ZERO, N::ZERO);
+    }
+    let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
+    let a = (gap1 * squared2 - gap2 * mixed) / determinant;
+    let b = (gap1 * mixed - gap2 * squared1) / determinant;
+    (a, b)
 }

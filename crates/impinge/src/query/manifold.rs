@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-use super::{Contact, ContactKinematic};
-use crate::math::Real;
+use super::{Contact, ContactKinematic, Pair, RawManifold, RawPoint};
+use crate::math::{Pose, Real, Unit};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.
 ///
@@ -30,6 +30,11 @@ pub struct TrackedContact<N: Real, const D: usize> {
 }
 
 /// Points that delimit a flat area of contact, with one common normal.
+///
+/// A box that rests on a plane is one manifold of four points in space and two in the plane; a ball
+/// gives one point. The deepest pair of points of the two solids is always among them, so that
+/// [`Self::deepest_contact`] is the answer of the query for one contact. Empty means that the solids
+/// are farther apart than the prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
     pub(crate) contacts: SmallVec<[TrackedContact<N, D>; 4]>,
@@ -49,7 +54,7 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self.contacts.is_empty()
     }
 
-    /// The contacts.
+    /// The contacts, in the order in which they began.
     #[must_use]
     pub fn contacts(&self) -> &[TrackedContact<N, D>] {
         &self.contacts
@@ -61,9 +66,50 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self.deepest
     }
 
-    /// The deepest contact.
+    /// The contact of the largest depth, the first of equals; `None` for an empty manifold.
     #[must_use]
     pub fn deepest_contact(&self) -> Option<&TrackedContact<N, D>> {
         self.contacts.get(self.deepest)
     }
+}
+
+/// What turns a raw manifold into one of a world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement<'a, N: Real, const D: usize> {
+    /// The pose of the first solid of the raw pair in the world.
+    pub(crate) pose1: &'a Pose<N, D>,
+    /// The number of the pair, for the ids.
+    pub(crate) pair: u64,
+    /// The user's first solid is the second of the raw pair: all comes out flipped.
+    pub(crate) is_swapped: bool,
+}
+
+/// The manifold as users see it; `pair` is the one that `raw` was built for.
+pub(crate) fn materialise<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    raw: &RawManifold<N, D>,
+    placement: &Placement<'_, N, D>,
+) -> ContactManifold<N, D> {
+    let contacts = raw.points.iter().map(|point| tracked(pair, (raw, point), placement)).collect();
+    ContactManifold { contacts, deepest: raw.deepest() }
+}
+
+fn tracked<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    (raw, point): (&RawManifold<N, D>, &RawPoint<N, D>),
+    placement: &Placement<'_, N, D>,
+) -> TrackedContact<N, D> {
+    let pose1 = placement.pose1;
+    let contact = Contact {
+        world1: pose1.point(&point.point1),
+        world2: pose1.point(&(point.point1 + raw.normal * point.distance)),
+        normal: Unit::new_unchecked(pose1.vector(&raw.normal)),
+        depth: -point.distance,
+    };
+    let kinematic = ContactKinematic::new(pair, &raw.normal, point);
+    let id = ContactId { pair: placement.pair, number: point.id };
+    if placement.is_swapped {
+        return TrackedContact { contact: contact.flipped(), kinematic: kinematic.flipped(), id };
+    }
+    TrackedContact { contact, kinematic, id }
 }

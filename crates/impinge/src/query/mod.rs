@@ -1,16 +1,31 @@
 //! Questions about one solid or two, answered from nothing but the arguments.
 
+mod closest_points;
 mod contact;
+mod distance;
 mod kinematic;
 mod manifold;
+mod manifold_build;
 mod pair;
+pub(crate) mod point;
 mod proximity;
 mod raw_manifold;
+pub(crate) mod ray;
+pub(crate) mod separation;
+mod time_of_impact;
 
 pub use crate::bounding_volume::Ray;
-pub use contact::Contact;
+pub use closest_points::{ClosestPoints, closest_points};
+pub use contact::{Contact, contact};
+pub use distance::distance;
 pub use kinematic::{ContactKinematic, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
-pub(crate) use pair::Pair;
-pub use proximity::Proximity;
-pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
+pub(crate) use manifold::{Placement, materialise};
+pub(crate) use manifold_build::{build2, build3};
+pub(crate) use pair::{Pair, Placed, canonical};
+pub use point::{PointProjection, PointQuery};
+pub use proximity::{Proximity, proximity};
+pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
+pub use ray::{RayCast, RayIntersection};
+pub use time_of_impact::time_of_impact;
+pub(crate) use time_of_impact::{Moving, advance};

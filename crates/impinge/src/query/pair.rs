@@ -1,7 +1,9 @@
 //! Two solids and how one lies to the other: what every pair algorithm is given.
 
-use crate::math::{Pose, Real};
-use crate::shape::Kind;
+use core::cmp::Ordering;
+
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::{Geometry, Kind, SupportMap};
 
 /// Two solids, the first at the origin of the frame that the answer is given in.
 ///
@@ -12,4 +14,137 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
     pub(crate) second: Kind<'a, N, D>,
     /// The pose of the second solid in the frame of the first.
     pub(crate) pose12: Pose<N, D>,
+}
+
+/// A solid where it stands in the world.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed<'a, N: Real, const D: usize> {
+    pub(crate) pose: Pose<N, D>,
+    pub(crate) shape: Geometry<'a, N, D>,
+}
+
+/// The pair in an order that does not depend on the order of the arguments, and whether that order
+/// is the opposite of theirs.
+///
+/// Every answer about two solids is computed in this order and turned round at the end, so that
+/// swapping the arguments flips the answer bit for bit. Kinds come in the order of
+/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations,
+/// then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
+/// (Of a support map of the user's own the numbers are its rounding and 14 support points.)
+pub(crate) fn canonical<'a, N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'a, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'a, N, D>,
+) -> (Pair<'a, N, D>, bool) {
+    let order = shape1
+        .kind()
+        .cmp(&shape2.kind())
+        .then_with(|| compare_poses(pose1, pose2))
+        .then_with(|| compare_numbers(&numbers(&shape1.0), &numbers(&shape2.0)));
+    let swapped = order == Ordering::Greater;
+    let pair = if swapped {
+        Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
+    } else {
+        Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
+    };
+    (pair, swapped)
+}
+
+/// By translation, then by rotation.
+fn compare_poses<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Ordering {
+    compare_numbers(pose1.translation.as_slice(), pose2.translation.as_slice())
+        .then_with(|| compare_numbers(pose1.rotation.as_slice(), pose2.rotation.as_slice()))
+}
+
+/// Lexicographic; what cannot be compared by value (NaN, zeros of two signs) is compared by bits.
+fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
+    for (number1, number2) in numbers1.iter().zip(numbers2) {
+        let by_value = number1.partial_cmp(number2).unwrap_or(Ordering::Equal);
+        let order = by_value.then_with(|| number1.bits().cmp(&number2.bits()));
+        if order != Ordering::Equal {
+            return order;
+        }
+    }
+    numbers1.len().cmp(&numbers2.len())
+}
+
+/// The numbers that make a solid what it is. Only asked for where kinds and poses agree.
+fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
+    match kind {
+        Kind::Ball(ball) => vec![ball.radius()],
+        Kind::Segment(segment) => coordinates(&[*segment.a(), *segment.b()]),
+        Kind::Capsule(capsule) => {
+            let mut numbers = coordinates(&[*capsule.segment().a(), *capsule.segment().b()]);
+            numbers.push(capsule.radius());
+            numbers
+        }
+        Kind::Triangle(triangle) => coordinates(triangle.corners()),
+        Kind::Cuboid(cuboid) => cuboid.half_extents().as_slice().to_vec(),
+        Kind::Polytope(polytope) => coordinates(polytope.vertices()),
+        Kind::Cylinder(cylinder, _) => vec![cylinder.half_height(), cylinder.radius()],
+        Kind::Cone(cone, _) => vec![cone.half_height(), cone.radius()],
+        Kind::SupportMap(map) => probed(*map),
+        Kind::Plane(plane) => plane.normal().as_slice().to_vec(),
+    }
+}
+
+/// The coordinates of some points in a row.
+fn coordinates<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<N> {
+    points.iter().flat_map(|point| point.coords.as_slice().to_vec()).collect()
+}
+
+/// What can be learnt of an unknown solid: its rounding and its support points along both
+/// directions of each axis and along the diagonals.
+fn probed<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Vec<N> {
+    let mut numbers = vec![map.rounding()];
+    for axis in 0..D {
+        let mut direction = Vector::<N, D>::zeros();
+        direction[axis] = N::ONE;
+        numbers.extend_from_slice(map.core_support(&direction).coords.as_slice());
+        numbers.extend_from_slice(map.core_support(&-direction).coords.as_slice());
+    }
+    for signs in 0..1_usize << D {
+        let diagonal =
+            Vector::<N, D>::from_fn(
+                |axis, _| {
+                    if signs >> axis & 1 == 1 { N::ONE } else { -N::ONE }
+                },
+            );
+        numbers.extend_from_slice(map.core_support(&diagonal).coords.as_slice());
+    }
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Ball, Cuboid, Shape, ShapeKind};
+
+    fn at(x: f32, y: f32) -> Pose<f32, 2> {
+        Pose::from_translation(Vector::<f32, 2>::new(x, y))
+    }
+
+    #[test]
+    fn kinds_come_in_their_order() {
+        let (ball, cuboid) = (Ball::new(1.0_f32), Cuboid::new(Vector::<f32, 2>::new(1.0, 1.0)));
+        let (pose1, pose2) = (at(1.0, 0.0), at(4.0, 0.0));
+        let (pair, swapped) = canonical(&pose1, cuboid.geometry(), &pose2, ball.geometry());
+        assert!(swapped, "the ball comes first");
+        assert_eq!(Geometry(pair.first).kind(), ShapeKind::Ball, "the ball comes first");
+        assert_eq!(pair.pose12.translation.x, -3.0, "the box seen from the ball");
+    }
+
+    #[test]
+    fn equal_kinds_come_by_place_then_size() {
+        let (small, large) = (Ball::new(1.0_f32), Ball::new(2.0_f32));
+        let geometry = |ball| Shape::<f32, 2>::geometry(ball);
+        let order = |pose1, ball1, pose2, ball2| {
+            canonical(&pose1, geometry(ball1), &pose2, geometry(ball2)).1
+        };
+        assert!(!order(at(0.0, 1.0), &large, at(0.0, 2.0), &small), "by place");
+        assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by place, turned round");
+        assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one place");
+        assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one place");
+    }
 }

@@ -1,5 +1,9 @@
 //! How near two solids are, in three words.
 
+use super::pair::Placed;
+use crate::math::{AbstractRotation, Isometry, Space, max};
+use crate::shape::Shape;
+
 /// Whether two solids touch, are near, or are neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -10,4 +14,24 @@ pub enum Proximity {
     WithinMargin,
     /// They are farther apart than the margin.
     Disjoint,
+}
+
+/// Whether two solids touch or overlap, are at most `margin` apart, or neither.
+///
+/// Touching counts as intersecting and a distance equal to `margin` as within it. A negative or NaN
+/// `margin` counts as zero. Half-spaces that overlap without bound intersect.
+/// [`Proximity::Disjoint`] if a pose is not finite.
+pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    margin: N,
+) -> Proximity {
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    match (N::tables().separation_in_world)(&placed1, &placed2, max(margin, N::ZERO)) {
+        None => Proximity::Disjoint,
+        Some(found) if found.distance <= N::ZERO => Proximity::Intersecting,
+        Some(_) => Proximity::WithinMargin,
+    }
 }

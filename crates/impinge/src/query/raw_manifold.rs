@@ -36,15 +36,43 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     pub(crate) normal: Vector<N, D>,
     /// No point means that the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
+    /// Where the numbers of new points come from.
+    pub(crate) ids: PairIds,
+}
+
+/// The numbers given to the contacts of one pair, each once.
+///
+/// It outlives the contacts: a contact that ended and comes back gets a new number. A pair that owns
+/// several manifolds passes one counter through all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct PairIds {
+    given: u32,
+}
+
+impl PairIds {
+    /// A number not given before. After four billion numbers they start again.
+    pub(crate) fn next(&mut self) -> u32 {
+        let number = self.given;
+        self.given = number.wrapping_add(1);
+        number
+    }
 }
 
 impl<N: Real, const D: usize> Default for RawManifold<N, D> {
     fn default() -> Self {
-        Self { normal: Vector::<N, D>::zeros(), points: SmallVec::new() }
+        Self { normal: Vector::<N, D>::zeros(), points: SmallVec::new(), ids: PairIds::default() }
     }
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
+    /// The points named from the other side, so that they are found again when the solids change
+    /// places.
+    pub(crate) fn flip_names(&mut self) {
+        for point in &mut self.points {
+            core::mem::swap(&mut point.feature1, &mut point.feature2);
+        }
+    }
+
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.
     pub(crate) fn deepest(&self) -> usize {
         let mut deepest = 0;

@@ -13,13 +13,18 @@ mod cuboid;
 mod cylinder;
 mod error;
 mod feature;
+#[cfg(test)]
+mod feature_tests;
 mod geometry;
 mod handle;
 mod plane;
 mod polytope;
+mod round;
 mod segment;
 mod support_map;
+mod tilt;
 mod triangle;
+mod triangle_feature;
 
 pub use ball::Ball;
 pub use capsule::Capsule;

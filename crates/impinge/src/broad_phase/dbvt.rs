@@ -1,0 +1,252 @@
+//! The default broad phase: the pair finder, with handles and the user's data.
+
+use core::fmt::Debug;
+
+use super::handle::Handles;
+use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
+use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
+use crate::bvh::Bounds;
+use crate::math::{Point, Real, Space};
+use crate::pairs::unpack;
+
+/// A bounding volume that [`DBVTBroadPhase`] can keep: every [`Aabb`]. Sealed.
+pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
+    /// What finds the pairs of such volumes.
+    type Finder: Debug + Clone;
+
+    /// A finder without objects.
+    ///
+    /// # Errors
+    /// If the margin is negative, infinite or NaN.
+    fn try_finder(margin: N) -> Result<Self::Finder, BroadPhaseError>;
+}
+
+mod sealed {
+    /// Closes `TreeVolume` to other volumes.
+    #[expect(unnameable_types, reason = "that nobody can name it is its purpose")]
+    pub trait Sealed {}
+}
+
+impl<N: Real, const D: usize> sealed::Sealed for Aabb<N, D> {}
+
+impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
+    type Finder = PairFinder<N, D>;
+
+    fn try_finder(margin: N) -> Result<PairFinder<N, D>, BroadPhaseError> {
+        PairFinder::try_new(margin)
+    }
+}
+
+/// A dynamic tree over bounding volumes loosened by a margin.
+///
+/// The tree is touched only when an object's exact volume leaves its loosened one, so objects that
+/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. The pairs
+/// kept are those of overlapping loosened volumes; the searches (`interferences_with_*`,
+/// [`BroadPhase::visit_ray`]) use exact volumes.
+///
+/// Loosened volumes are kept as `f32`, rounded outwards, also for `f64`: a pair is never missed.
+/// Volumes with a face beyond the range of `f32` are unbounded: ordinary, but each is tested
+/// against every object that changes, so there should be few.
+///
+/// Costs O(changed · log n) with temporal coherence; about 60 bytes per object beside two copies of
+/// its box. [`PairFinder`] describes the layout.
+#[derive(Clone, Debug)]
+pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
+    handles: Handles,
+    /// By index of the handle; `None` where there is no object.
+    proxies: Vec<Option<(ProxyHandle, T)>>,
+    finder: BV::Finder,
+}
+
+impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
+    /// A broad phase without objects, whose volumes are loosened by `margin` (zero or more; 0.02
+    /// suits objects of size 1).
+    ///
+    /// # Panics
+    /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns these.
+    #[must_use]
+    pub fn new(margin: N) -> Self {
+        Self::try_new(margin).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// A broad phase without objects, whose volumes are loosened by `margin`.
+    ///
+    /// # Errors
+    /// If the margin is negative, infinite or NaN.
+    pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
+        let finder = BV::try_finder(margin)?;
+        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+    }
+}
+
+/// The data of an object that is known to be there.
+fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
+    let proxy = proxies[id as usize].as_ref();
+    &proxy.expect("the finder knows only objects that are there").1
+}
+
+/// The number that the finder knows the object by.
+fn id_of(handle: ProxyHandle) -> u32 {
+    u32::try_from(handle.uid()).expect("handles hold an index of 32 bits")
+}
+
+impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
+    /// The margin by which volumes are loosened.
+    pub fn margin(&self) -> N {
+        self.finder.margin()
+    }
+
+    /// The loosened volume; `None` for a stale handle or an object that no update has seen.
+    pub fn loosened_volume(&self, handle: ProxyHandle) -> Option<&Bounds<D>> {
+        self.check(handle).ok()?;
+        self.finder.loosened(id_of(handle))
+    }
+
+    /// The pairs as of the last update, less those removed since, each with the smaller handle
+    /// first; in no particular order.
+    pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
+        let handle = |id: u32| {
+            let proxy = self.proxies[id as usize].as_ref();
+            proxy.expect("the finder knows only objects that are there").0
+        };
+        self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
+    }
+
+    /// Checks every invariant; for tests.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn validate(&self) -> Result<(), String> {
+        self.finder.validate()
+    }
+
+    fn check(&self, handle: ProxyHandle) -> Result<(), BroadPhaseError> {
+        let is_alive = self.handles.is_alive(handle);
+        is_alive.then_some(()).ok_or(BroadPhaseError::StaleHandle(handle))
+    }
+
+    /// Refuses stale handles and handles that occur twice.
+    fn check_all(&self, handles: &[ProxyHandle]) -> Result<(), BroadPhaseError> {
+        handles.iter().try_for_each(|&handle| self.check(handle))?;
+        let mut sorted = handles.to_vec();
+        sorted.sort_unstable();
+        let twice = sorted.windows(2).find(|two| two[0] == two[1]);
+        twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
+    }
+
+    fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
+        out.extend(ids.iter().map(|&id| data_of(&self.proxies, id)));
+    }
+}
+
+/// Refuses NaN and inverted boxes, which arithmetic on good ones can yield.
+fn check_volume<N: Real, const D: usize>(
+    bv: &Aabb<N, D>,
+    handle: Option<ProxyHandle>,
+) -> Result<(), BroadPhaseError> {
+    let is_usable = (0..D).all(|axis| bv.mins()[axis] <= bv.maxs()[axis]);
+    is_usable.then_some(()).ok_or(BroadPhaseError::BadVolume(handle))
+}
+
+impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
+    for DBVTBroadPhase<N, Aabb<N, D>, T>
+{
+    fn try_create_proxy(
+        &mut self,
+        bv: Aabb<N, D>,
+        data: T,
+    ) -> Result<ProxyHandle, BroadPhaseError> {
+        check_volume(&bv, None)?;
+        let handle = self.handles.create();
+        if self.proxies.len() <= handle.uid() {
+            self.proxies.resize_with(handle.uid() + 1, || None);
+        }
+        self.proxies[handle.uid()] = Some((handle, data));
+        self.finder.insert(id_of(handle), bv);
+        Ok(handle)
+    }
+
+    fn try_remove(
+        &mut self,
+        handles: &[ProxyHandle],
+        callback: &mut dyn FnMut(&T, &T),
+    ) -> Result<(), BroadPhaseError> {
+        self.check_all(handles)?;
+        let ids: Vec<u32> = handles.iter().copied().map(id_of).collect();
+        for key in self.finder.pairs_of(&ids) {
+            let (a, b) = unpack(key);
+            callback(data_of(&self.proxies, a), data_of(&self.proxies, b));
+        }
+        for (&handle, &id) in handles.iter().zip(&ids) {
+            self.finder.remove(id);
+            self.handles.remove(handle);
+            self.proxies[handle.uid()] = None;
+        }
+        Ok(())
+    }
+
+    fn try_deferred_set_bounding_volume(
+        &mut self,
+        handle: ProxyHandle,
+        bv: Aabb<N, D>,
+    ) -> Result<(), BroadPhaseError> {
+        self.check(handle)?;
+        check_volume(&bv, Some(handle))?;
+        self.finder.set(id_of(handle), bv);
+        Ok(())
+    }
+
+    fn try_deferred_recompute_all_proximities_with(
+        &mut self,
+        handle: ProxyHandle,
+    ) -> Result<(), BroadPhaseError> {
+        self.check(handle)?;
+        self.finder.ask_again(id_of(handle));
+        Ok(())
+    }
+
+    fn deferred_recompute_all_proximities(&mut self) {
+        self.finder.ask_all_again();
+    }
+
+    fn update(
+        &mut self,
+        filter: &mut dyn FnMut(&T, &T) -> bool,
+        callback: &mut dyn FnMut(&T, &T, bool),
+    ) {
+        let proxies = &self.proxies;
+        let find_pairs = N::tables().find_pairs;
+        find_pairs(
+            &mut self.finder,
+            &mut |a, b| filter(data_of(proxies, a), data_of(proxies, b)),
+            &mut |a, b, started| callback(data_of(proxies, a), data_of(proxies, b), started),
+        );
+    }
+
+    fn interferences_with_bounding_volume<'a>(&'a self, bv: &Aabb<N, D>, out: &mut Vec<&'a T>) {
+        self.push_all(&self.finder.overlapping(bv), out);
+    }
+
+    fn interferences_with_ray<'a>(&'a self, ray: &Ray<N, D>, out: &mut Vec<&'a T>) {
+        self.push_all(&self.finder.hit_by(ray), out);
+    }
+
+    fn interferences_with_point<'a>(&'a self, point: &Point<N, D>, out: &mut Vec<&'a T>) {
+        self.push_all(&self.finder.containing(point), out);
+    }
+
+    fn num_interferences(&self) -> usize {
+        self.finder.pairs().len()
+    }
+
+    fn proxy(&self, handle: ProxyHandle) -> Option<(&Aabb<N, D>, &T)> {
+        self.check(handle).ok()?;
+        let id = id_of(handle);
+        Some((self.finder.exact(id), data_of(&self.proxies, id)))
+    }
+
+    fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_ray(ray, max_time, &mut by_id);
+    }
+}

@@ -1,0 +1,38 @@
+//! What a broad phase refuses.
+
+use core::fmt;
+
+use super::ProxyHandle;
+
+/// Why a call to a broad phase was refused. Nothing has changed then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BroadPhaseError {
+    /// The handle is that of an object removed earlier, or of another broad phase.
+    StaleHandle(ProxyHandle),
+    /// The handle stands twice in one list of removals.
+    RemovedTwice(ProxyHandle),
+    /// The volume for this object (`None`: one to be created) has a face that is NaN, or is
+    /// inverted.
+    BadVolume(Option<ProxyHandle>),
+    /// The margin (given here as `f64`) is negative, infinite or NaN.
+    BadMargin(f64),
+}
+
+impl fmt::Display for BroadPhaseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StaleHandle(handle) => write!(f, "there is no proxy {handle:?}"),
+            Self::RemovedTwice(handle) => write!(f, "{handle:?} is to be removed twice at once"),
+            Self::BadVolume(Some(handle)) => {
+                write!(f, "the volume given to {handle:?} is inverted or not a number")
+            }
+            Self::BadVolume(None) => {
+                f.write_str("the volume of the new proxy is inverted or not a number")
+            }
+            Self::BadMargin(margin) => write!(f, "the margin {margin} is not finite and positive"),
+        }
+    }
+}
+
+impl std::error::Error for BroadPhaseError {}

@@ -1,0 +1,326 @@
+//! The broad phase without the user's data: numbers and boxes in, changes of pairs out.
+
+use super::BroadPhaseError;
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bvh::{Bounds, Joiner, Lanes, NONE, Tree};
+use crate::math::Real;
+use crate::pairs::PairTable;
+
+/// Where an object is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Home {
+    /// Nowhere: no such object, or one that no update has seen.
+    Nowhere,
+    /// In the tree of objects that move.
+    Moving,
+    /// In the tree of objects that have stood still for long.
+    Still,
+    /// In the list of unbounded objects.
+    Unbounded,
+}
+
+/// The loosened box changed since the last update.
+pub(super) const CHANGED: u8 = 1;
+/// The filter is to be asked again about all pairs.
+pub(super) const AGAIN: u8 = 2;
+
+/// A box to be given to an object at the next update; the id is [`NONE`] if it was removed since.
+#[derive(Clone, Copy, Debug)]
+struct Waiting<N: Real, const D: usize> {
+    id: u32,
+    aabb: Aabb<N, D>,
+}
+
+/// Keeps the pairs of objects whose loosened boxes overlap. Objects are dense small numbers.
+///
+/// An object's loosened box is its exact box grown by the margin and rounded outwards to `f32`. It
+/// changes only when the exact box leaves it (or when an unbounded object becomes bounded), so
+/// objects that move little cost almost nothing. Boxes with a face beyond the range of `f32` count
+/// as unbounded: they are kept in a list and tested against every object that changed.
+///
+/// All arrays are by id. Objects that have not changed for a while move to a second tree, which
+/// is then joined only with what changed.
+#[derive(Clone, Debug)]
+pub struct PairFinder<N: Real, const D: usize> {
+    margin: N,
+    /// As given, at the last update.
+    pub(super) exact: Vec<Aabb<N, D>>,
+    pub(super) loose: Vec<Bounds<D>>,
+    /// The loosened box at the last update, for objects marked as changed.
+    pub(super) previous: Vec<Bounds<D>>,
+    pub(super) homes: Vec<Home>,
+    pub(super) marks: Vec<u8>,
+    /// The update that last changed the loosened box.
+    pub(super) last_change: Vec<u32>,
+    waiting: Vec<Waiting<N, D>>,
+    /// Where an object stands in `waiting`, or [`NONE`].
+    waiting_at: Vec<u32>,
+    /// The objects marked as changed, each once.
+    pub(super) changes: Vec<u32>,
+    /// Objects whose pairs the filter is to be asked about again.
+    again: Vec<u32>,
+    is_all_again: bool,
+    pub(super) moving: Tree<D>,
+    pub(super) still: Tree<D>,
+    pub(super) unbounded: Vec<u32>,
+    pub(super) pairs: PairTable,
+    pub(super) joiner: Joiner,
+    pub(super) lanes: Lanes,
+    /// Updates so far; wraps.
+    pub(super) clock: u32,
+    /// Where the search for objects at rest goes on.
+    pub(super) cursor: usize,
+}
+
+impl<N: Real, const D: usize> PairFinder<N, D> {
+    /// A finder without objects that loosens boxes by `margin`.
+    ///
+    /// # Errors
+    /// If the margin is negative, infinite or NaN.
+    pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
+        Self::with_lanes(margin, Lanes::detect())
+    }
+
+    /// The same, with the choice of vectors; for tests.
+    pub(super) fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
+        let is_usable = margin >= N::ZERO && margin.is_finite_number();
+        if !is_usable {
+            return Err(BroadPhaseError::BadMargin(margin.as_f64()));
+        }
+        Ok(Self {
+            margin,
+            exact: Vec::new(),
+            loose: Vec::new(),
+            previous: Vec::new(),
+            homes: Vec::new(),
+            marks: Vec::new(),
+            last_change: Vec::new(),
+            waiting: Vec::new(),
+            waiting_at: Vec::new(),
+            changes: Vec::new(),
+            again: Vec::new(),
+            is_all_again: false,
+            moving: Tree::new(lanes),
+            still: Tree::new(lanes),
+            unbounded: Vec::new(),
+            pairs: PairTable::new(),
+            joiner: Joiner::default(),
+            lanes,
+            clock: 0,
+            cursor: 0,
+        })
+    }
+
+    /// The margin.
+    pub const fn margin(&self) -> N {
+        self.margin
+    }
+
+    /// The pairs as of the last update, less those removed since; in no particular order.
+    pub fn pairs(&self) -> &[(u32, u32)] {
+        self.pairs.pairs()
+    }
+
+    /// The exact box at the last update; for an object that no update has seen, the box it was
+    /// given first. The object must exist.
+    pub fn exact(&self, id: u32) -> &Aabb<N, D> {
+        &self.exact[id as usize]
+    }
+
+    /// The loosened box; `None` for an object that no update has seen.
+    pub fn loosened(&self, id: u32) -> Option<&Bounds<D>> {
+        let is_known = *self.homes.get(id as usize)? != Home::Nowhere;
+        is_known.then(|| &self.loose[id as usize])
+    }
+
+    /// Adds an object at the next update. The id must not be in use; ids should be dense.
+    pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
+        let needed = id as usize + 1;
+        if self.homes.len() < needed {
+            self.exact.resize(needed, aabb);
+            self.loose.resize(needed, Bounds::NOWHERE);
+            self.previous.resize(needed, Bounds::NOWHERE);
+            self.homes.resize(needed, Home::Nowhere);
+            self.marks.resize(needed, 0);
+            self.last_change.resize(needed, 0);
+            self.waiting_at.resize(needed, NONE);
+        }
+        debug_assert_eq!(self.homes[id as usize], Home::Nowhere, "object {id} exists");
+        self.exact[id as usize] = aabb;
+        self.set(id, aabb);
+    }
+
+    /// Gives the object another box at the next update; the last call counts.
+    #[inline]
+    pub fn set(&mut self, id: u32, aabb: Aabb<N, D>) {
+        let at = self.waiting_at[id as usize];
+        if at == NONE {
+            self.waiting_at[id as usize] = small(self.waiting.len());
+            self.waiting.push(Waiting { id, aabb });
+        } else {
+            self.waiting[at as usize].aabb = aabb;
+        }
+    }
+
+    /// Asks the filter again about every pair of the object at the next update.
+    pub fn ask_again(&mut self, id: u32) {
+        self.again.push(id);
+    }
+
+    /// Asks the filter again about every pair at the next update.
+    pub fn ask_all_again(&mut self) {
+        self.is_all_again = true;
+    }
+
+    /// The pairs that involve one of the objects, packed, each once, in ascending order.
+    pub(super) fn pairs_of(&self, ids: &[u32]) -> Vec<u64> {
+        let of_one = |&a: &u32| self.pairs.partners(a).map(move |(b, _)| crate::pairs::pack(a, b));
+        let mut keys: Vec<u64> = ids.iter().flat_map(of_one).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        keys
+    }
+
+    /// Takes an object out at once, and its pairs with it.
+    pub fn remove(&mut self, id: u32) {
+        while let Some((partner, _)) = self.pairs.partners(id).last() {
+            self.pairs.remove(id, partner);
+        }
+        self.leave_home(id);
+        let index = id as usize;
+        let at = core::mem::replace(&mut self.waiting_at[index], NONE);
+        if at != NONE {
+            self.waiting[at as usize].id = NONE;
+        }
+        self.again.retain(|&other| other != id);
+        // Not empty only if a filter panicked.
+        self.changes.retain(|&other| other != id);
+        self.marks[index] = 0;
+    }
+
+    /// Takes the object out of its tree or list.
+    fn leave_home(&mut self, id: u32) {
+        match core::mem::replace(&mut self.homes[id as usize], Home::Nowhere) {
+            Home::Nowhere => {}
+            Home::Moving => self.moving.remove(id),
+            Home::Still => self.still.remove(id),
+            Home::Unbounded => self.unbounded.retain(|&other| other != id),
+        }
+    }
+
+    /// Applies the boxes that wait, in the order in which they came.
+    pub(super) fn apply_waiting(&mut self) {
+        let mut waiting = core::mem::take(&mut self.waiting);
+        for &Waiting { id, aabb } in waiting.iter().filter(|waiting| waiting.id != NONE) {
+            let index = id as usize;
+            self.waiting_at[index] = NONE;
+            self.exact[index] = aabb;
+            let tight = Bounds::enclosing(&aabb);
+            let stays = match self.homes[index] {
+                Home::Nowhere => false,
+                Home::Moving | Home::Still => self.loose[index].contains(&tight),
+                Home::Unbounded => self.loose[index].contains(&tight) && !tight.is_finite(),
+            };
+            if !stays {
+                self.move_to(id, Bounds::enclosing(&aabb.loosened(self.margin)));
+            }
+        }
+        waiting.clear();
+        self.waiting = waiting;
+    }
+
+    fn move_to(&mut self, id: u32, loose: Bounds<D>) {
+        let index = id as usize;
+        let was_nowhere = self.homes[index] == Home::Nowhere;
+        let before = if was_nowhere { Bounds::NOWHERE } else { self.loose[index] };
+        self.mark(id, CHANGED, before);
+        self.loose[index] = loose;
+        self.last_change[index] = self.clock;
+        let is_bounded = loose.is_finite();
+        if is_bounded && self.homes[index] == Home::Moving {
+            return self.moving.set(id, &loose);
+        }
+        self.leave_home(id);
+        if is_bounded {
+            self.homes[index] = Home::Moving;
+            self.moving.insert(id, &loose, &self.previous[index]);
+        } else {
+            self.homes[index] = Home::Unbounded;
+            self.unbounded.push(id);
+        }
+    }
+
+    /// Marks the object; `before` counts if it is the first mark since the last update.
+    fn mark(&mut self, id: u32, mark: u8, before: Bounds<D>) {
+        let index = id as usize;
+        if self.marks[index] & CHANGED == 0 {
+            self.previous[index] = before;
+            self.changes.push(id);
+        }
+        self.marks[index] |= CHANGED | mark;
+    }
+
+    /// Makes all pairs of the objects that are to be asked about again begin again.
+    pub(super) fn apply_again(&mut self) {
+        let mut again = core::mem::take(&mut self.again);
+        if core::mem::take(&mut self.is_all_again) {
+            again = (0..small(self.homes.len())).collect();
+        }
+        for &id in &again {
+            match self.homes[id as usize] {
+                Home::Nowhere => continue,
+                Home::Moving => self.moving.forget_before(id),
+                Home::Still => self.still.forget_before(id),
+                Home::Unbounded => {}
+            }
+            self.mark(id, AGAIN, Bounds::NOWHERE);
+            self.previous[id as usize] = Bounds::NOWHERE;
+        }
+        again.clear();
+        self.again = again;
+    }
+
+    /// Nothing waits to be applied.
+    pub(super) fn is_idle(&self) -> bool {
+        let asked = self.is_all_again || !self.again.is_empty();
+        self.waiting.is_empty() && self.changes.is_empty() && !asked
+    }
+
+    /// Checks every invariant; for tests.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn validate(&self) -> Result<(), String> {
+        self.moving.validate()?;
+        self.still.validate()?;
+        self.pairs.validate()?;
+        for (id, &home) in (0..).zip(&self.homes) {
+            let index = id as usize;
+            let places = (self.moving.bounds(id), self.still.bounds(id));
+            let listed = self.unbounded.iter().filter(|&&other| other == id).count();
+            let loose = Some(&self.loose[index]);
+            let is_at_home = match home {
+                Home::Nowhere => places == (None, None) && listed == 0,
+                Home::Moving => places == (loose, None) && listed == 0,
+                Home::Still => places == (None, loose) && listed == 0,
+                Home::Unbounded => places == (None, None) && listed == 1,
+            };
+            if !is_at_home {
+                return Err(format!("object {id} is not {home:?}: {places:?}, {listed}"));
+            }
+            let tight = Bounds::enclosing(&self.exact[index]);
+            if home != Home::Nowhere && !self.loose[index].contains(&tight) {
+                return Err(format!("the exact box of {id} leaves its loosened box"));
+            }
+        }
+        let is_pair =
+            |&(a, b): &(u32, u32)| self.loose[a as usize].overlaps(&self.loose[b as usize]);
+        let overlap = self.pairs.pairs().iter().all(is_pair) || !self.is_idle();
+        overlap.then_some(()).ok_or("a pair does not overlap".to_owned())
+    }
+}
+
+/// A count as an id.
+pub(super) fn small(value: usize) -> u32 {
+    u32::try_from(value).expect("fewer than 2^32 objects")
+}

@@ -1,0 +1,82 @@
+//! Names of objects that stay distinguishable after the object is gone.
+
+/// The name of an object in a broad phase.
+///
+/// A handle is never given out twice: that of a removed object stays distinct from those of all
+/// later objects. Ordered by [`Self::uid`], then by age.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ProxyHandle {
+    index: u32,
+    generation: u32,
+}
+
+impl ProxyHandle {
+    /// The index in the table of handles: dense, and in order of creation until the first removal.
+    ///
+    /// Unique among the objects present at one time, but used again after a removal.
+    #[must_use]
+    pub const fn uid(&self) -> usize {
+        self.index as usize
+    }
+}
+
+/// Gives handles out and knows which are alive.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Handles {
+    /// By index: the generation of the present or the next object, and whether it is present.
+    entries: Vec<(u32, bool)>,
+    /// Indices without an object; the last one freed is used first.
+    free: Vec<u32>,
+}
+
+impl Handles {
+    pub(super) fn create(&mut self) -> ProxyHandle {
+        let index = self.free.pop().unwrap_or_else(|| {
+            self.entries.push((0, false));
+            u32::try_from(self.entries.len() - 1).expect("fewer than 2^32 handles")
+        });
+        let entry = &mut self.entries[index as usize];
+        entry.1 = true;
+        ProxyHandle { index, generation: entry.0 }
+    }
+
+    pub(super) fn is_alive(&self, handle: ProxyHandle) -> bool {
+        self.entries.get(handle.uid()) == Some(&(handle.generation, true))
+    }
+
+    /// Ends the handle. An index whose generations are used up is retired.
+    pub(super) fn remove(&mut self, handle: ProxyHandle) {
+        let entry = &mut self.entries[handle.uid()];
+        entry.1 = false;
+        if let Some(next) = entry.0.checked_add(1) {
+            entry.0 = next;
+            self.free.push(handle.index);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stale_handles_never_alias() {
+        let mut handles = Handles::default();
+        let [first, second] = [handles.create(), handles.create()];
+        assert_eq!((first.uid(), second.uid()), (0, 1), "dense, in order of creation");
+        handles.remove(first);
+        let third = handles.create();
+        assert_eq!(third.uid(), 0, "the index is used again");
+        assert!(!handles.is_alive(first) && handles.is_alive(third), "the handle is not");
+        assert!(first < third && third < second, "by index, then by age");
+    }
+
+    #[test]
+    fn worn_out_indices_are_retired() {
+        let mut handles = Handles { entries: vec![(u32::MAX, true)], free: Vec::new() };
+        let last = ProxyHandle { index: 0, generation: u32::MAX };
+        handles.remove(last);
+        assert_eq!(handles.create().uid(), 1, "index 0 has no generation left");
+        assert!(!handles.is_alive(last), "gone");
+    }
+}

@@ -1,0 +1,151 @@
+//! The interface of every broad phase.
+
+use super::{BroadPhaseError, ProxyHandle};
+use crate::bounding_volume::BoundingVolume;
+use crate::math::Real;
+
+/// Finds and keeps the pairs of objects whose bounding volumes overlap.
+///
+/// `T` is the user's data of an object; callbacks get references to it. Object-safe.
+///
+/// # Semantics
+/// * **Deferred**: `deferred_*` calls and [`Self::create_proxy`] have no effect before the next
+///   [`Self::update`]. Removal is immediate.
+/// * **Complete**: after an update, every two objects whose volumes overlap are a pair, unless the
+///   filter refused them. Pairs that do not overlap exactly may be reported too.
+/// * **Incremental**: a pair on which nothing changed is not reported again. Each pair that started
+///   stops once: in an update or in a removal.
+/// * **The filter is constant in time**: it is asked once when the volumes of a pair begin to
+///   overlap. When it changes, [`Self::deferred_recompute_all_proximities`] must be called.
+/// * **Canonical order**: data of the object with the smaller [`ProxyHandle::uid`] comes first, and
+///   pairs come in ascending order of the two uids, started and stopped ones mixed.
+pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
+    /// Adds an object, or says why not.
+    ///
+    /// # Errors
+    /// If the volume is not one.
+    fn try_create_proxy(&mut self, bv: BV, data: T) -> Result<ProxyHandle, BroadPhaseError>;
+
+    /// Removes a set of objects, or says why not; see [`Self::remove`].
+    ///
+    /// # Errors
+    /// If a handle is stale or occurs twice. Nothing is removed then.
+    fn try_remove(
+        &mut self,
+        handles: &[ProxyHandle],
+        callback: &mut dyn FnMut(&T, &T),
+    ) -> Result<(), BroadPhaseError>;
+
+    /// Replaces the volume at the next update, or says why not; see
+    /// [`Self::deferred_set_bounding_volume`].
+    ///
+    /// # Errors
+    /// If the handle is stale or the volume is not one.
+    fn try_deferred_set_bounding_volume(
+        &mut self,
+        handle: ProxyHandle,
+        bv: BV,
+    ) -> Result<(), BroadPhaseError>;
+
+    /// Asks the filter again about one object, or says why not; see
+    /// [`Self::deferred_recompute_all_proximities_with`].
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    fn try_deferred_recompute_all_proximities_with(
+        &mut self,
+        handle: ProxyHandle,
+    ) -> Result<(), BroadPhaseError>;
+
+    /// At the next update, the filter is asked again about every pair of overlapping volumes: pairs
+    /// that it now refuses stop, pairs that it now allows start. The request is spent by that
+    /// update.
+    fn deferred_recompute_all_proximities(&mut self);
+
+    /// Applies what is pending and reports what follows from it.
+    ///
+    /// `filter` says whether a pair whose volumes begin to overlap is valid. `callback` then runs
+    /// once per pair that started (`true`) or stopped (`false`). The filter runs before anything is
+    /// reported; should it panic, the next update asks again.
+    fn update(
+        &mut self,
+        filter: &mut dyn FnMut(&T, &T) -> bool,
+        callback: &mut dyn FnMut(&T, &T, bool),
+    );
+
+    /// Pushes the data of each object whose exact volume, as of the last update, meets `bv`; by
+    /// ascending uid.
+    fn interferences_with_bounding_volume<'a>(&'a self, bv: &BV, out: &mut Vec<&'a T>);
+
+    /// Pushes the data of each object whose exact volume, as of the last update, meets the ray; by
+    /// ascending uid.
+    fn interferences_with_ray<'a>(&'a self, ray: &BV::Ray, out: &mut Vec<&'a T>);
+
+    /// Pushes the data of each object whose exact volume, as of the last update, holds the point;
+    /// by ascending uid.
+    fn interferences_with_point<'a>(&'a self, point: &BV::Point, out: &mut Vec<&'a T>);
+
+    /// The number of pairs as of the last update, less those removed since.
+    fn num_interferences(&self) -> usize;
+
+    /// The exact volume, as of the last update, and the data of an object; `None` for a stale
+    /// handle. For an object that no update has seen, the volume it was created with.
+    fn proxy(&self, handle: ProxyHandle) -> Option<(&BV, &T)>;
+
+    /// Adds an object; it takes part from the next update on.
+    ///
+    /// # Panics
+    /// If the volume is inverted or NaN.
+    fn create_proxy(&mut self, bv: BV, data: T) -> ProxyHandle {
+        self.try_create_proxy(bv, data).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Removes a set of objects at once.
+    ///
+    /// `callback` runs on each pair that involved a removed object at the last update, exactly once
+    /// also where both objects are removed, in canonical order, before anything is removed.
+    ///
+    /// # Panics
+    /// If a handle is stale or occurs twice. Nothing is removed then.
+    fn remove(&mut self, handles: &[ProxyHandle], callback: &mut dyn FnMut(&T, &T)) {
+        self.try_remove(handles, callback).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Replaces the volume of an object at the next update; the last of several calls counts.
+    ///
+    /// # Panics
+    /// If the handle is stale, or the volume inverted or NaN.
+    fn deferred_set_bounding_volume(&mut self, handle: ProxyHandle, bv: BV) {
+        let done = self.try_deferred_set_bounding_volume(handle, bv);
+        done.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// At the next update, the filter is asked again about every object whose volume overlaps this
+    /// one's: pairs that it now refuses stop, pairs that it now allows start. A pair that stands
+    /// is not reported a second time.
+    ///
+    /// # Panics
+    /// If the handle is stale.
+    fn deferred_recompute_all_proximities_with(&mut self, handle: ProxyHandle) {
+        let done = self.try_deferred_recompute_all_proximities_with(handle);
+        done.unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Calls `visit` for the objects whose exact volumes the ray meets at or before `max_time`,
+    /// those it enters first first, ties by uid. `visit` returns the new `max_time`, which is how a
+    /// search for the nearest hit ends early; a negative one ends it at once.
+    ///
+    /// This default knows no times of entry: it visits all hits by uid until a negative time is
+    /// returned. Implementations with an order of their own override it.
+    fn visit_ray(&self, ray: &BV::Ray, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
+        let mut hits = Vec::new();
+        self.interferences_with_ray(ray, &mut hits);
+        let mut limit = max_time;
+        for data in hits {
+            if limit < N::ZERO {
+                return;
+            }
+            limit = visit(data);
+        }
+    }
+}

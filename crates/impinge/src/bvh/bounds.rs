@@ -1,0 +1,146 @@
+//! The boxes that trees hold: `f32`, rounded outwards.
+
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real};
+
+/// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
+///
+/// It encloses the box of `N`s that it was made of: each face is rounded outwards to an `f32`, so
+/// that two boxes that touch always have enclosures that touch. Never NaN inside a tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds<const D: usize> {
+    /// The least coordinate, by axis.
+    pub lo: [f32; D],
+    /// The greatest coordinate, by axis.
+    pub hi: [f32; D],
+}
+
+impl<const D: usize> Bounds<D> {
+    /// No point at all: overlaps no bounded box, and merging it changes nothing.
+    pub const EMPTY: Self = Self { lo: [f32::INFINITY; D], hi: [f32::NEG_INFINITY; D] };
+
+    /// A box that overlaps nothing, not even an unbounded box: the place of what was not there.
+    pub const NOWHERE: Self = Self { lo: [f32::NAN; D], hi: [f32::NAN; D] };
+
+    /// The smallest such box around a box of `N`s. Zeros lose their sign.
+    #[inline]
+    #[must_use]
+    pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
+        Self {
+            lo: core::array::from_fn(|axis| aabb.mins()[axis].as_f32_below() + 0.0),
+            hi: core::array::from_fn(|axis| aabb.maxs()[axis].as_f32_above() + 0.0),
+        }
+    }
+
+    /// The smallest such box around a point.
+    #[must_use]
+    pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
+        Self {
+            lo: core::array::from_fn(|axis| point[axis].as_f32_below() + 0.0),
+            hi: core::array::from_fn(|axis| point[axis].as_f32_above() + 0.0),
+        }
+    }
+
+    /// The two have a point in common. Both must not be empty and unbounded at once.
+    #[inline]
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let mut all = true;
+        for axis in 0..D {
+            all &= (self.lo[axis] <= other.hi[axis]) & (other.lo[axis] <= self.hi[axis]);
+        }
+        all
+    }
+
+    /// Every point of `other` is a point of this box.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        let mut all = true;
+        for axis in 0..D {
+            all &= (self.lo[axis] <= other.lo[axis]) & (other.hi[axis] <= self.hi[axis]);
+        }
+        all
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn merged(&self, other: &Self) -> Self {
+        let smaller = |a: f32, b: f32| if a < b { a } else { b };
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        Self {
+            lo: core::array::from_fn(|axis| smaller(self.lo[axis], other.lo[axis])),
+            hi: core::array::from_fn(|axis| larger(self.hi[axis], other.hi[axis])),
+        }
+    }
+
+    /// Every face is a finite number.
+    #[inline]
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let mut all = true;
+        for axis in 0..D {
+            all &= self.lo[axis].is_finite() & self.hi[axis].is_finite();
+        }
+        all
+    }
+
+    /// The box without the points that no finite box reaches: equivalent as a query to a tree.
+    ///
+    /// NaN, which is nowhere, becomes empty.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let above = |x: f32| if x > -f32::MAX { x } else { -f32::MAX };
+        let below = |x: f32| if x < f32::MAX { x } else { f32::MAX };
+        if self.lo.iter().zip(&self.hi).any(|(lo, hi)| lo.is_nan() || hi.is_nan() || lo > hi) {
+            return Self::EMPTY;
+        }
+        Self { lo: self.lo.map(above), hi: self.hi.map(below) }
+    }
+
+    /// Half the surface (in the plane half the perimeter): what a search pays for a node, up to a
+    /// factor (Goldsmith and Salmon 1987). Not the volume, which is zero for every flat box.
+    ///
+    /// In `f64`, where no box of finite faces overflows; 0 for an empty box.
+    #[must_use]
+    pub fn half_surface(&self) -> f64 {
+        let extent = |axis: usize| f64::from(self.hi[axis]) - f64::from(self.lo[axis]);
+        if self.lo[0] > self.hi[0] {
+            return 0.0;
+        }
+        let face =
+            |across: usize| -> f64 { (0..D).filter(|&axis| axis != across).map(extent).product() };
+        (0..D).map(face).sum()
+    }
+
+    /// The middle; halves are added, so that no finite box overflows.
+    #[inline]
+    #[must_use]
+    pub fn center(&self) -> [f32; D] {
+        core::array::from_fn(|axis| self.lo[axis] * 0.5 + self.hi[axis] * 0.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_of_flat_and_solid_boxes() {
+        let solid = Bounds { lo: [0.0, 0.0, 0.0], hi: [1.0, 2.0, 3.0] };
+        assert_eq!(solid.half_surface(), 2.0 + 3.0 + 6.0, "three faces");
+        let flat = Bounds { lo: [0.0, 5.0, 0.0], hi: [2.0, 5.0, 3.0] };
+        assert_eq!(flat.half_surface(), 6.0, "a flat box has a face");
+        let plane = Bounds { lo: [0.0, 0.0], hi: [1.0, 2.0] };
+        assert_eq!(plane.half_surface(), 3.0, "half the perimeter");
+        assert_eq!(Bounds::<3>::EMPTY.half_surface(), 0.0, "nothing");
+    }
+
+    #[test]
+    fn what_overlaps_nothing() {
+        let all = Bounds { lo: [f32::NEG_INFINITY; 2], hi: [f32::INFINITY; 2] };
+        assert!(!all.overlaps(&Bounds::NOWHERE), "not even everything overlaps nowhere");
+        assert!(!all.clamped().overlaps(&Bounds::EMPTY), "clamped, it misses the empty box");
+        assert_eq!(Bounds::<2>::NOWHERE.clamped(), Bounds::EMPTY, "nowhere becomes empty");
+    }
+}

@@ -1,0 +1,309 @@
+//! The three operations on blocks that everything else is built of, scalar and in vectors.
+//!
+//! [`Scalar`] defines what they compute; [`Wide`] computes the same bits with whatever vectors the
+//! machine has. Only comparisons, minima and maxima are used, so equality is exact. Callers choose
+//! once per batch with `with_kernel!`, which compiles its body for every instruction set.
+
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
+
+use super::{Block, Bounds, LANES};
+
+/// Which vectors the kernels use. The results do not depend on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes(pub(super) Choice);
+
+/// See [`Lanes`].
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Choice {
+    Scalar,
+    Simd(Level),
+}
+
+impl Lanes {
+    /// The widest vectors of this machine.
+    #[must_use]
+    pub fn detect() -> Self {
+        Self(Choice::Simd(Level::new()))
+    }
+
+    /// No vectors: the definition that the others are tested against.
+    #[must_use]
+    pub const fn scalar() -> Self {
+        Self(Choice::Scalar)
+    }
+
+    /// Everything that runs on this machine, for tests.
+    #[must_use]
+    pub fn available() -> Vec<Self> {
+        let level = Level::new();
+        let mut all = vec![Self::scalar(), Self(Choice::Simd(level))];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            all.extend(level.as_avx2().map(|token| Self(Choice::Simd(Level::Avx2(token)))));
+            all.extend(level.as_sse4_2().map(|token| Self(Choice::Simd(Level::Sse4_2(token)))));
+            all.extend(level.as_sse2().map(|token| Self(Choice::Simd(Level::Sse2(token)))));
+        }
+        all
+    }
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        Self::detect()
+    }
+}
+
+/// Runs `$body` with `$kernel` bound to the kernel that `$lanes` names.
+macro_rules! with_kernel {
+    ($lanes:expr, $kernel:ident => $body:expr) => {
+        match $lanes.0 {
+            $crate::bvh::kernel::Choice::Scalar => {
+                let $kernel = $crate::bvh::kernel::Scalar;
+                $body
+            }
+            $crate::bvh::kernel::Choice::Simd(level) => {
+                fearless_simd::dispatch!(level, simd => {
+                    let $kernel = $crate::bvh::kernel::Wide(simd);
+                    $body
+                })
+            }
+        }
+    };
+}
+pub(super) use with_kernel;
+
+/// Pairs of numbers, in two arrays so that sixteen can be stored at once.
+///
+/// Entries beyond `len` are leftovers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TaskList {
+    first: Vec<u32>,
+    second: Vec<u32>,
+    len: usize,
+}
+
+impl TaskList {
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The pairs, as their two arrays.
+    #[inline]
+    pub(super) fn parts(&self) -> (&[u32], &[u32]) {
+        (&self.first[..self.len], &self.second[..self.len])
+    }
+
+    /// Makes room for sixteen more.
+    #[inline]
+    fn reserve(&mut self) {
+        if self.len + LANES > self.first.len() {
+            let length = (2 * self.first.len()).max(64 * LANES);
+            self.first.resize(length, 0);
+            self.second.resize(length, 0);
+        }
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, first: u32, second: u32) {
+        self.reserve();
+        self.first[self.len] = first;
+        self.second[self.len] = second;
+        self.len += 1;
+    }
+
+    /// Appends all of another list.
+    #[cfg(feature = "parallel")]
+    pub(super) fn append(&mut self, other: &Self) {
+        self.first.truncate(self.len);
+        self.second.truncate(self.len);
+        let (first, second) = other.parts();
+        self.first.extend_from_slice(first);
+        self.second.extend_from_slice(second);
+        self.len = self.first.len();
+    }
+}
+
+/// The operations on blocks.
+pub(super) trait Kernel: Copy {
+    /// The lanes of the block that overlap the query, lane 0 in the lowest bit.
+    fn overlaps<const D: usize>(self, block: &Block<D>, query: &Bounds<D>) -> u32;
+
+    /// The smallest box around all lanes.
+    fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D>;
+
+    /// Appends `(first, base + lane)` for every lane of the mask, in ascending order.
+    fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32);
+}
+
+/// The definition of the kernels, one lane after another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scalar;
+
+impl Kernel for Scalar {
+    fn overlaps<const D: usize>(self, block: &Block<D>, query: &Bounds<D>) -> u32 {
+        (0..LANES).fold(0, |mask, lane| mask | u32::from(block.lane(lane).overlaps(query)) << lane)
+    }
+
+    fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D> {
+        (0..LANES).fold(Bounds::EMPTY, |all, lane| all.merged(&block.lane(lane)))
+    }
+
+    fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32) {
+        push_bits(list, first, base, mask);
+    }
+}
+
+/// Walks over the bits of the mask: faster than packing vectors where there is no AVX2.
+#[inline(always)]
+fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
+    while mask != 0 {
+        list.push(first, base + mask.trailing_zeros());
+        mask &= mask - 1;
+    }
+}
+
+/// The kernels in vectors of sixteen (one register, two or four).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wide<S>(pub(super) S);
+
+/// 0 to 15.
+const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+impl<S: Simd> Kernel for Wide<S> {
+    #[inline(always)]
+    fn overlaps<const D: usize>(self, block: &Block<D>, query: &Bounds<D>) -> u32 {
+        let mut mask = overlaps_on(self.0, block, query, 0);
+        for axis in 1..D {
+            mask &= overlaps_on(self.0, block, query, axis);
+        }
+        low_half(mask.to_bitmask())
+    }
+
+    #[inline(always)]
+    fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D> {
+        let simd = self.0;
+        Bounds {
+            lo: core::array::from_fn(
+                #[inline(always)]
+                |axis| f32x16::load_array_ref(simd, &block.lo[axis]).reduce_min(),
+            ),
+            hi: core::array::from_fn(
+                #[inline(always)]
+                |axis| f32x16::load_array_ref(simd, &block.hi[axis]).reduce_max(),
+            ),
+        }
+    }
+
+    #[inline(always)]
+    fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32) {
+        if !packs_lanes(self.0.level()) {
+            return push_bits(list, first, base, mask);
+        }
+        let simd = self.0;
+        list.reserve();
+        let end = list.len + LANES;
+        u32x16::splat(simd, first).store_slice(&mut list.first[list.len..end]);
+        let lanes = u32x16::load_array_ref(simd, &IOTA) + u32x16::splat(simd, base);
+        let selected = SimdMask::from_bitmask(simd, u64::from(mask));
+        lanes.compress(selected).store_slice(&mut list.second[list.len..end]);
+        list.len += mask.count_ones() as usize;
+    }
+}
+
+/// The lanes whose intervals on one axis overlap the query's.
+#[inline(always)]
+fn overlaps_on<S: Simd, const D: usize>(
+    simd: S,
+    block: &Block<D>,
+    query: &Bounds<D>,
+    axis: usize,
+) -> mask32x16<S> {
+    let lo = f32x16::load_array_ref(simd, &block.lo[axis]);
+    let hi = f32x16::load_array_ref(simd, &block.hi[axis]);
+    lo.simd_le(f32x16::splat(simd, query.hi[axis]))
+        & hi.simd_ge(f32x16::splat(simd, query.lo[axis]))
+}
+
+/// The instruction set moves selected lanes to the front quickly.
+#[inline(always)]
+fn packs_lanes(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return level.as_avx2().is_some();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = level;
+        false
+    }
+}
+
+/// The lower half of a mask of sixteen lanes.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "sixteen lanes make sixteen bits")]
+const fn low_half(mask: u64) -> u32 {
+    mask as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block of small boxes on a grid, so that touching is common, with some lanes empty.
+    fn block(seed: u64) -> Block<3> {
+        let mut state = seed;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
+            u8::try_from(state >> 60).expect("four bits")
+        };
+        let mut block = Block::EMPTY;
+        for lane in 0..LANES {
+            let lo = [(); 3].map(|()| f32::from(next()));
+            let hi = lo.map(|x| x + f32::from(next()));
+            if next() > 2 {
+                block.set_lane(lane, &Bounds { lo, hi });
+            }
+        }
+        block
+    }
+
+    fn results(lanes: Lanes, block: &Block<3>, query: &Bounds<3>) -> (u32, Bounds<3>, Vec<u32>) {
+        with_kernel!(lanes, kernel => {
+            let mask = kernel.overlaps(block, query);
+            let mut list = TaskList::default();
+            kernel.push(&mut list, 7, 100, mask);
+            kernel.push(&mut list, 8, 200, mask >> 3);
+            let (first, second) = list.parts();
+            (mask, kernel.bounds(block), [first, second].concat())
+        })
+    }
+
+    #[test]
+    fn every_instruction_set_agrees_with_the_definition() {
+        let (mut hits, mut tests) = (0, 0);
+        for seed in 0..500 {
+            let (block, query) = (block(seed), block(seed + 10_000).lane(3));
+            let expected = results(Lanes::scalar(), &block, &query);
+            for lanes in Lanes::available() {
+                assert_eq!(results(lanes, &block, &query), expected, "{lanes:?}, seed {seed}");
+            }
+            hits += expected.0.count_ones();
+            tests += 16;
+        }
+        assert!((tests / 5..tests / 2).contains(&hits), "{hits} of {tests} tests hit");
+    }
+
+    #[test]
+    fn every_mask_is_pushed_in_order() {
+        for lanes in Lanes::available() {
+            for mask in 0..1_u32 << 16 {
+                let mut list = TaskList::default();
+                with_kernel!(lanes, kernel => kernel.push(&mut list, 1, 32, mask));
+                let expected = (0..16).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane + 32);
+                assert!(list.parts().1.iter().copied().eq(expected), "{lanes:?}, {mask:b}");
+            }
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! A packed tree of boxes for objects that move: no pointers, sixteen boxes per block.
+//!
+//! What lies where in memory:
+//! * layer 0 is an array of [`Block`]s of object boxes; block `i` of layer `k` holds the bounds of
+//!   blocks `16i … 16i + 15` of layer `k - 1`, up to a layer of one block. Child and parent are
+//!   arithmetic, so nothing is fixed up when objects change places;
+//! * beside each layer stand the bounds of its blocks one by one (the query side of a test of one
+//!   box against a block) and a mask of the lanes that changed since the last [`Tree::settle`];
+//! * beside layer 0 stand the same boxes one by one, the boxes *before* the changes, again in
+//!   blocks, and the maps between slots (positions) and ids (the caller's numbers).
+//!
+//! Slots are in a balanced k-d order, so that a block holds neighbours; which lane an object has
+//! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set`],
+//! [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`], then the [`Joiner`] for the pairs that
+//! began, then [`Tree::settle`] and [`Tree::maintain`].
+//!
+//! **No set of pairs is kept.** A pair began exactly if the boxes overlap and those of before did
+//! not; so the join compares the two and reports beginnings only.
+//!
+//! The tree knows no shapes and no user data. Its boxes are always `f32`; [`Bounds::enclosing`]
+//! rounds outwards. Every result is a function of the calls made: it does not depend on the
+//! instruction set nor on the number of threads.
+
+mod block;
+mod bounds;
+mod join;
+mod kernel;
+mod order;
+mod ordered;
+mod query;
+mod schedule;
+mod tree;
+mod validate;
+mod visit;
+
+pub use block::{Block, LANES};
+pub use bounds::Bounds;
+pub use join::Joiner;
+pub use kernel::Lanes;
+pub use ordered::Frontier;
+pub use tree::{NONE, Tree};
+
+/// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
+#[cfg(feature = "parallel")]
+pub(crate) const PARALLEL_FROM: usize = 2000;

@@ -1,0 +1,190 @@
+//! Searches in ascending order of a key: the first hit of a ray, the nearest object.
+//!
+//! Best first (Hjaltason and Samet, "Distance browsing in spatial databases", 1999): one queue of
+//! blocks and objects by key. A block's key is never above those of what it encloses, so objects
+//! leave the queue in the order of their keys; a search that stops there has opened only blocks it
+//! could not do without.
+
+use core::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::kernel::with_kernel;
+use super::tree::small;
+use super::{Block, LANES, Lanes, NONE, Tree};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, max, min};
+
+/// Entries made room for at the start: enough for most searches.
+const EXPECTED: usize = 64;
+
+/// What a queue holds. Blocks go before objects of the same key, so that equal objects leave by
+/// ascending id.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Entry {
+    Block { tree: u8, layer: u8, block: u32 },
+    Object { id: u32 },
+}
+
+/// A queue of what a search has still to look at.
+///
+/// Keys are zero or more, so that their bits order as they do.
+#[derive(Clone, Debug, Default)]
+pub struct Frontier {
+    queue: BinaryHeap<Reverse<(u64, Entry)>>,
+}
+
+impl Frontier {
+    /// An empty queue.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { queue: BinaryHeap::with_capacity(EXPECTED) }
+    }
+
+    /// Adds an object that is in none of the trees.
+    pub fn push_object<N: Real>(&mut self, key: N, id: u32) {
+        self.push(key, Entry::Object { id });
+    }
+
+    fn push<N: Real>(&mut self, key: N, entry: Entry) {
+        // Adding zero takes the sign off a zero.
+        self.queue.push(Reverse(((key + N::ZERO).bits(), entry)));
+    }
+
+    /// Hands out objects in ascending order of (key, id) until the key exceeds `limit`.
+    ///
+    /// * `measure` gives the keys of the lanes of a block and the mask of those that count; keys
+    ///   must be zero or more and not above the key of anything enclosed;
+    /// * `key_of` gives the key of an object that its lane's key led to, `None` to pass it over;
+    /// * `found` gets the object and its key and returns the new limit.
+    pub fn search<N: Real, const D: usize>(
+        mut self,
+        trees: &[&Tree<D>],
+        mut limit: N,
+        measure: impl Fn(&Block<D>) -> (u32, [N; LANES]),
+        key_of: impl Fn(u32) -> Option<N>,
+        mut found: impl FnMut(u32, N) -> N,
+    ) {
+        for (tree, index) in trees.iter().zip(0..) {
+            let layer = u8::try_from(tree.layers.len() - 1).expect("at most eight layers");
+            if !tree.is_empty() {
+                self.push(N::ZERO, Entry::Block { tree: index, layer, block: 0 });
+            }
+        }
+        while let Some(Reverse((bits, entry))) = self.queue.pop() {
+            // Also false for a NaN limit, which ends the search.
+            let is_within = limit >= N::ZERO && bits <= (limit + N::ZERO).bits();
+            if !is_within {
+                return;
+            }
+            match entry {
+                Entry::Object { id } => {
+                    // The key comes back exactly: it was computed by the same expression.
+                    let Some(key) = key_of(id) else { continue };
+                    limit = found(id, key);
+                }
+                Entry::Block { tree, layer, block } => {
+                    let place = (tree, layer, block);
+                    self.open(trees[usize::from(tree)], place, &measure, &key_of);
+                }
+            }
+        }
+    }
+
+    fn open<N: Real, const D: usize>(
+        &mut self,
+        tree: &Tree<D>,
+        (index, layer, block): (u8, u8, u32),
+        measure: &impl Fn(&Block<D>) -> (u32, [N; LANES]),
+        key_of: &impl Fn(u32) -> Option<N>,
+    ) {
+        let (mut mask, keys) = measure(&tree.layers[usize::from(layer)].blocks[block as usize]);
+        while mask != 0 {
+            let lane = mask.trailing_zeros();
+            mask &= mask - 1;
+            let child = block * small(LANES) + lane;
+            if layer > 0 {
+                if tree.is_block(layer - 1, child) {
+                    let entry = Entry::Block { tree: index, layer: layer - 1, block: child };
+                    self.push(keys[lane as usize], entry);
+                }
+            } else if let Some(id) = tree.ids.get(child as usize).filter(|&&id| id != NONE) {
+                if let Some(key) = key_of(*id) {
+                    self.push(key, Entry::Object { id: *id });
+                }
+            }
+        }
+    }
+}
+
+impl Lanes {
+    /// The times at which a ray enters the boxes of a block, and the mask of those it meets: a
+    /// measure for [`Frontier::search`], and with the mask alone a test for [`Tree::visit`].
+    pub fn times_of_block<N: Real, const D: usize>(
+        self,
+        block: &Block<D>,
+        ray: &Ray<N, D>,
+    ) -> (u32, [N; LANES]) {
+        with_kernel!(self, _kernel => times_of_block(block, ray))
+    }
+
+    /// The distances of a point from the boxes of a block, and the mask of lanes in use: a
+    /// measure for [`Frontier::search`].
+    pub fn distance_of_block<N: Real, const D: usize>(
+        self,
+        block: &Block<D>,
+        point: &Point<N, D>,
+    ) -> (u32, [N; LANES]) {
+        with_kernel!(self, _kernel => distance_of_block(block, point))
+    }
+}
+
+/// The times at which a ray enters the boxes of a block, and the mask of those it meets.
+///
+/// The slab test of `Aabb::ray_interval`, operation for operation: rounding is monotone, so a box
+/// that encloses another is never missed where the other is hit, nor entered later.
+#[inline(always)]
+fn times_of_block<N: Real, const D: usize>(block: &Block<D>, ray: &Ray<N, D>) -> (u32, [N; LANES]) {
+    let (mut enter, mut leave) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
+    for axis in 0..D {
+        let (origin, speed) = (ray.origin[axis], ray.dir[axis]);
+        for lane in 0..LANES {
+            let lo = N::lit(f64::from(block.lo[axis][lane]));
+            let hi = N::lit(f64::from(block.hi[axis][lane]));
+            if speed == N::ZERO {
+                let is_beside = origin < lo || origin > hi;
+                leave[lane] = if is_beside { -N::ONE } else { leave[lane] };
+            } else {
+                let (a, b) = ((lo - origin) / speed, (hi - origin) / speed);
+                enter[lane] = max(enter[lane], min(a, b));
+                leave[lane] = min(leave[lane], max(a, b));
+            }
+        }
+    }
+    let mut mask = 0;
+    for lane in 0..LANES {
+        mask |= u32::from(enter[lane] <= leave[lane]) << lane;
+    }
+    (mask, enter)
+}
+
+/// The distances of a point from the boxes of a block, and the mask of all lanes.
+///
+/// The operations of `Aabb::distance_to_point`; the same monotony.
+#[inline(always)]
+fn distance_of_block<N: Real, const D: usize>(
+    block: &Block<D>,
+    point: &Point<N, D>,
+) -> (u32, [N; LANES]) {
+    let (mut mask, mut distances) = (0, [N::ZERO; LANES]);
+    for lane in 0..LANES {
+        let mut squared = N::ZERO;
+        for axis in 0..D {
+            let below = max(N::lit(f64::from(block.lo[axis][lane])) - point[axis], N::ZERO);
+            let above = max(point[axis] - N::lit(f64::from(block.hi[axis][lane])), N::ZERO);
+            squared += (below + above) * (below + above);
+        }
+        distances[lane] = squared.sqrt();
+        mask |= u32::from(block.lo[0][lane] <= block.hi[0][lane]) << lane;
+    }
+    (mask, distances)
+}

@@ -1,0 +1,416 @@
+//! The tree: storage, single changes, and the pass that makes the upper layers true again.
+
+use super::kernel::{Kernel, with_kernel};
+use super::schedule::Schedule;
+use super::{Block, Bounds, LANES, Lanes};
+
+/// No id, or no slot.
+pub const NONE: u32 = u32::MAX;
+
+/// One layer: blocks, and beside each its bounds and which of its lanes changed.
+#[derive(Clone, Debug)]
+pub(super) struct Layer<const D: usize> {
+    pub(super) blocks: Vec<Block<D>>,
+    pub(super) bounds: Vec<Bounds<D>>,
+    pub(super) changed: Vec<u16>,
+}
+
+impl<const D: usize> Layer<D> {
+    const fn new() -> Self {
+        Self { blocks: Vec::new(), bounds: Vec::new(), changed: Vec::new() }
+    }
+
+    pub(super) fn resize(&mut self, blocks: usize) {
+        self.blocks.resize(blocks, Block::EMPTY);
+        self.bounds.resize(blocks, Bounds::EMPTY);
+        self.changed.resize(blocks, 0);
+    }
+}
+
+/// A packed tree over boxes with ids; see the module's page for the layout.
+///
+/// Ids are dense small numbers of the caller's. Boxes must be finite and not inverted.
+#[derive(Clone, Debug)]
+pub struct Tree<const D: usize> {
+    pub(super) lanes: Lanes,
+    /// Layer 0 first; at least one layer, the last one with at most one block.
+    pub(super) layers: Vec<Layer<D>>,
+    /// By slot.
+    pub(super) boxes: Vec<Bounds<D>>,
+    /// By leaf block: the boxes at the last [`Self::settle`].
+    pub(super) before: Vec<Block<D>>,
+    /// Slot to id.
+    pub(super) ids: Vec<u32>,
+    /// Id to slot.
+    pub(super) slots: Vec<u32>,
+    /// One more than the last slot in use.
+    pub(super) end: usize,
+    /// Objects.
+    pub(super) live: usize,
+    /// Leaf blocks written to since the last [`Self::settle`], and the same as flags.
+    pub(super) touched: Vec<u32>,
+    pub(super) is_touched: Vec<bool>,
+    /// Lanes with their change bit set.
+    pub(super) changed: usize,
+    /// The number of leaf blocks changed, so that the upper layers must be laid out anew.
+    pub(super) is_restructured: bool,
+    /// Something was written since the last [`Self::refit`] that searches must see.
+    pub(super) is_stale: bool,
+    pub(super) schedule: Schedule<D>,
+}
+
+impl<const D: usize> Default for Tree<D> {
+    fn default() -> Self {
+        Self::new(Lanes::detect())
+    }
+}
+
+/// A position as the `u32` it is stored as.
+#[inline]
+pub(super) fn small(value: usize) -> u32 {
+    u32::try_from(value).expect("a tree holds fewer than 2^32 objects")
+}
+
+impl<const D: usize> Tree<D> {
+    /// A tree without objects.
+    #[must_use]
+    pub fn new(lanes: Lanes) -> Self {
+        Self {
+            lanes,
+            layers: vec![Layer::new()],
+            boxes: Vec::new(),
+            before: Vec::new(),
+            ids: Vec::new(),
+            slots: Vec::new(),
+            end: 0,
+            live: 0,
+            touched: Vec::new(),
+            is_touched: Vec::new(),
+            changed: 0,
+            is_restructured: false,
+            is_stale: false,
+            schedule: Schedule::default(),
+        }
+    }
+
+    /// The number of objects.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.live
+    }
+
+    /// There is no object.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.live == 0
+    }
+
+    /// How many objects changed since the last [`Self::settle`].
+    #[must_use]
+    pub const fn changed(&self) -> usize {
+        self.changed
+    }
+
+    /// The object is in the tree.
+    #[must_use]
+    pub fn contains(&self, id: u32) -> bool {
+        self.slot(id).is_some()
+    }
+
+    /// The box of the object, if it is in the tree.
+    #[must_use]
+    pub fn bounds(&self, id: u32) -> Option<&Bounds<D>> {
+        self.slot(id).map(|slot| &self.boxes[slot])
+    }
+
+    fn slot(&self, id: u32) -> Option<usize> {
+        let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
+        Some(slot as usize)
+    }
+
+    fn expect_slot(&self, id: u32) -> usize {
+        self.slot(id).expect("the object is in the tree")
+    }
+
+    /// Adds an object. `before` is the box it had at the last [`Self::settle`]: pairs that
+    /// overlapped then do not begin now. It is [`Bounds::NOWHERE`] for an object that is new.
+    ///
+    /// # Panics
+    /// If the object is in the tree already.
+    pub fn insert(&mut self, id: u32, bounds: &Bounds<D>, before: &Bounds<D>) {
+        let slot = self.insert_still(id, bounds);
+        self.before[slot / LANES].set_lane(slot % LANES, &before.clamped());
+        self.mark_changed(slot);
+    }
+
+    /// Adds an object that has stood there, in another tree, since before the last
+    /// [`Self::settle`]: it begins no pairs. Returns its slot.
+    pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
+        assert!(!self.contains(id), "object {id} is in the tree already");
+        debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
+        let slot = self.find_place(bounds);
+        if self.slots.len() <= id as usize {
+            self.slots.resize(id as usize + 1, NONE);
+        }
+        self.slots[id as usize] = small(slot);
+        self.ids[slot] = id;
+        self.end = self.end.max(slot + 1);
+        self.live += 1;
+        self.write(slot, bounds);
+        self.before[slot / LANES].set_lane(slot % LANES, bounds);
+        slot
+    }
+
+    /// Gives the object another box.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    #[inline]
+    pub fn set(&mut self, id: u32, bounds: &Bounds<D>) {
+        debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
+        let slot = self.expect_slot(id);
+        self.write(slot, bounds);
+        self.mark_changed(slot);
+    }
+
+    /// Makes all pairs of the object begin anew: as if it had not been there before.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    pub fn forget_before(&mut self, id: u32) {
+        let slot = self.expect_slot(id);
+        self.before[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
+        self.touch(slot / LANES);
+        self.mark_changed(slot);
+    }
+
+    /// Makes all pairs begin anew.
+    pub fn forget_all_before(&mut self) {
+        for slot in 0..self.end {
+            if self.ids[slot] != NONE {
+                self.forget_before(self.ids[slot]);
+            }
+        }
+    }
+
+    /// Takes the object out. Searches do not find it from now on.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    pub fn remove(&mut self, id: u32) {
+        let slot = self.expect_slot(id);
+        let (block, lane) = (slot / LANES, slot % LANES);
+        self.slots[id as usize] = NONE;
+        self.ids[slot] = NONE;
+        self.live -= 1;
+        self.boxes[slot] = Bounds::EMPTY;
+        self.layers[0].blocks[block].set_lane(lane, &Bounds::EMPTY);
+        self.before[block].set_lane(lane, &Bounds::EMPTY);
+        let bit = self.layers[0].changed[block] & 1 << lane;
+        self.changed -= usize::from(bit != 0);
+        self.layers[0].changed[block] &= !bit;
+        self.touch(block);
+    }
+
+    #[inline]
+    fn write(&mut self, slot: usize, bounds: &Bounds<D>) {
+        self.boxes[slot] = *bounds;
+        self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, bounds);
+        self.touch(slot / LANES);
+        self.is_stale = true;
+    }
+
+    #[inline]
+    pub(super) fn mark_changed(&mut self, slot: usize) {
+        let mask = &mut self.layers[0].changed[slot / LANES];
+        let bit = 1 << (slot % LANES);
+        self.changed += usize::from(*mask & bit == 0);
+        *mask |= bit;
+    }
+
+    #[inline]
+    pub(super) fn touch(&mut self, block: usize) {
+        if !self.is_touched[block] {
+            self.is_touched[block] = true;
+            self.touched.push(small(block));
+        }
+    }
+
+    /// A free lane near the box where there is one, else the end.
+    fn find_place(&mut self, bounds: &Bounds<D>) -> usize {
+        let has_holes = self.live < self.end;
+        let hole = if has_holes { self.hole_near(bounds) } else { None };
+        hole.unwrap_or_else(|| self.append_slot())
+    }
+
+    /// A free lane of the block that a descent along the least growth ends in.
+    fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
+        let mut block = 0;
+        for layer in (1..self.layers.len()).rev() {
+            let children = &self.layers[layer - 1].bounds;
+            let last = children.len().min((block + 1) * LANES);
+            let growth = |child: &usize| {
+                let own = &children[*child];
+                own.merged(bounds).half_surface() - own.half_surface()
+            };
+            block = (block * LANES..last)
+                .min_by(|a, b| growth(a).total_cmp(&growth(b)))
+                .unwrap_or_default();
+        }
+        let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
+        Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
+    }
+
+    /// The slot after the last one in use, in a new block if need be.
+    fn append_slot(&mut self) -> usize {
+        if self.end == self.ids.len() {
+            self.resize_leaves(self.before.len() + 1);
+        }
+        self.end
+    }
+
+    /// Sets the number of leaf blocks; new ones are empty.
+    pub(super) fn resize_leaves(&mut self, blocks: usize) {
+        self.layers[0].resize(blocks);
+        self.before.resize(blocks, Block::EMPTY);
+        self.is_touched.resize(blocks, false);
+        self.boxes.resize(blocks * LANES, Bounds::EMPTY);
+        self.ids.resize(blocks * LANES, NONE);
+        self.is_restructured = true;
+    }
+
+    /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
+    pub fn refit(&mut self) {
+        self.sort_new();
+        self.refit_layers();
+    }
+
+    pub(super) fn refit_layers(&mut self) {
+        let many = self.touched.len() * 4 > self.before.len();
+        with_kernel!(self.lanes, kernel => {
+            if self.is_restructured || many {
+                self.refit_all(kernel);
+            } else {
+                self.refit_touched(kernel);
+            }
+        });
+        self.is_restructured = false;
+        self.is_stale = false;
+    }
+
+    /// Lays the upper layers out for the number of leaf blocks, every lane empty.
+    fn shape_layers(&mut self) {
+        let (mut layer, mut blocks) = (0, self.before.len());
+        while blocks > 1 {
+            (layer, blocks) = (layer + 1, blocks.div_ceil(LANES));
+            if self.layers.len() <= layer {
+                self.layers.push(Layer::new());
+            }
+            self.layers[layer].resize(0);
+            self.layers[layer].resize(blocks);
+        }
+        self.layers.truncate(layer + 1);
+    }
+
+    #[inline(always)]
+    fn refit_all<K: Kernel>(&mut self, kernel: K) {
+        if self.is_restructured {
+            self.shape_layers();
+        }
+        for index in 0..self.layers.len() {
+            let (below, above) = self.layers.split_at_mut(index + 1);
+            let layer = &mut below[index];
+            for (block, bounds) in layer.blocks.iter().zip(&mut layer.bounds) {
+                *bounds = kernel.bounds(block);
+            }
+            let Some(parent) = above.first_mut() else { break };
+            parent.changed.fill(0);
+            for (block, bounds) in layer.bounds.iter().enumerate() {
+                parent.blocks[block / LANES].set_lane(block % LANES, bounds);
+                let is_changed = u16::from(layer.changed[block] != 0);
+                parent.changed[block / LANES] |= is_changed << (block % LANES);
+            }
+        }
+    }
+
+    /// Walks up from the touched leaf blocks only.
+    #[inline(always)]
+    fn refit_touched<K: Kernel>(&mut self, kernel: K) {
+        self.touched.sort_unstable();
+        let mut dirty = self.touched.clone();
+        for index in 0..self.layers.len() {
+            let (below, above) = self.layers.split_at_mut(index + 1);
+            let layer = &mut below[index];
+            for &block in &dirty {
+                let block = block as usize;
+                let bounds = kernel.bounds(&layer.blocks[block]);
+                layer.bounds[block] = bounds;
+                let Some(parent) = above.first_mut() else { continue };
+                parent.blocks[block / LANES].set_lane(block % LANES, &bounds);
+                let is_changed = u16::from(layer.changed[block] != 0);
+                parent.changed[block / LANES] |= is_changed << (block % LANES);
+            }
+            to_parents(&mut dirty);
+        }
+    }
+
+    /// Declares the present boxes those of before: nothing has changed.
+    pub fn settle(&mut self) {
+        let mut dirty = core::mem::take(&mut self.touched);
+        for &block in &dirty {
+            let block = block as usize;
+            self.before[block] = self.layers[0].blocks[block];
+            self.is_touched[block] = false;
+        }
+        if self.changed > 0 {
+            let mut blocks = dirty.clone();
+            blocks.sort_unstable();
+            for layer in &mut self.layers {
+                for &block in &blocks {
+                    layer.changed[block as usize] = 0;
+                }
+                to_parents(&mut blocks);
+            }
+        }
+        dirty.clear();
+        self.touched = dirty;
+        self.changed = 0;
+    }
+
+    /// Forgets every object and keeps the memory.
+    pub fn clear(&mut self) {
+        self.resize_leaves(0);
+        self.shape_layers();
+        self.slots.clear();
+        self.touched.clear();
+        self.schedule = Schedule::default();
+        (self.end, self.live, self.changed) = (0, 0, 0);
+        (self.is_restructured, self.is_stale) = (false, false);
+    }
+
+    /// The half surfaces of all leaf blocks, summed in their order: what a search pays.
+    pub(super) fn leaf_surface(&self) -> f64 {
+        self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
+    }
+
+    /// The slots of changed lanes, ascending if the touched blocks are.
+    pub(super) fn changed_slots(&self) -> Vec<u32> {
+        let mut slots = Vec::with_capacity(self.changed);
+        for &block in &self.touched {
+            let mut mask = self.layers[0].changed[block as usize];
+            while mask != 0 {
+                slots.push(block * small(LANES) + mask.trailing_zeros());
+                mask &= mask - 1;
+            }
+        }
+        slots
+    }
+}
+
+/// Replaces ascending block numbers by those of their parents, each once.
+fn to_parents(blocks: &mut Vec<u32>) {
+    for block in blocks.iter_mut() {
+        *block /= small(LANES);
+    }
+    blocks.dedup();
+}

@@ -1,0 +1,127 @@
+//! The invariants of the tree, checked one by one; for tests.
+
+use super::{Block, Bounds, LANES, NONE, Tree};
+
+impl<const D: usize> Tree<D> {
+    /// Checks every invariant. Between a removal and the next refit, bounds may be too large;
+    /// otherwise, and unless something was added or moved since, they are exact.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn validate(&self) -> Result<(), String> {
+        self.validate_maps()?;
+        self.validate_leaves()?;
+        if !self.is_stale {
+            self.validate_layers()?;
+        }
+        self.validate_changes()
+    }
+
+    /// Slots and ids are inverse to each other and counted rightly.
+    fn validate_maps(&self) -> Result<(), String> {
+        let live = self.ids.iter().filter(|&&id| id != NONE).count();
+        let mapped = self.slots.iter().filter(|&&slot| slot != NONE).count();
+        if live != self.live || mapped != self.live {
+            return Err(format!("{live} ids, {mapped} slots, {} counted", self.live));
+        }
+        for (slot, &id) in self.ids.iter().enumerate() {
+            if id != NONE && (self.slots[id as usize] as usize != slot || slot >= self.end) {
+                return Err(format!("slot {slot} holds {id}, which stands elsewhere"));
+            }
+        }
+        let blocks = self.before.len();
+        let is_long = self.end > blocks * LANES;
+        if is_long || self.ids.len() != blocks * LANES || self.boxes.len() != self.ids.len() {
+            return Err(format!("{} slots in {blocks} blocks", self.end));
+        }
+        Ok(())
+    }
+
+    /// The two copies of each box agree; free lanes are empty, before and after.
+    fn validate_leaves(&self) -> Result<(), String> {
+        for (slot, &id) in self.ids.iter().enumerate() {
+            let (block, lane) = (slot / LANES, slot % LANES);
+            let stored = self.layers[0].blocks[block].lane(lane);
+            let before = self.before[block].lane(lane);
+            if stored != self.boxes[slot] {
+                return Err(format!("the copies of the box in slot {slot} differ"));
+            }
+            let is_free = id == NONE;
+            let empty = Bounds::EMPTY;
+            if is_free && (stored != empty || before != empty) {
+                return Err(format!("free slot {slot} is not empty"));
+            }
+            let is_upright = stored.lo.iter().zip(&stored.hi).all(|(lo, hi)| lo <= hi);
+            if !is_free && !(stored.is_finite() && is_upright) {
+                return Err(format!("the box in slot {slot} is no bounded box: {stored:?}"));
+            }
+            let is_changed = self.layers[0].changed[block] >> lane & 1 == 1;
+            if before != stored && !is_changed {
+                return Err(format!("slot {slot} changed without a mark"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Every layer holds the bounds of the one below, up to one block.
+    fn validate_layers(&self) -> Result<(), String> {
+        let is_exact = self.touched.is_empty();
+        let agrees = |kept: &Bounds<D>, real: &Bounds<D>| {
+            let is_empty = *real == Bounds::EMPTY;
+            kept == real || (!is_exact && (is_empty || kept.contains(real)))
+        };
+        for (index, layer) in self.layers.iter().enumerate() {
+            if layer.blocks.len() != layer.bounds.len() || layer.blocks.len() != layer.changed.len()
+            {
+                return Err(format!("the arrays of layer {index} differ in length"));
+            }
+            for (block, kept) in layer.blocks.iter().zip(&layer.bounds) {
+                if !agrees(kept, &bounds_of(block)) {
+                    return Err(format!("bounds {kept:?} in layer {index} are wrong"));
+                }
+            }
+            let Some(parent) = self.layers.get(index + 1) else {
+                return (layer.blocks.len() <= 1)
+                    .then_some(())
+                    .ok_or(format!("{} blocks in the top layer", layer.blocks.len()));
+            };
+            if parent.blocks.len() != layer.blocks.len().div_ceil(LANES) {
+                return Err(format!("layer {} has the wrong length", index + 1));
+            }
+            for lane in 0..parent.blocks.len() * LANES {
+                let kept = parent.blocks[lane / LANES].lane(lane % LANES);
+                let real = layer.bounds.get(lane).copied().unwrap_or(Bounds::EMPTY);
+                if kept != real {
+                    return Err(format!("lane {lane} of layer {} is not its child", index + 1));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Change marks are counted, lie in touched blocks, and reach the top after a refit.
+    fn validate_changes(&self) -> Result<(), String> {
+        let marked: u32 = self.layers[0].changed.iter().map(|mask| mask.count_ones()).sum();
+        if marked as usize != self.changed {
+            return Err(format!("{marked} marks, {} counted", self.changed));
+        }
+        let listed = self.touched.iter().all(|&block| self.is_touched[block as usize]);
+        let flagged = self.is_touched.iter().filter(|&&flag| flag).count();
+        if !listed || flagged != self.touched.len() {
+            return Err("list and flags of touched blocks differ".to_owned());
+        }
+        let unlisted = |(mask, is_touched): (&u16, &bool)| *mask != 0 && !is_touched;
+        if self.layers[0].changed.iter().zip(&self.is_touched).any(unlisted) {
+            return Err("a changed block is not listed as touched".to_owned());
+        }
+        let leftover = |mask: &u16| self.changed == 0 && *mask != 0;
+        if self.layers.iter().any(|layer| layer.changed.iter().any(leftover)) {
+            return Err("marks are left in the upper layers".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn bounds_of<const D: usize>(block: &Block<D>) -> Bounds<D> {
+    (0..LANES).fold(Bounds::EMPTY, |all, lane| all.merged(&block.lane(lane)))
+}

@@ -1,0 +1,56 @@
+//! Searches of one volume: every object whose box passes a test.
+
+use super::kernel::{Kernel, with_kernel};
+use super::tree::small;
+use super::{Block, Bounds, LANES, NONE, Tree};
+
+/// Blocks that a search may have put off: each of at most seven layers below the top leaves at
+/// most fifteen siblings, and the lowest expansion all sixteen.
+const STACK: usize = 128;
+
+impl<const D: usize> Tree<D> {
+    /// Calls `leaf` with the id of each object whose lane passes `test`, in no particular (but
+    /// always the same) order.
+    ///
+    /// `test` gets a block and returns the mask of lanes that pass. It must be monotone: a lane
+    /// whose box encloses one that passes must pass. Empty lanes may pass, they are skipped.
+    #[inline(always)]
+    pub fn visit(&self, mut test: impl FnMut(&Block<D>) -> u32, mut leaf: impl FnMut(u32)) {
+        debug_assert!(!self.is_stale, "searches need a refitted tree");
+        if self.live == 0 {
+            return;
+        }
+        let (mut stack, mut depth) = ([(0_u8, 0_u32); STACK], 1);
+        let top = self.layers.len() - 1;
+        stack[0] = (u8::try_from(top).expect("2^32 objects make eight layers"), 0);
+        while depth > 0 {
+            depth -= 1;
+            let (layer, block) = stack[depth];
+            let mut mask = test(&self.layers[usize::from(layer)].blocks[block as usize]);
+            while mask != 0 {
+                let child = block * small(LANES) + mask.trailing_zeros();
+                mask &= mask - 1;
+                if layer > 0 {
+                    stack[depth] = (layer - 1, child);
+                    depth += usize::from(self.is_block(layer - 1, child));
+                } else if self.ids[child as usize] != NONE {
+                    leaf(self.ids[child as usize]);
+                }
+            }
+        }
+    }
+
+    /// The layer has such a block: upper lanes beyond the last one have not.
+    pub(super) fn is_block(&self, layer: u8, block: u32) -> bool {
+        (block as usize) < self.layers[usize::from(layer)].blocks.len()
+    }
+
+    /// Calls `leaf` with the id of each object whose box overlaps the query, which may be
+    /// unbounded.
+    pub fn visit_overlapping(&self, query: &Bounds<D>, leaf: impl FnMut(u32)) {
+        let query = query.clamped();
+        with_kernel!(self.lanes, kernel => {
+            self.visit(#[inline(always)] |block| kernel.overlaps(block, &query), leaf);
+        });
+    }
+}

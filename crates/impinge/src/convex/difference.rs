@@ -1,0 +1,134 @@
+//! The difference of two cores as one convex set, in units in which it is about 1 large.
+
+use super::Separation;
+use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit, unit_or};
+use crate::shape::SupportMap;
+
+/// What arithmetic cannot resolve, in units of the pair.
+pub(super) fn noise<N: Real>() -> N {
+    N::lit(8.0) * N::EPSILON
+}
+
+/// The gap between the bounds of an answer that the iterations strive for, in units of the pair.
+///
+/// Cores with flat faces are solved exactly after finitely many steps; this is what curved ones are
+/// cut off at: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
+pub(super) fn tolerance<N: Real>() -> N {
+    max(noise(), N::lit(1.0 / 1_099_511_627_776.0))
+}
+
+/// A point of the difference and the points of the two cores that it is the difference of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex<N: Real, const D: usize> {
+    /// `on2 − on1`.
+    pub(super) point: Vector<N, D>,
+    pub(super) on1: Vector<N, D>,
+    pub(super) on2: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Vertex<N, D> {
+    /// The origin, to fill arrays with.
+    pub(super) fn zero() -> Self {
+        let zero = Vector::<N, D>::zeros();
+        Self { point: zero, on1: zero, on2: zero }
+    }
+}
+
+/// A convex set of differences `b − a`, known by its lowest points.
+pub(crate) trait Difference<N: Real, const D: usize> {
+    /// The point of the set that lies lowest along the unit vector `normal`.
+    fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
+}
+
+/// The cores of two solids, in the frame of the first, shrunk by a power of two.
+///
+/// One unit is at most the sum of the reaches of the cores and the distance of their origins, and
+/// more than half of it.
+pub(super) struct Pair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
+    solid1: &'a A,
+    solid2: &'a B,
+    rotation: Matrix<N, D>,
+    translation: Vector<N, D>,
+    scale: N,
+    /// 1 / `scale`, exactly.
+    shrink: N,
+}
+
+/// A solid's reach; found without squaring where that leaves the range of the numbers.
+fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
+    let reach = solid.reach();
+    if reach.is_finite_number() && reach * reach > N::MIN_POSITIVE {
+        return reach;
+    }
+    let mut largest = N::ZERO;
+    for axis in 0..D {
+        let mut direction = Vector::<N, D>::zeros();
+        direction[axis] = N::ONE;
+        largest = max(max_component(&solid.core_support(&direction).coords), largest);
+        largest = max(max_component(&solid.core_support(&-direction).coords), largest);
+    }
+    largest
+}
+
+impl<'a, N, A, B, const D: usize> Pair<'a, N, A, B, D>
+where
+    N: Real,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    /// `None` if anything in the pose is infinite or NaN.
+    pub(super) fn new(solid1: &'a A, solid2: &'a B, pose12: &Pose<N, D>) -> Option<Self> {
+        if !pose12.is_finite() {
+            return None;
+        }
+        // A quarter of everything: the sum of finite lengths must not overflow.
+        let quarter = N::HALF * N::HALF;
+        let away = unit(&(pose12.translation * quarter)).map_or(N::ZERO, |(_, length)| length);
+        let size = safe_reach(solid1) * quarter + safe_reach(solid2) * quarter + away;
+        let scale = if size > N::ZERO { size.power_of_two_below() } else { N::ONE };
+        let shrink = quarter / scale;
+        let translation = pose12.translation * shrink;
+        let scale = scale / quarter;
+        Some(Self { solid1, solid2, rotation: pose12.rotation, translation, scale, shrink })
+    }
+
+    /// The length of one unit.
+    pub(super) fn scale(&self) -> N {
+        self.scale
+    }
+
+    /// A first guess of the normal: from the middle of the first core to that of the second.
+    pub(super) fn start(&self) -> Vector<N, D> {
+        let middle2 = self.rotation * (self.solid2.center().coords * self.shrink);
+        let away = middle2 + self.translation - self.solid1.center().coords * self.shrink;
+        let mut first_axis = Vector::<N, D>::zeros();
+        first_axis[0] = N::ONE;
+        unit_or(&away, first_axis)
+    }
+
+    /// An answer in units of the pair, in those of the caller.
+    pub(super) fn restored(&self, found: &Separation<N, D>) -> Separation<N, D> {
+        Separation {
+            distance: found.distance * self.scale,
+            normal: found.normal,
+            point1: Point::from(found.point1.coords * self.scale),
+            point2: Point::from(found.point2.coords * self.scale),
+        }
+    }
+}
+
+impl<N, A, B, const D: usize> Difference<N, D> for Pair<'_, N, A, B, D>
+where
+    N: Real,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    #[inline]
+    fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D> {
+        let on1 = self.solid1.core_support(normal).coords * self.shrink;
+        let toward1 = self.rotation.tr_mul(&-normal);
+        let local2 = self.solid2.core_support(&toward1).coords * self.shrink;
+        let on2 = self.rotation * local2 + self.translation;
+        Vertex { point: on2 - on1, on1, on2 }
+    }
+}

@@ -1,0 +1,148 @@
+//! The nearest supporting line of a difference that holds the origin, in the plane.
+//!
+//! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
+//! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Here
+//! the polygon need not hold the origin: sides that see the origin in front of them have a negative
+//! offset, are nearest of all, and grow first.
+
+use smallvec::SmallVec;
+
+use super::Separation;
+use super::candidate::Candidate;
+use super::difference::{Difference, Vertex, noise, tolerance};
+use super::extent::{best_of, farthest, widest_pair};
+use super::refine::{Bundle, refine};
+use super::simplex::Simplex;
+use super::witness::locate;
+use crate::math::{Real, Vector, cross2, perp, unit};
+
+/// Cap on the number of support points. Polygons need as many as they have sides near the origin.
+const ROUNDS: usize = 96;
+
+/// A side of the polygon, from its vertex to that of the next side.
+#[derive(Clone, Copy)]
+struct Side<N: Real> {
+    start: Vertex<N, 2>,
+    /// The unit normal out of the polygon.
+    outward: Vector<N, 2>,
+    /// How far the side lies beyond the origin; infinite if it is too short to have a normal.
+    offset: N,
+}
+
+/// Counter-clockwise.
+type Ring<N> = SmallVec<[Side<N>; 16]>;
+
+impl<N: Real> Side<N> {
+    fn new(start: Vertex<N, 2>, end: &Vertex<N, 2>) -> Self {
+        let edge = end.point - start.point;
+        let sound = edge.norm_squared() > noise::<N>() * noise();
+        match unit(&-perp(&edge)) {
+            Some((outward, _)) if sound => {
+                Self { start, outward, offset: outward.dot(&start.point) }
+            }
+            _ => Self { start, outward: Vector::<N, 2>::zeros(), offset: N::INFINITY },
+        }
+    }
+}
+
+/// See [`super::Simplicial::deepest`].
+pub(super) fn deepest<N: Real>(
+    difference: &dyn Difference<N, 2>,
+    simplex: &Simplex<N, 2>,
+) -> Separation<N, 2> {
+    match from_simplex(simplex).map_or_else(|| from_extent(difference), Ok) {
+        Ok(mut ring) => grow(difference, &mut ring),
+        Err(flat) => flat,
+    }
+}
+
+fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> Ring<N> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(&start, end)| Side::new(start, end)).collect()
+}
+
+/// The triangle that is known to hold the origin, if there is one and it is not a sliver.
+fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<Ring<N>> {
+    let &[a, b, c] = simplex.vertices() else { return None };
+    let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
+    let area = cross2(&e, &f);
+    let thick = N::lit(1.0 / 1024.0) * (e.norm_squared() + f.norm_squared() + g.norm_squared());
+    if area > thick {
+        Some(ring_of(&[a, b, c]))
+    } else if -area > thick {
+        Some(ring_of(&[a, c, b]))
+    } else {
+        None
+    }
+}
+
+/// A polygon of extreme points; or the answer at once, if the difference is a segment or a point.
+fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Separation<N, 2>> {
+    let [a, b] = widest_pair(difference);
+    let edge = b.point - a.point;
+    let Some((along, _)) = unit(&edge).filter(|&(_, width)| width > noise()) else {
+        let axis = Vector::<N, 2>::new(N::ONE, N::ZERO);
+        return Err(locate(&best_of(difference, &[axis]), &[a]));
+    };
+    let left = perp(&along);
+    let (on_left, beyond_left) = farthest(difference, &left, &a.point);
+    let (on_right, beyond_right) = farthest(difference, &-left, &a.point);
+    let corners = [(on_right, beyond_right), (b, N::INFINITY), (on_left, beyond_left)];
+    let mut ring: SmallVec<[Vertex<N, 2>; 4]> = SmallVec::from_slice(&[a]);
+    ring.extend(corners.iter().filter(|(_, beyond)| *beyond > noise()).map(|(vertex, _)| *vertex));
+    if ring.len() > 2 {
+        return Ok(ring_of(&ring));
+    }
+    // A segment through the origin, or nearly: its depth is across it, and zero.
+    Err(locate(&best_of(difference, &[left]), &ring))
+}
+
+/// Where the polygon lies nearest to the origin, once it has grown to the difference there.
+fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separation<N, 2> {
+    let mut best = Candidate::along(difference, -ring[0].outward);
+    let (mut place, mut closed) = (0, false);
+    for _ in 0..ROUNDS {
+        let index = nearest_side(ring);
+        let side = ring[index];
+        let candidate = Candidate::along(difference, -side.outward);
+        if best.improve(&candidate) {
+            place = index;
+        }
+        closed = -best.height - side.offset <= tolerance();
+        if closed {
+            break;
+        }
+        let known = ring.iter().any(|other| other.start.point == candidate.vertex.point);
+        if known || -candidate.height - side.offset <= noise() {
+            // It grows no more: what counts from now on is its certificate.
+            ring[index].offset = -candidate.height;
+            continue;
+        }
+        let next = ring[(index + 1) % ring.len()].start;
+        ring[index] = Side::new(side.start, &candidate.vertex);
+        ring.insert(index + 1, Side::new(candidate.vertex, &next));
+        if place > index {
+            place += 1;
+        }
+    }
+    if !closed {
+        let around = [place + ring.len() - 1, place, place + 1, place + 2];
+        let mut bundle: Bundle<N, 2> =
+            around.iter().map(|index| ring[index % ring.len()].start).collect();
+        bundle.push(best.vertex);
+        refine(difference, &mut bundle, &mut best, N::lit(0.9));
+    }
+    let mut vertices: SmallVec<[Vertex<N, 2>; 16]> = ring.iter().map(|side| side.start).collect();
+    vertices.push(best.vertex);
+    locate(&best, &vertices)
+}
+
+fn nearest_side<N: Real>(ring: &Ring<N>) -> usize {
+    let (mut nearest, mut offset) = (0, N::INFINITY);
+    for (index, side) in ring.iter().enumerate() {
+        if side.offset < offset {
+            (nearest, offset) = (index, side.offset);
+        }
+    }
+    nearest
+}

@@ -1,0 +1,49 @@
+//! How far a difference stretches, and which of its points show it.
+
+use super::candidate::Candidate;
+use super::difference::{Difference, Vertex};
+use crate::math::{Real, Vector};
+
+/// The two points of a difference that are farthest apart along a coordinate axis.
+///
+/// They are at least the diameter of the set over the square root of `D` apart.
+pub(super) fn widest_pair<N: Real, const D: usize>(
+    difference: &dyn Difference<N, D>,
+) -> [Vertex<N, D>; 2] {
+    let (mut pair, mut width) = ([Vertex::zero(); 2], -N::ONE);
+    for axis in 0..D {
+        let mut direction = Vector::<N, D>::zeros();
+        direction[axis] = N::ONE;
+        let ends = [difference.lowest(&direction), difference.lowest(&-direction)];
+        let found = ends[1].point[axis] - ends[0].point[axis];
+        if found > width {
+            (pair, width) = (ends, found);
+        }
+    }
+    pair
+}
+
+/// The point of a difference that lies farthest along the unit vector `outward`, and how far beyond
+/// `base`.
+pub(super) fn farthest<N: Real, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    outward: &Vector<N, D>,
+    base: &Vector<N, D>,
+) -> (Vertex<N, D>, N) {
+    let vertex = difference.lowest(&-outward);
+    (vertex, outward.dot(&(vertex.point - base)))
+}
+
+/// The best of some normals, each tried to both sides.
+pub(super) fn best_of<N: Real, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    normals: &[Vector<N, D>],
+) -> Candidate<N, D> {
+    let mut best = Candidate::along(difference, normals[0]);
+    best.improve(&Candidate::along(difference, -normals[0]));
+    for normal in &normals[1..] {
+        best.improve(&Candidate::along(difference, *normal));
+        best.improve(&Candidate::along(difference, -normal));
+    }
+    best
+}

@@ -1,0 +1,134 @@
+//! The point of a difference nearest to the origin.
+//!
+//! E. Gilbert, D. Johnson and S. Keerthi, "A Fast Procedure for Computing the Distance Between
+//! Complex Objects in Three-Dimensional Space" (1988); the way to stop on the gap between the bounds
+//! is that of G. van den Bergen, "A Fast and Robust GJK Implementation for Collision Detection of
+//! Convex Objects" (1999).
+
+use smallvec::SmallVec;
+
+use super::Separation;
+use super::candidate::Candidate;
+use super::difference::{Difference, Vertex, noise, tolerance};
+use super::refine::{Bundle, refine};
+use super::simplex::{Nearest, Simplex, Simplicial};
+use super::witness::locate;
+use crate::math::{Real, Vector};
+
+/// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
+/// whoever comes here is refined from the best normal so far.
+const ROUNDS: usize = 64;
+
+/// How the search ended.
+enum Outcome {
+    /// The difference lies beyond the limit, certainly.
+    Beyond,
+    /// The origin is in the difference, or nearer to it than the noise.
+    Overlap,
+    /// The nearest point is found, or the arithmetic comes no closer.
+    Apart,
+}
+
+struct Search<N: Real, const D: usize> {
+    simplex: Simplex<N, D>,
+    /// The best normal so far; its height is a lower bound of the distance.
+    best: Candidate<N, D>,
+    /// The length of the nearest point so far: an upper bound.
+    upper: N,
+    /// The last support point, if the simplex has not taken it.
+    spare: Vertex<N, D>,
+}
+
+/// The signed distance of the difference from the origin, starting with the unit vector `start`, in
+/// units of the pair; `None` if it is above `limit`.
+pub(super) fn solve<N, S, const D: usize>(
+    difference: &S,
+    start: &Vector<N, D>,
+    limit: N,
+) -> Option<Separation<N, D>>
+where
+    N: Simplicial<D>,
+    S: Difference<N, D>,
+{
+    let mut search = Search::new(Candidate::along(difference, *start));
+    match search.run(difference, limit) {
+        Outcome::Beyond => None,
+        Outcome::Overlap => Some(N::deepest(difference, &search.simplex)),
+        Outcome::Apart => Some(search.finish(difference)),
+    }
+}
+
+impl<N: Simplicial<D>, const D: usize> Search<N, D> {
+    fn new(first: Candidate<N, D>) -> Self {
+        Self {
+            simplex: Simplex::new(first.vertex),
+            best: first,
+            upper: N::INFINITY,
+            spare: first.vertex,
+        }
+    }
+
+    fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {
+        let mut nearest = Nearest::corner(0, &self.simplex.points()[0]);
+        for _ in 0..ROUNDS {
+            // Written so that NaN counts as an overlap, which ends by caps alone.
+            let away = nearest.squared > noise::<N>() * noise();
+            if nearest.enclosed || !away {
+                return Outcome::Overlap;
+            }
+            self.upper = nearest.squared.sqrt();
+            let candidate = Candidate::along(difference, nearest.point / self.upper);
+            self.best.improve(&candidate);
+            self.spare = candidate.vertex;
+            if self.best.height > limit {
+                return Outcome::Beyond;
+            }
+            let closed = self.upper - self.best.height <= noise::<N>();
+            if closed || self.simplex.contains(&candidate.vertex) {
+                return Outcome::Apart;
+            }
+            match self.advanced(&nearest) {
+                Some(next) => nearest = next,
+                None => return Outcome::Apart,
+            }
+        }
+        Outcome::Apart
+    }
+
+    /// Takes the spare point into the simplex; `None`, and nothing done, if that brings the origin
+    /// no nearer: the arithmetic is at its end.
+    fn advanced(&mut self, nearest: &Nearest<N, D>) -> Option<Nearest<N, D>> {
+        let mut grown = self.simplex;
+        grown.push(self.spare);
+        let next = N::nearest(grown.points());
+        if next.squared >= nearest.squared {
+            return None;
+        }
+        grown.keep(&next.weights);
+        self.simplex = grown;
+        Some(next)
+    }
+
+    /// The bounds lie farther apart than they should.
+    fn open(&self) -> bool {
+        let closed = self.upper - self.best.height <= N::TWO * tolerance();
+        !closed
+    }
+
+    /// The answer from the features found; refined first where the bounds do not meet. That is the
+    /// case near touching, where the direction of the nearest point is mostly rounding errors.
+    fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+        if !self.open() {
+            return locate(&self.best, self.simplex.vertices());
+        }
+        let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
+        bundle.extend([self.best.vertex, self.spare]);
+        refine(difference, &mut bundle, &mut self.best, -N::ONE);
+        let apart = locate(&self.best, &bundle);
+        if !self.open() {
+            return apart;
+        }
+        let deep = N::deepest(difference, &self.simplex);
+        if deep.distance > apart.distance { deep } else { apart }
+    }
+}

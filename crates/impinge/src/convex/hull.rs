@@ -1,0 +1,125 @@
+//! A polytope of triangles that grows, for `epa3`.
+//!
+//! There are no links between faces: to add a point, all faces that it sees are taken away, and the
+//! sides that only one of them had are joined to the point. So the orientation of new faces follows
+//! from that of old ones, never from a sign that rounding could turn, and the surface stays closed
+//! whatever the arithmetic thinks is visible.
+
+use smallvec::SmallVec;
+
+use super::difference::{Vertex, noise};
+use crate::math::{Real, Vector, cross, max, unit};
+
+/// A triangle, counter-clockwise seen from outside.
+#[derive(Clone, Copy)]
+pub(super) struct Face<N: Real> {
+    pub(super) corners: [u16; 3],
+    /// The unit normal out of the polytope.
+    pub(super) outward: Vector<N, 3>,
+    /// How far the face lies beyond the origin; infinite if it is too thin to have a normal.
+    pub(super) offset: N,
+}
+
+pub(super) struct Hull<N: Real> {
+    vertices: SmallVec<[Vertex<N, 3>; 32]>,
+    faces: SmallVec<[Face<N>; 48]>,
+}
+
+impl<N: Real> Hull<N> {
+    /// A tetrahedron, its corners in any order.
+    pub(super) fn new(corners: [Vertex<N, 3>; 4]) -> Self {
+        let [a, b, c, d] = corners.map(|corner| corner.point);
+        let volume = cross(&(b - a), &(c - a)).dot(&(d - a));
+        let mut vertices = SmallVec::from_slice(&corners);
+        if volume > N::ZERO {
+            vertices.swap(1, 2);
+        }
+        let mut hull = Self { vertices, faces: SmallVec::new() };
+        for corners in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
+            hull.add_face(corners);
+        }
+        hull
+    }
+
+    pub(super) fn vertices(&self) -> &[Vertex<N, 3>] {
+        &self.vertices
+    }
+
+    pub(super) fn vertex(&self, index: u16) -> &Vertex<N, 3> {
+        &self.vertices[usize::from(index)]
+    }
+
+    pub(super) fn face(&self, index: usize) -> &Face<N> {
+        &self.faces[index]
+    }
+
+    /// Whether the very point is a vertex already.
+    pub(super) fn contains(&self, vertex: &Vertex<N, 3>) -> bool {
+        self.vertices.iter().any(|known| known.point == vertex.point)
+    }
+
+    /// The face nearest to the origin; `None` if all are too thin.
+    pub(super) fn nearest(&self) -> Option<usize> {
+        let (mut nearest, mut offset) = (None, N::INFINITY);
+        for (index, face) in self.faces.iter().enumerate() {
+            if face.offset < offset {
+                (nearest, offset) = (Some(index), face.offset);
+            }
+        }
+        nearest
+    }
+
+    /// Moves a face outwards to where the difference is known to end.
+    pub(super) fn settle(&mut self, index: usize, offset: N) {
+        self.faces[index].offset = offset;
+    }
+
+    /// Keeps points for the mixing of witnesses, without a face.
+    pub(super) fn keep(&mut self, vertices: &[Vertex<N, 3>]) {
+        self.vertices.extend_from_slice(vertices);
+    }
+
+    /// Grows to a point that lies beyond the face `from`.
+    pub(super) fn extend(&mut self, from: usize, vertex: Vertex<N, 3>) {
+        let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
+        self.vertices.push(vertex);
+        let mut outline: SmallVec<[[u16; 2]; 24]> = SmallVec::new();
+        // Backwards: the face that fills a gap has been looked at, and `from` keeps its place.
+        for index in (0..self.faces.len()).rev() {
+            let face = &self.faces[index];
+            let beyond = face.outward.dot(&vertex.point) - face.offset;
+            if index == from || beyond > noise() {
+                let [a, b, c] = self.faces.swap_remove(index).corners;
+                for side in [[a, b], [b, c], [c, a]] {
+                    toggle(&mut outline, side);
+                }
+            }
+        }
+        for [a, b] in outline {
+            self.add_face([a, b, apex]);
+        }
+    }
+
+    fn add_face(&mut self, corners: [u16; 3]) {
+        let [a, b, c] = corners.map(|corner| self.vertex(corner).point);
+        let (e, f) = (b - a, c - a);
+        let normal = cross(&e, &f);
+        let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
+        let sound = normal.norm_squared() > noise::<N>() * noise() * longest;
+        let face = match unit(&normal) {
+            Some((outward, _)) if sound => Face { corners, outward, offset: outward.dot(&a) },
+            _ => Face { corners, outward: Vector::<N, 3>::zeros(), offset: N::INFINITY },
+        };
+        self.faces.push(face);
+    }
+}
+
+/// Adds a side of a removed face to the outline, or cancels it against the face on its other side.
+fn toggle(outline: &mut SmallVec<[[u16; 2]; 24]>, [a, b]: [u16; 2]) {
+    match outline.iter().position(|&side| side == [b, a]) {
+        Some(index) => {
+            outline.swap_remove(index);
+        }
+        None => outline.push([a, b]),
+    }
+}

@@ -1,0 +1,92 @@
+//! Better normals from a handful of support points.
+
+use smallvec::SmallVec;
+
+use super::candidate::Candidate;
+use super::difference::{Difference, Vertex, noise};
+use super::simplex::Simplicial;
+use crate::math::{Vector, min, unit};
+
+/// Support points near the place of interest.
+pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 10]>;
+
+/// Cap on the number of support points asked for.
+const ROUNDS: usize = 40;
+/// As many points are kept; the one that matters least makes room.
+const KEPT: usize = 8;
+
+/// Raises the height of `best` as far as a local search can.
+///
+/// The height of a normal over a few support points is at least its height over the whole set. So:
+/// take the normal that is best over the bundle, among those of its points, edges and facets; ask
+/// for its support point; add that to the bundle; until the set agrees with the bundle. This is the
+/// cutting-plane method of J. Kelley (1960) on the sphere of normals. Over a set without the origin
+/// it is global. Around a normal of an overlap, `cone` keeps it local: the least cosine between a
+/// normal tried and the best one.
+pub(super) fn refine<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    bundle: &mut Bundle<N, D>,
+    best: &mut Candidate<N, D>,
+    cone: N,
+) {
+    for _ in 0..ROUNDS {
+        let (normal, promise) = most_promising(bundle, &best.normal, cone);
+        let worth_it = promise > best.height + noise::<N>() * N::HALF;
+        if !worth_it {
+            return;
+        }
+        let candidate = Candidate::along(difference, normal);
+        best.improve(&candidate);
+        if bundle.iter().any(|vertex| vertex.point == candidate.vertex.point) {
+            return;
+        }
+        bundle.push(candidate.vertex);
+        drop_idle(bundle, &best.normal);
+    }
+}
+
+/// The unit vector of the largest height over the bundle, and that height.
+fn most_promising<N: Simplicial<D>, const D: usize>(
+    bundle: &Bundle<N, D>,
+    around: &Vector<N, D>,
+    cone: N,
+) -> (Vector<N, D>, N) {
+    let points: SmallVec<[Vector<N, D>; 10]> = bundle.iter().map(|vertex| vertex.point).collect();
+    let (mut best, mut promise) = (*around, -N::MAX);
+    let mut consider = |direction: &Vector<N, D>| {
+        let Some((normal, _)) = unit(direction) else { return };
+        if normal.dot(around) < cone {
+            return;
+        }
+        let height = points.iter().fold(N::MAX, |low, point| min(normal.dot(point), low));
+        if height > promise {
+            (best, promise) = (normal, height);
+        }
+    };
+    N::visit_facets(&points, &mut |facet| {
+        consider(facet);
+        consider(&-facet);
+    });
+    for (index, point) in points.iter().enumerate() {
+        consider(point);
+        for other in &points[index + 1..] {
+            let edge = other - point;
+            consider(&(point - edge * (point.dot(&edge) / edge.norm_squared())));
+        }
+    }
+    (best, promise)
+}
+
+/// Drops the points highest along the best normal until few enough are left.
+fn drop_idle<N: Simplicial<D>, const D: usize>(bundle: &mut Bundle<N, D>, normal: &Vector<N, D>) {
+    while bundle.len() > KEPT {
+        let (mut idle, mut height) = (0, -N::MAX);
+        for (index, vertex) in bundle.iter().enumerate() {
+            let candidate = normal.dot(&vertex.point);
+            if candidate > height {
+                (idle, height) = (index, candidate);
+            }
+        }
+        bundle.swap_remove(idle);
+    }
+}

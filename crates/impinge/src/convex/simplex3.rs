@@ -1,0 +1,119 @@
+//! Simplices of space: points, segments, triangles, tetrahedra.
+
+use super::difference::{Difference, noise};
+use super::simplex::{Nearest, Simplex, Simplicial, nearest_on_segment};
+use super::{Separation, epa3};
+use crate::math::{Real, Vector, cross, max};
+
+impl<N: Real> Simplicial<3> for N {
+    fn nearest(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
+        match points {
+            [point] => Nearest::corner(0, point),
+            [_, _] => nearest_on_segment(points, [0, 1]),
+            [_, _, _] => nearest_on_triangle(points, [0, 1, 2]),
+            _ => nearest_in_tetrahedron(points),
+        }
+    }
+
+    fn visit_facets(points: &[Vector<N, 3>], visit: &mut dyn FnMut(&Vector<N, 3>)) {
+        for (i, a) in points.iter().enumerate() {
+            for (j, b) in points.iter().enumerate().skip(i + 1) {
+                for c in &points[j + 1..] {
+                    visit(&cross(&(b - a), &(c - a)));
+                }
+            }
+        }
+    }
+
+    fn deepest(difference: &dyn Difference<N, 3>, simplex: &Simplex<N, 3>) -> Separation<N, 3> {
+        epa3::deepest(difference, simplex)
+    }
+}
+
+/// The point of a triangle nearest to the origin. Flatter than the noise, it is its three sides.
+fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) -> Nearest<N, 3> {
+    let (a, b, c) = (&points[i], &points[j], &points[k]);
+    let (e, f) = (b - a, c - a);
+    let normal = cross(&e, &f);
+    let squared = normal.norm_squared();
+    let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
+    let flat = squared <= noise::<N>() * noise::<N>() * longest;
+    // The origin's coordinates in the frame of the sides from `a`: errors grow like 1/size only.
+    let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
+    let on_a = N::ONE - on_b - on_c;
+    let mut best: Option<Nearest<N, 3>> = None;
+    for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
+        if flat || weight <= N::ZERO {
+            best = Some(nearest_on_segment(points, side).or_nearer(best));
+        }
+    }
+    best.unwrap_or_else(|| {
+        let mut weights = [N::ZERO; 4];
+        (weights[i], weights[j], weights[k]) = (on_a, on_b, on_c);
+        Nearest::new(normal * (normal.dot(a) / squared), weights)
+    })
+}
+
+/// The four faces; each is opposite to the corner of its number.
+const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
+    // Six times the signed volumes of the tetrahedron and of the parts that the origin cuts it in.
+    let (mut parts, mut largest) = ([N::ZERO; 4], N::ZERO);
+    let mut volume = N::ZERO;
+    for (corner, [i, j, k]) in FACES.into_iter().enumerate() {
+        let normal = cross(&(points[j] - points[i]), &(points[k] - points[i]));
+        parts[corner] = normal.dot(&points[i]);
+        volume = normal.dot(&(points[i] - points[corner]));
+        largest = max(largest, normal.norm_squared());
+    }
+    // Lower than the noise over its largest face: signs mean nothing, all four faces compete.
+    let flat = volume * volume <= noise::<N>() * noise::<N>() * largest;
+    let mut best: Option<Nearest<N, 3>> = None;
+    for (part, face) in parts.into_iter().zip(FACES) {
+        if flat || part * volume <= N::ZERO {
+            best = Some(nearest_on_triangle(points, face).or_nearer(best));
+        }
+    }
+    best.unwrap_or_else(|| Nearest::enclosed(parts.map(|part| part / volume)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nearest(points: &[[f64; 3]]) -> Nearest<f64, 3> {
+        let points: Vec<_> = points.iter().map(|&p| Vector::<f64, 3>::from(p)).collect();
+        <f64 as Simplicial<3>>::nearest(&points)
+    }
+
+    const CORNER: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+
+    fn moved(offset: [f64; 3]) -> Vec<[f64; 3]> {
+        CORNER.iter().map(|p| [p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]]).collect()
+    }
+
+    #[test]
+    fn features_of_a_tetrahedron() {
+        let inside = nearest(&moved([-1.0, -1.0, -1.0]));
+        assert!(inside.enclosed, "the origin is inside");
+        assert_eq!(inside.weights, [0.25; 4], "at the point (1, 1, 1) of the corner of a cube");
+        let face = nearest(&moved([-1.0, -1.0, 2.0]));
+        assert_eq!(face.point, Vector::<f64, 3>::new(0.0, 0.0, 2.0), "under the face z = 0");
+        assert_eq!(face.weights, [0.5, 0.25, 0.25, 0.0], "of three corners");
+        let edge = nearest(&moved([-1.0, 3.0, 4.0]));
+        assert_eq!((edge.squared, edge.weights[0], edge.weights[1]), (25.0, 0.75, 0.25), "edge");
+        assert_eq!(nearest(&moved([1.0, 2.0, 2.0])).squared, 9.0, "the corner itself");
+    }
+
+    #[test]
+    fn flat_tetrahedra_fall_back_to_faces() {
+        let square = [[-1.0, -1.0, 0.5], [1.0, -1.0, 0.5], [1.0, 1.0, 0.5], [-1.0, 1.0, 0.5]];
+        let flat = nearest(&square);
+        assert!(!flat.enclosed, "no volume");
+        assert_eq!(flat.point, Vector::<f64, 3>::new(0.0, 0.0, 0.5), "in the square");
+        let line = nearest(&[[-1.0, 0.5, 0.0], [0.5, 0.5, 0.0], [1.0, 0.5, 0.0], [2.0, 0.5, 0.0]]);
+        assert_eq!(line.squared, 0.25, "on a line");
+    }
+}

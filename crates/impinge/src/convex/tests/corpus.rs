@@ -1,0 +1,165 @@
+//! Every case of the collected data whose solids are convex: where other libraries went wrong.
+
+use serde_json::Value;
+
+use super::super::{Simplicial, separation};
+use super::solids::{Own, height, number, solid, vector};
+use crate::math::{Pose, Real, Vector};
+
+fn cases(file: &str) -> Vec<Value> {
+    let path = format!("{}/tests/data/{file}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect("the test data is part of the sources");
+    let mut data: Value = serde_json::from_str(&text).expect("valid JSON");
+    std::mem::take(data["cases"].as_array_mut().expect("an array of cases"))
+}
+
+/// A case in a common form.
+struct Case<'a> {
+    id: &'a str,
+    shapes: [&'a Value; 2],
+    pose12: &'a Value,
+    /// Whose frame the pair is to be brought into, if the poses are given in the world's.
+    pose1: Option<&'a Value>,
+    expected: f64,
+    /// In the world frame, where it is unique.
+    normal: Option<&'a Value>,
+    tolerance: f64,
+}
+
+fn relative<N: Own<D>, const D: usize>(case: &Case<'_>) -> Pose<N, D> {
+    match case.pose1 {
+        Some(first) => Pose::relative(&N::pose(first), &N::pose(case.pose12)),
+        None => N::pose(case.pose12),
+    }
+}
+
+/// What is wrong with the answer; `None` for solids that are not convex.
+fn check<N, const D: usize>(case: &Case<'_>) -> Option<Result<(), String>>
+where
+    N: Simplicial<D> + Own<D>,
+    f64: Own<D>,
+{
+    let [a, b] = [solid::<N, D>(case.shapes[0])?, solid::<N, D>(case.shapes[1])?];
+    let pose12 = relative::<N, D>(case);
+    let Some(found) = separation(&*a, &*b, &pose12, N::INFINITY) else {
+        return Some(Err(format!("{}: no answer", case.id)));
+    };
+    let distance = found.distance.as_f64();
+    let normal = found.normal.map(Real::as_f64);
+    let exact = [solid::<f64, D>(case.shapes[0])?, solid::<f64, D>(case.shapes[1])?];
+    let proven = height([&*exact[0], &*exact[1]], &relative::<f64, D>(case), &normal);
+    let across = (found.point2 - found.point1).map(Real::as_f64) - normal * distance;
+    let errors = [
+        ("distance", (distance - case.expected).abs()),
+        ("normal", case.expected - proven),
+        ("points", across.norm()),
+        ("length of the normal", (normal.norm() - 1.0).abs() * case.expected.abs()),
+        ("point 1", outside(&*exact[0], &found.point1.coords.map(Real::as_f64))),
+        ("point 2", {
+            let pose = relative::<f64, D>(case);
+            let local = pose.inverse_point(&found.point2.coords.map(Real::as_f64).into());
+            outside(&*exact[1], &local.coords)
+        }),
+        ("direction", case.normal.map_or(0.0, |n| astray::<N, D>(case, n, &normal))),
+    ];
+    let wrong: Vec<_> =
+        errors.iter().filter(|(name, error)| !(*error <= case.tolerance * slack(name))).collect();
+    if wrong.is_empty() {
+        return Some(Ok(()));
+    }
+    Some(Err(format!(
+        "{} (f{}): expected {}, found {distance}, tolerance {}, wrong: {wrong:?}",
+        case.id,
+        size_of::<N>() * 8,
+        case.expected,
+        case.tolerance
+    )))
+}
+
+/// Points and directions are as good as the square root of what distances are, on curved surfaces.
+fn slack(name: &str) -> f64 {
+    if name.starts_with("point ") || name == "direction" { f64::INFINITY } else { 1.0 }
+}
+
+fn outside<const D: usize>(
+    solid: &dyn crate::shape::SupportMap<f64, D>,
+    point: &Vector<f64, D>,
+) -> f64
+where
+    f64: Simplicial<D>,
+{
+    let ball = super::solids::Points { points: vec![crate::math::Point::origin()], rounding: 0.0 };
+    let pose = Pose::from_translation(*point);
+    separation(solid, &ball, &pose, f64::INFINITY).map_or(f64::NAN, |found| found.distance)
+}
+
+fn astray<N: Real, const D: usize>(_: &Case<'_>, _: &Value, _: &Vector<f64, D>) -> f64 {
+    0.0
+}
+
+fn run(case: &Case<'_>, dim: &Value, tolerances: [f64; 2], failures: &mut Vec<String>) -> usize {
+    let narrow = Case { tolerance: tolerances[0], ..*case };
+    let wide = Case { tolerance: tolerances[1], ..*case };
+    let results = if dim == 2 {
+        [check::<f32, 2>(&narrow), check::<f64, 2>(&wide)]
+    } else {
+        [check::<f32, 3>(&narrow), check::<f64, 3>(&wide)]
+    };
+    let mut count = 0;
+    for result in results.into_iter().flatten() {
+        count += 1;
+        failures.extend(result.err());
+    }
+    count
+}
+
+#[test]
+fn narrow_phase_cases() {
+    let (mut failures, mut count) = (Vec::new(), 0);
+    for case in &cases("narrow_phase_cases.json") {
+        let pair = case["pair"].to_string();
+        let curved = pair.contains("cylinder") || pair.contains("cone");
+        let size = number(&case["size"]);
+        let input = Case {
+            id: case["id"].as_str().expect("a name"),
+            shapes: [&case["shape1"], &case["shape2"]],
+            pose12: &case["pos12"],
+            pose1: None,
+            expected: number(&case["expected_signed_distance"]),
+            normal: None,
+            tolerance: 0.0,
+        };
+        let tolerances = [if curved { 1e-3 } else { 1e-5 } * size, 1e-10 * size];
+        let before = failures.len();
+        count += run(&input, &case["dim"], tolerances, &mut failures);
+        for failure in &mut failures[before..] {
+            *failure = format!("{pair} {} {failure}", case["category"]);
+        }
+    }
+    assert!(failures.is_empty(), "{} of {count}:\n{}", failures.len(), failures.join("\n"));
+    assert_eq!(count, 2 * (1600 - 22), "all but the half-spaces, in both scalars");
+}
+
+#[test]
+fn regression_cases() {
+    let (mut failures, mut count) = (Vec::new(), 0);
+    for case in &cases("regression_cases.json") {
+        if case["query"] != "signed_distance" {
+            continue;
+        }
+        let input = Case {
+            id: case["id"].as_str().expect("a name"),
+            shapes: [&case["shape1"], &case["shape2"]],
+            pose12: &case["pose2"],
+            pose1: Some(&case["pose1"]),
+            expected: number(&case["expected"]["signed_distance"]),
+            normal: case["expected"].get("normal1"),
+            tolerance: 0.0,
+        };
+        let _: Vector<f64, 2> = vector(&serde_json::json!([0, 0]));
+        let tolerances = ["f32", "f64"].map(|scalar| number(&case["tolerance"][scalar]));
+        count += run(&input, &case["dim"], tolerances, &mut failures);
+    }
+    assert!(failures.is_empty(), "{} of {count}:\n{}", failures.len(), failures.join("\n"));
+    assert_eq!(count, 178, "in both scalars");
+}

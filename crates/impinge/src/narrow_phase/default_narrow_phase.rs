@@ -1,0 +1,286 @@
+//! The narrow phase of a world: which pairs there are and which algorithm serves each.
+
+use core::fmt;
+use std::sync::OnceLock;
+
+use super::detector::DefaultProximityDispatcher;
+use super::entry::{
+    Change, ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry,
+};
+use super::generator::DefaultContactDispatcher;
+use super::lanes::{Carried, Lane, Lanes, Location, kind_pair};
+use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
+use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
+use crate::math::Space;
+use crate::pairs::PairTable;
+use crate::query::ManifoldRequest;
+
+/// Contacts and proximities of the pairs of a world, kept from update to update.
+///
+/// Pairs of the library's own algorithms lie in dense arrays, one per pair of shape kinds, and are
+/// updated as a batch, without a virtual call or an allocation per pair; pairs that a custom
+/// dispatcher serves are updated one by one. Pairs of which neither object changed are skipped.
+pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
+    pub(super) contact_dispatcher: Box<dyn ContactDispatcher<N, D>>,
+    pub(super) proximity_dispatcher: Box<dyn ProximityDispatcher<N, D>>,
+    /// All pairs, by handle index.
+    pub(super) pairs: PairTable,
+    /// Where the state of each pair lies; in step with `pairs`.
+    pub(super) locations: Vec<Location>,
+    pub(super) lanes: Lanes<N, D>,
+    pub(crate) ids: IdAllocator,
+    /// The pairs made due since the last update; some may be gone again.
+    pub(super) due: Vec<(u32, u32)>,
+    /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
+    pub(super) order: OnceLock<Vec<u32>>,
+}
+
+impl<N: Space<D>, const D: usize> Default for DefaultNarrowPhase<N, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for DefaultNarrowPhase<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DefaultNarrowPhase")
+            .field("pairs", &self.pairs.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
+    /// A narrow phase without pairs that uses the library's own algorithms.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_dispatchers(
+            Box::new(DefaultContactDispatcher::<D>::new()),
+            Box::new(DefaultProximityDispatcher::<D>::new()),
+        )
+    }
+
+    /// A narrow phase without pairs that takes its algorithms from the given dispatchers.
+    #[must_use]
+    pub fn with_dispatchers(
+        contacts: Box<dyn ContactDispatcher<N, D>>,
+        proximity: Box<dyn ProximityDispatcher<N, D>>,
+    ) -> Self {
+        Self {
+            contact_dispatcher: contacts,
+            proximity_dispatcher: proximity,
+            pairs: PairTable::new(),
+            locations: Vec::new(),
+            lanes: Lanes::default(),
+            ids: IdAllocator::new(),
+            due: Vec::new(),
+            order: OnceLock::new(),
+        }
+    }
+
+    /// Takes a pair in and chooses its algorithm; no geometric query yet. Nothing happens if the
+    /// pair is there already.
+    pub(crate) fn pair_started(&mut self, table: &ObjectTable<N, D>, first: u32, second: u32) {
+        if !self.pairs.insert(first, second).is_new {
+            return;
+        }
+        self.order.take();
+        let (location, _) = self.enter(table, (first, second), Carried::Nothing);
+        self.locations.push(location);
+    }
+
+    /// Lets a pair go, with the event that it is over if it had begun.
+    pub(crate) fn pair_stopped(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        first: u32,
+        second: u32,
+        events: &mut Events,
+    ) {
+        let Some(index) = self.pairs.index_of(first, second) else { return };
+        let carried = self.leave(index);
+        push_change(table, (first, second), carried.end(), events);
+        let removed = self.pairs.remove_at(index);
+        self.locations.swap_remove(removed.index);
+        self.order.take();
+    }
+
+    /// Chooses the algorithms of an object's pairs anew, after its shape or query type changed. The
+    /// names of contacts survive where the kind of query and the features do.
+    pub(crate) fn object_changed(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        object: u32,
+        events: &mut Events,
+    ) {
+        let partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
+        for (_, index) in partners {
+            let key = self.pairs.pairs()[index];
+            if !self.adjust(table, key, index) {
+                let carried = self.leave(index);
+                let (location, change) = self.enter(table, key, carried);
+                self.locations[index] = location;
+                push_change(table, key, change, events);
+            }
+        }
+    }
+
+    /// The library's lane for a pair, if it serves it.
+    fn built_in_lane(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> Option<(Lane, usize)> {
+        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
+        match table.query(key.0).pair(table.query(key.1)) {
+            PairQuery::Contacts { .. } => {
+                let max_points = self.contact_dispatcher.built_in(a, b)?;
+                Some((Lane::Contacts(kind_pair(a, b)), max_points))
+            }
+            PairQuery::Proximity { .. } => {
+                let built_in = self.proximity_dispatcher.is_built_in(a, b);
+                built_in.then(|| (Lane::Proximity(kind_pair(a, b)), 0))
+            }
+        }
+    }
+
+    /// Keeps a pair's state if the same built-in query still serves it, asking for what is asked
+    /// now; moves it to the lane of its new kinds. Answers whether it could.
+    fn adjust(&mut self, table: &ObjectTable<N, D>, key: (u32, u32), index: usize) -> bool {
+        let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
+        let Location { lane, place } = self.locations[index];
+        let query = table.query(key.0).pair(table.query(key.1));
+        match (lane, new_lane, query) {
+            (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
+                let (mut entry, moved) = self.lanes.contacts[usize::from(old)].swap_remove(place);
+                self.note_move(moved, place);
+                entry.request = request(linear, angular, max_points);
+                let place = self.lanes.contacts[usize::from(new)].push(key, entry);
+                self.locations[index] = Location { lane: new_lane, place };
+            }
+            (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
+                let (mut entry, moved) = self.lanes.proximity[usize::from(old)].swap_remove(place);
+                self.note_move(moved, place);
+                entry.margin = margin;
+                let place = self.lanes.proximity[usize::from(new)].push(key, entry);
+                self.locations[index] = Location { lane: new_lane, place };
+            }
+            _ => return false,
+        }
+        self.lanes.make_due(self.locations[index]);
+        self.due.push(key);
+        true
+    }
+
+    /// Finds an algorithm for a pair and enters its state, going on from `carried`.
+    fn enter(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        key: (u32, u32),
+        carried: Carried,
+    ) -> (Location, Option<Change>) {
+        self.due.push(key);
+        match table.query(key.0).pair(table.query(key.1)) {
+            PairQuery::Contacts { linear, angular } => {
+                self.enter_contacts(table, key, carried, (linear, angular))
+            }
+            PairQuery::Proximity { margin } => self.enter_proximity(table, key, carried, margin),
+        }
+    }
+
+    fn enter_contacts(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        key: (u32, u32),
+        carried: Carried,
+        (linear, angular): (N, N),
+    ) -> (Location, Option<Change>) {
+        if let Some((lane, max_points)) = self.built_in_lane(table, key) {
+            let Lane::Contacts(group) = lane else { unreachable!("the query asks for contacts") };
+            let (touch, change) = carried.into_touch();
+            let number = self.ids.allocate();
+            let entry = ContactEntry::new(request(linear, angular, max_points), number, touch);
+            let place = self.lanes.contacts[usize::from(group)].push(key, entry);
+            return (Location { lane, place }, change);
+        }
+        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
+        let Some(algorithm) = self.contact_dispatcher.get_contact_algorithm(a, b) else {
+            return (NOWHERE, carried.end());
+        };
+        let (touch, change) = carried.into_touch();
+        let half = angular * N::HALF;
+        let prediction = ContactPrediction::new(linear, half, half);
+        let entry = CustomContactEntry { algorithm, prediction, due: true, touch };
+        let place = self.lanes.custom_contacts.push(key, entry);
+        (Location { lane: Lane::CustomContacts, place }, change)
+    }
+
+    fn enter_proximity(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        key: (u32, u32),
+        carried: Carried,
+        margin: N,
+    ) -> (Location, Option<Change>) {
+        if let Some((lane, _)) = self.built_in_lane(table, key) {
+            let Lane::Proximity(group) = lane else { unreachable!("the query asks for proximity") };
+            let (status, change) = carried.into_status();
+            let entry = ProximityEntry { margin, due: true, status };
+            let place = self.lanes.proximity[usize::from(group)].push(key, entry);
+            return (Location { lane, place }, change);
+        }
+        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
+        let Some(algorithm) = self.proximity_dispatcher.get_proximity_algorithm(a, b) else {
+            return (NOWHERE, carried.end());
+        };
+        let (status, change) = carried.into_status();
+        let entry = CustomProximityEntry { algorithm, margin, due: true, status };
+        let place = self.lanes.custom_proximity.push(key, entry);
+        (Location { lane: Lane::CustomProximity, place }, change)
+    }
+
+    /// Takes the state of a pair out of its lane and keeps the location of whoever moved true.
+    fn leave(&mut self, index: usize) -> Carried {
+        let location = self.locations[index];
+        let (carried, moved) = self.lanes.take(location);
+        self.note_move(moved, location.place);
+        carried
+    }
+
+    /// A removal from a lane gave the place of the removed pair to another.
+    fn note_move(&mut self, moved: Option<(u32, u32)>, place: u32) {
+        let Some((first, second)) = moved else { return };
+        let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
+        self.locations[index].place = place;
+    }
+}
+
+/// Where pairs without an algorithm are.
+const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
+
+/// What a pair's contacts are asked for.
+fn request<N: Space<D>, const D: usize>(
+    linear: N,
+    angular: N,
+    max_points: usize,
+) -> ManifoldRequest<N> {
+    ManifoldRequest { prediction: linear, sine: angular.sine_cosine().0, max_points }
+}
+
+/// Puts what happened to a pair into events.
+pub(super) fn push_change<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+    change: Option<Change>,
+    events: &mut Events,
+) {
+    let (collider1, collider2) = (table.handle(first), table.handle(second));
+    match change {
+        Some(Change::Contact { touching: true }) => {
+            events.push_contact(ContactEvent::Started(collider1, collider2));
+        }
+        Some(Change::Contact { touching: false }) => {
+            events.push_contact(ContactEvent::Stopped(collider1, collider2));
+        }
+        Some(Change::Proximity(prev_status, new_status)) => {
+            let event = ProximityEvent { collider1, collider2, prev_status, new_status };
+            events.push_proximity(event);
+        }
+        None => {}
+    }
+}

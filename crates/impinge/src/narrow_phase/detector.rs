@@ -1,0 +1,74 @@
+//! The library's own proximity algorithm as an object, for use alone.
+
+use super::state::Posed;
+use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
+use crate::math::Space;
+use crate::query::Proximity;
+use crate::shape::Shape;
+
+/// The nearness of any two built-in solids.
+#[derive(Clone, Copy, Debug)]
+pub struct PairProximityDetector {
+    proximity: Proximity,
+}
+
+impl PairProximityDetector {
+    /// A detector that holds `Disjoint`.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { proximity: Proximity::Disjoint }
+    }
+}
+
+impl Default for PairProximityDetector {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetector {
+    fn update(
+        &mut self,
+        _: &dyn ProximityDispatcher<N, D>,
+        ma: &N::Isometry,
+        a: &dyn Shape<N, D>,
+        mb: &N::Isometry,
+        b: &dyn Shape<N, D>,
+        margin: N,
+    ) -> bool {
+        let (pose1, pose2) = (N::pose(ma), N::pose(mb));
+        let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b };
+        self.proximity = (N::tables().proximity)(&posed, margin);
+        true
+    }
+
+    fn proximity(&self) -> Proximity {
+        self.proximity
+    }
+}
+
+/// Chooses the library's own algorithm for every two solids.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DefaultProximityDispatcher<const D: usize>;
+
+impl<const D: usize> DefaultProximityDispatcher<D> {
+    /// The dispatcher; it has no settings.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self
+    }
+}
+
+impl<N: Space<D>, const D: usize> ProximityDispatcher<N, D> for DefaultProximityDispatcher<D> {
+    fn get_proximity_algorithm(
+        &self,
+        _: &dyn Shape<N, D>,
+        _: &dyn Shape<N, D>,
+    ) -> Option<ProximityAlgorithm<N, D>> {
+        Some(Box::new(PairProximityDetector::new()))
+    }
+
+    fn is_built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> bool {
+        true
+    }
+}

@@ -1,0 +1,195 @@
+//! What the narrow phase keeps of a pair, by who computes it and what is asked.
+
+use core::fmt;
+use std::sync::OnceLock;
+
+use super::state::{ContactState, Posed, proximity_of};
+use super::traits::{
+    ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
+};
+use super::{IdAllocator, ObjectTable};
+use crate::math::{Real, Space};
+use crate::query::{ContactManifold, ManifoldRequest, Proximity};
+
+/// What an update, or the end, of a pair means to the outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// The pair came to have contact points, or lost its last.
+    Contact { touching: bool },
+    /// The proximity changed from the first to the second.
+    Proximity(Proximity, Proximity),
+}
+
+/// The two solids of a pair, as of the last update.
+pub(crate) fn posed<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+) -> Posed<'_, N, D> {
+    Posed {
+        pose1: table.pose(first),
+        shape1: table.shape(first).as_ref(),
+        pose2: table.pose(second),
+        shape2: table.shape(second).as_ref(),
+    }
+}
+
+/// Whether a pair touches, and the event that a change of that is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Touch {
+    pub(crate) touching: bool,
+}
+
+impl Touch {
+    fn set(&mut self, touching: bool) -> Option<Change> {
+        let changed = touching != self.touching;
+        self.touching = touching;
+        changed.then_some(Change::Contact { touching })
+    }
+
+    /// What the end of the pair means.
+    pub(crate) fn end(self) -> Option<Change> {
+        self.touching.then_some(Change::Contact { touching: false })
+    }
+}
+
+/// The last status of a pair, and the event that a change of it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Status(pub(crate) Proximity);
+
+impl Status {
+    fn set(&mut self, new: Proximity) -> Option<Change> {
+        let old = core::mem::replace(&mut self.0, new);
+        (old != new).then_some(Change::Proximity(old, new))
+    }
+
+    /// What the end of the pair means.
+    pub(crate) fn end(mut self) -> Option<Change> {
+        self.set(Proximity::Disjoint)
+    }
+}
+
+/// Contacts by the library's own algorithm.
+#[derive(Debug)]
+pub(crate) struct ContactEntry<N: Real, const D: usize> {
+    pub(crate) request: ManifoldRequest<N>,
+    /// Names the pair's contacts.
+    pub(crate) number: u64,
+    /// To be updated even if both objects stand still.
+    pub(crate) due: bool,
+    pub(crate) touch: Touch,
+    pub(crate) state: ContactState<N, D>,
+    /// Made when first read after an update.
+    public: OnceLock<Box<ContactManifold<N, D>>>,
+}
+
+impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
+    pub(crate) fn new(request: ManifoldRequest<N>, number: u64, touch: Touch) -> Self {
+        let state = ContactState::default();
+        Self { request, number, due: true, touch, state, public: OnceLock::new() }
+    }
+
+    /// Brings the contacts up to date.
+    pub(crate) fn update(&mut self, posed: &Posed<'_, N, D>) -> Option<Change> {
+        self.due = false;
+        self.public.take();
+        self.state.update(posed, &self.request);
+        self.touch.set(self.state.len() > 0)
+    }
+
+    /// The manifold as users see it.
+    pub(crate) fn manifold(&self, posed: &Posed<'_, N, D>) -> &ContactManifold<N, D> {
+        let make = || Box::new((N::tables().public_manifold)(&self.state, posed, self.number));
+        self.public.get_or_init(make)
+    }
+}
+
+/// Proximity by the library's own algorithm.
+#[derive(Debug)]
+pub(crate) struct ProximityEntry<N: Real> {
+    pub(crate) margin: N,
+    pub(crate) due: bool,
+    pub(crate) status: Status,
+}
+
+impl<N: Real> ProximityEntry<N> {
+    /// Brings the status up to date.
+    pub(crate) fn update<const D: usize>(&mut self, posed: &Posed<'_, N, D>) -> Option<Change>
+    where
+        N: Space<D>,
+    {
+        self.due = false;
+        self.status.set(proximity_of(posed, self.margin))
+    }
+}
+
+/// Contacts by an algorithm of the user's.
+pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
+    pub(crate) algorithm: ContactAlgorithm<N, D>,
+    pub(crate) prediction: ContactPrediction<N>,
+    pub(crate) due: bool,
+    pub(crate) touch: Touch,
+}
+
+impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
+    /// Brings the contacts up to date.
+    pub(crate) fn update(
+        &mut self,
+        dispatcher: &dyn ContactDispatcher<N, D>,
+        table: &ObjectTable<N, D>,
+        (first, second): (u32, u32),
+        ids: &mut IdAllocator,
+    ) -> Option<Change> {
+        self.due = false;
+        let able = self.algorithm.update(
+            dispatcher,
+            table.isometry(first),
+            table.shape(first).as_ref(),
+            table.isometry(second),
+            table.shape(second).as_ref(),
+            &self.prediction,
+            ids,
+        );
+        self.touch.set(able && self.algorithm.num_contacts() > 0)
+    }
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CustomContactEntry").field("touch", &self.touch).finish_non_exhaustive()
+    }
+}
+
+/// Proximity by an algorithm of the user's.
+pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
+    pub(crate) algorithm: ProximityAlgorithm<N, D>,
+    pub(crate) margin: N,
+    pub(crate) due: bool,
+    pub(crate) status: Status,
+}
+
+impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
+    /// Brings the status up to date.
+    pub(crate) fn update(
+        &mut self,
+        dispatcher: &dyn ProximityDispatcher<N, D>,
+        table: &ObjectTable<N, D>,
+        (first, second): (u32, u32),
+    ) -> Option<Change> {
+        self.due = false;
+        let able = self.algorithm.update(
+            dispatcher,
+            table.isometry(first),
+            table.shape(first).as_ref(),
+            table.isometry(second),
+            table.shape(second).as_ref(),
+            self.margin,
+        );
+        self.status.set(if able { self.algorithm.proximity() } else { Proximity::Disjoint })
+    }
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for CustomProximityEntry<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CustomProximityEntry").field("status", &self.status).finish_non_exhaustive()
+    }
+}

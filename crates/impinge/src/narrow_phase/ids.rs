@@ -1,0 +1,24 @@
+//! Where the names of contacts come from.
+
+/// Gives each pair a number that no other pair of the same world has or had.
+///
+/// A contact is named by its pair's number and a number within the pair, so that names need no
+/// coordination between pairs that are updated at the same time.
+#[derive(Clone, Debug, Default)]
+pub struct IdAllocator {
+    next: u64,
+}
+
+impl IdAllocator {
+    /// An allocator that has given nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { next: 0 }
+    }
+
+    /// The next number.
+    pub fn allocate(&mut self) -> u64 {
+        self.next += 1;
+        self.next - 1
+    }
+}

@@ -1,0 +1,147 @@
+//! Where the state of each pair lies: one lane per algorithm.
+
+use super::ObjectTable;
+use super::entry::{
+    Change, ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry, Status, Touch,
+};
+use super::group::Group;
+use crate::math::{Real, Space};
+use crate::query::Proximity;
+use crate::shape::{Shape, ShapeKind};
+
+/// How many pairs of kinds there are; one built-in lane each for contacts and for proximity.
+const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
+
+/// Which algorithm serves a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lane {
+    /// The library's contacts, for this pair of kinds.
+    Contacts(u8),
+    /// The library's proximity, for this pair of kinds.
+    Proximity(u8),
+    CustomContacts,
+    CustomProximity,
+    /// The dispatcher has no algorithm for the pair.
+    Nothing,
+}
+
+/// A lane and the place in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Location {
+    pub(crate) lane: Lane,
+    pub(crate) place: u32,
+}
+
+/// What a pair carries over when its algorithm changes: the facts that events are told by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Carried {
+    Contacts(Touch),
+    Proximity(Status),
+    Nothing,
+}
+
+impl Carried {
+    /// What the end of the pair means.
+    pub(crate) fn end(self) -> Option<Change> {
+        match self {
+            Self::Contacts(touch) => touch.end(),
+            Self::Proximity(status) => status.end(),
+            Self::Nothing => None,
+        }
+    }
+
+    /// The touch to go on with, and the event if the pair had another query type before.
+    pub(crate) fn into_touch(self) -> (Touch, Option<Change>) {
+        match self {
+            Self::Contacts(touch) => (touch, None),
+            other => (Touch::default(), other.end()),
+        }
+    }
+
+    /// The status to go on with, and the event if the pair had another query type before.
+    pub(crate) fn into_status(self) -> (Status, Option<Change>) {
+        match self {
+            Self::Proximity(status) => (status, None),
+            other => (Status(Proximity::Disjoint), other.end()),
+        }
+    }
+}
+
+/// The states of all pairs, grouped by algorithm in dense arrays.
+#[derive(Debug)]
+pub(crate) struct Lanes<N: Space<D>, const D: usize> {
+    pub(crate) contacts: Vec<Group<ContactEntry<N, D>>>,
+    pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
+    pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
+    pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
+}
+
+impl<N: Space<D>, const D: usize> Default for Lanes<N, D> {
+    fn default() -> Self {
+        Self {
+            contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            proximity: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            custom_contacts: Group::default(),
+            custom_proximity: Group::default(),
+        }
+    }
+}
+
+/// The number of the pair of kinds, the same for both orders.
+pub(crate) fn kind_pair<N: Real, const D: usize>(
+    shape1: &dyn Shape<N, D>,
+    shape2: &dyn Shape<N, D>,
+) -> u8 {
+    let (kind1, kind2) = (shape1.geometry().kind(), shape2.geometry().kind());
+    let (low, high) = if kind1 <= kind2 { (kind1, kind2) } else { (kind2, kind1) };
+    let number = low as usize * ShapeKind::COUNT + high as usize;
+    u8::try_from(number).expect("there are fewer than 16 kinds")
+}
+
+impl<N: Space<D>, const D: usize> Lanes<N, D> {
+    /// Takes a pair's state out; also answers which pair now has its place.
+    pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<(u32, u32)>) {
+        let place = location.place;
+        match location.lane {
+            Lane::Contacts(lane) => {
+                let (entry, moved) = self.contacts[usize::from(lane)].swap_remove(place);
+                (Carried::Contacts(entry.touch), moved)
+            }
+            Lane::Proximity(lane) => {
+                let (entry, moved) = self.proximity[usize::from(lane)].swap_remove(place);
+                (Carried::Proximity(entry.status), moved)
+            }
+            Lane::CustomContacts => {
+                let (entry, moved) = self.custom_contacts.swap_remove(place);
+                (Carried::Contacts(entry.touch), moved)
+            }
+            Lane::CustomProximity => {
+                let (entry, moved) = self.custom_proximity.swap_remove(place);
+                (Carried::Proximity(entry.status), moved)
+            }
+            Lane::Nothing => (Carried::Nothing, None),
+        }
+    }
+
+    /// Asks for a pair to be updated even if both objects stand still.
+    pub(crate) fn make_due(&mut self, location: Location) {
+        let place = location.place;
+        match location.lane {
+            Lane::Contacts(lane) => self.contacts[usize::from(lane)].state_mut(place).due = true,
+            Lane::Proximity(lane) => self.proximity[usize::from(lane)].state_mut(place).due = true,
+            Lane::CustomContacts => self.custom_contacts.state_mut(place).due = true,
+            Lane::CustomProximity => self.custom_proximity.state_mut(place).due = true,
+            Lane::Nothing => {}
+        }
+    }
+}
+
+/// A pair needs a new query: it is due, or one of its objects changed.
+#[inline]
+pub(crate) fn needs_update<N: Space<D>, const D: usize>(
+    due: bool,
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+) -> bool {
+    due || table.has_changed(first) || table.has_changed(second)
+}

@@ -1,0 +1,79 @@
+//! What is kept of one built-in pair between updates, and how it is brought up to date.
+
+use crate::math::{Pose, Real, Space};
+use crate::query::{
+    ContactManifold, ManifoldRequest, Pair, Proximity, Placement, RawManifold, canonical, materialise,
+};
+use crate::shape::Shape;
+
+/// Two solids placed in the world.
+#[derive(Clone, Copy)]
+pub(crate) struct Posed<'a, N: Real, const D: usize> {
+    pub(crate) pose1: &'a Pose<N, D>,
+    pub(crate) shape1: &'a dyn Shape<N, D>,
+    pub(crate) pose2: &'a Pose<N, D>,
+    pub(crate) shape2: &'a dyn Shape<N, D>,
+}
+
+impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
+    /// The pair in the order in which every query computes it.
+    fn canonical(&self) -> (Pair<'a, N, D>, bool) {
+        canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
+    }
+}
+
+/// The contacts of a pair, in the frame of the solid that comes first in canonical order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactState<N: Real, const D: usize> {
+    raw: RawManifold<N, D>,
+    /// The canonical order at the last update was the reverse of the pair's own.
+    swapped: bool,
+}
+
+impl<N: Real, const D: usize> ContactState<N, D> {
+    /// How many contact points there are.
+    pub(crate) fn len(&self) -> usize {
+        self.raw.points.len()
+    }
+}
+
+impl<N: Space<D>, const D: usize> ContactState<N, D> {
+    /// Computes the contacts for new poses; points whose features stay keep their numbers.
+    pub(crate) fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
+        let (pair, swapped) = posed.canonical();
+        if swapped != self.swapped {
+            self.raw.flip_names();
+            self.swapped = swapped;
+        }
+        let tables = N::tables();
+        match (tables.separation)(&pair, request.prediction) {
+            Some(separation) => (tables.manifold)(&pair, &separation, request, &mut self.raw),
+            None => self.raw.points.clear(),
+        }
+    }
+
+    /// The manifold as users see it; `posed` is that of the last update and `pair_number` names the
+    /// pair.
+    pub(crate) fn manifold(
+        &self,
+        posed: &Posed<'_, N, D>,
+        pair_number: u64,
+    ) -> ContactManifold<N, D> {
+        let (pair, is_swapped) = posed.canonical();
+        let pose1 = if is_swapped { posed.pose2 } else { posed.pose1 };
+        materialise(&pair, &self.raw, &Placement { pose1, pair: pair_number, is_swapped })
+    }
+}
+
+/// How near two solids are, by the same fact that contacts are derived from.
+pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
+    posed: &Posed<'_, N, D>,
+    margin: N,
+) -> Proximity {
+    let (pair, _) = posed.canonical();
+    match (N::tables().separation)(&pair, margin) {
+        None => Proximity::Disjoint,
+        Some(separation) if separation.distance <= N::ZERO => Proximity::Intersecting,
+        Some(_) => Proximity::WithinMargin,
+    }
+}

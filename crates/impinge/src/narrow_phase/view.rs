@@ -1,0 +1,180 @@
+//! Reading pairs: what the world hands out for one pair, and all pairs in canonical order.
+
+use core::fmt;
+
+use super::entry::posed;
+use super::lanes::Lane;
+use super::traits::ContactManifoldGenerator;
+use super::{DefaultNarrowPhase, ObjectTable};
+use crate::math::Space;
+use crate::query::{ContactManifold, Proximity};
+
+/// The contacts of a pair of objects, as of the last update.
+#[derive(Clone, Copy)]
+pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
+
+#[derive(Clone, Copy)]
+enum Contacts<'a, N: Space<D>, const D: usize> {
+    BuiltIn(&'a ContactManifold<N, D>),
+    Custom(&'a dyn ContactManifoldGenerator<N, D>),
+}
+
+impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
+    /// The contacts that an algorithm of one's own holds.
+    #[must_use]
+    pub fn from_algorithm(algorithm: &'a dyn ContactManifoldGenerator<N, D>) -> Self {
+        Self(Contacts::Custom(algorithm))
+    }
+
+    /// How many contact points there are, over all manifolds.
+    #[must_use]
+    pub fn num_contacts(&self) -> usize {
+        match self.0 {
+            Contacts::BuiltIn(manifold) => manifold.len(),
+            Contacts::Custom(algorithm) => algorithm.num_contacts(),
+        }
+    }
+
+    /// Pushes the manifolds that hold a contact.
+    pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
+        match self.0 {
+            Contacts::BuiltIn(manifold) if manifold.is_empty() => {}
+            Contacts::BuiltIn(manifold) => out.push(manifold),
+            Contacts::Custom(algorithm) => algorithm.contacts(out),
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for ContactPair<'_, N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ContactPair").field("num_contacts", &self.num_contacts()).finish()
+    }
+}
+
+/// The proximity of a pair of objects, as of the last update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProximityPair(Proximity);
+
+impl ProximityPair {
+    /// A pair of this proximity, for a narrow phase of one's own.
+    #[must_use]
+    pub const fn new(proximity: Proximity) -> Self {
+        Self(proximity)
+    }
+
+    /// How near the two objects are.
+    #[must_use]
+    pub const fn proximity(&self) -> Proximity {
+        self.0
+    }
+}
+
+impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
+    /// The contacts of a pair; `None` if there is no such pair or its contacts are not asked for.
+    pub(crate) fn contact_pair<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+        first: u32,
+        second: u32,
+    ) -> Option<ContactPair<'a, N, D>> {
+        self.contacts_at(table, self.pairs.index_of(first, second)?)
+    }
+
+    /// The proximity of a pair; `None` if there is no such pair or its proximity is not asked for.
+    pub(crate) fn proximity_pair(&self, first: u32, second: u32) -> Option<ProximityPair> {
+        self.proximity_at(self.pairs.index_of(first, second)?)
+    }
+
+    /// All pairs whose contacts are asked for, sorted by handle index.
+    pub(crate) fn contact_pairs<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+    ) -> impl Iterator<Item = (u32, u32, ContactPair<'a, N, D>)> + 'a {
+        self.sorted().filter_map(move |index| {
+            let (first, second) = self.pairs.pairs()[index];
+            Some((first, second, self.contacts_at(table, index)?))
+        })
+    }
+
+    /// All pairs whose proximity is asked for, sorted by handle index.
+    pub(crate) fn proximity_pairs(&self) -> impl Iterator<Item = (u32, u32, ProximityPair)> + '_ {
+        self.sorted().filter_map(move |index| {
+            let (first, second) = self.pairs.pairs()[index];
+            Some((first, second, self.proximity_at(index)?))
+        })
+    }
+
+    fn contacts_at<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+        index: usize,
+    ) -> Option<ContactPair<'a, N, D>> {
+        let location = self.locations[index];
+        match location.lane {
+            Lane::Contacts(group) => {
+                let group = &self.lanes.contacts[usize::from(group)];
+                let entry = group.state(location.place);
+                let manifold = entry.manifold(&posed(table, group.key(location.place)));
+                Some(ContactPair(Contacts::BuiltIn(manifold)))
+            }
+            Lane::CustomContacts => {
+                let entry = self.lanes.custom_contacts.state(location.place);
+                Some(ContactPair(Contacts::Custom(&*entry.algorithm)))
+            }
+            _ => None,
+        }
+    }
+
+    fn proximity_at(&self, index: usize) -> Option<ProximityPair> {
+        let location = self.locations[index];
+        let status = match location.lane {
+            Lane::Proximity(group) => {
+                self.lanes.proximity[usize::from(group)].state(location.place).status
+            }
+            Lane::CustomProximity => self.lanes.custom_proximity.state(location.place).status,
+            _ => return None,
+        };
+        Some(ProximityPair(status.0))
+    }
+
+    /// The places of the pairs, sorted by pair.
+    fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
+        let order = self.order.get_or_init(|| {
+            let mut order: Vec<u32> = (0..).take(self.pairs.len()).collect();
+            order.sort_unstable_by_key(|&index| self.pairs.pairs()[index as usize]);
+            order
+        });
+        order.iter().map(|&index| index as usize)
+    }
+
+    /// How many pairs there are.
+    #[must_use]
+    pub fn num_pairs(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Checks that pairs, locations and lanes agree.
+    ///
+    /// # Errors
+    /// A sentence that says what does not.
+    pub fn validate(&self) -> Result<(), String> {
+        self.pairs.validate()?;
+        if self.locations.len() != self.pairs.len() {
+            return Err("locations out of step with pairs".to_owned());
+        }
+        for (&key, location) in self.pairs.pairs().iter().zip(&self.locations) {
+            let place = location.place;
+            let found = match location.lane {
+                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)].key(place),
+                Lane::Proximity(group) => self.lanes.proximity[usize::from(group)].key(place),
+                Lane::CustomContacts => self.lanes.custom_contacts.key(place),
+                Lane::CustomProximity => self.lanes.custom_proximity.key(place),
+                Lane::Nothing => key,
+            };
+            if found != key {
+                return Err(format!("the state of pair {key:?} is that of {found:?}"));
+            }
+        }
+        Ok(())
+    }
+}

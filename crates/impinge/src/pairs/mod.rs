@@ -1,0 +1,19 @@
+//! A set of unordered pairs of small numbers, kept so that it can be walked linearly and changed
+//! anywhere in constant time.
+//!
+//! Who owns what, in which order it lies in memory:
+//! * the pairs themselves are one dense array of `(smaller, larger)`; a removal moves the last pair
+//!   into the gap. A caller that keeps payload arrays in step with it does the same with
+//!   `swap_remove` at the index that [`Removed`] names;
+//! * each object has one run of 64-byte lines of eight links `(partner, pair index)`, in a pool that
+//!   all objects share. A run that is full moves to one of twice the size;
+//! * each pair remembers where its two links stand, so that an end with ten thousand partners is
+//!   never searched: only the end with fewer partners is.
+//!
+//! The table knows no boxes and no objects, only numbers. It grows to the largest number it has
+//! seen, so numbers should be dense. Its order is a function of the calls made and of nothing else.
+
+mod lines;
+mod table;
+
+pub use table::{Inserted, PairTable, Removed, pack, unpack};

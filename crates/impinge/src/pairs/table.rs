@@ -1,0 +1,279 @@
+//! The table of pairs.
+
+use super::lines::{Lines, Link, small};
+
+/// A set of unordered pairs; see the module's page for its layout.
+///
+/// A number may be paired with any number but itself. Finding a pair costs the smaller of the two
+/// partner counts; adding and removing by index cost constant time.
+#[derive(Clone, Debug, Default)]
+pub struct PairTable {
+    pairs: Vec<(u32, u32)>,
+    /// Where the links of the two ends stand among the links of those objects, by pair.
+    places: Vec<(u32, u32)>,
+    lines: Lines,
+}
+
+/// The outcome of [`PairTable::insert`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inserted {
+    /// Where the pair stands in [`PairTable::pairs`].
+    pub index: usize,
+    /// Whether it was not there before; it then stands last.
+    pub is_new: bool,
+}
+
+/// What a removal did to the dense array: exactly `swap_remove(index)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Removed {
+    /// Where the pair stood.
+    pub index: usize,
+    /// Where the pair that now stands at `index` stood; `None` if the removed pair was the last.
+    pub moved_from: Option<usize>,
+}
+
+/// The pair as one number whose order is the order of `(smaller, larger)`.
+#[inline]
+#[must_use]
+pub fn pack(a: u32, b: u32) -> u64 {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    u64::from(low) << 32 | u64::from(high)
+}
+
+/// The pair `(smaller, larger)` that [`pack`] made the number of.
+#[inline]
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "takes the two halves apart")]
+pub const fn unpack(key: u64) -> (u32, u32) {
+    ((key >> 32) as u32, key as u32)
+}
+
+impl PairTable {
+    /// A table without pairs.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The number of pairs.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// There is no pair.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// The pairs, each as `(smaller, larger)`, in the order that insertions and removals left.
+    #[must_use]
+    pub fn pairs(&self) -> &[(u32, u32)] {
+        &self.pairs
+    }
+
+    /// How many partners `a` has.
+    #[must_use]
+    pub fn count(&self, a: u32) -> usize {
+        self.lines.count(a)
+    }
+
+    /// The partners of `a`, each with the index of the pair in [`Self::pairs`].
+    pub fn partners(&self, a: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
+        self.lines.links(a).map(|link| (link.partner, link.pair as usize))
+    }
+
+    /// Where the pair stands in [`Self::pairs`], in either order of its ends.
+    #[must_use]
+    pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
+        let a_is_lighter = self.lines.count(a) <= self.lines.count(b);
+        let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
+        let link = self.lines.links(from).find(|link| link.partner == to)?;
+        Some(link.pair as usize)
+    }
+
+    /// Adds the pair unless it is there.
+    ///
+    /// # Panics
+    /// If `a == b`.
+    pub fn insert(&mut self, a: u32, b: u32) -> Inserted {
+        match self.index_of(a, b) {
+            Some(index) => Inserted { index, is_new: false },
+            None => Inserted { index: self.insert_new(a, b), is_new: true },
+        }
+    }
+
+    /// Adds a pair that the caller knows not to be there; constant time.
+    ///
+    /// # Panics
+    /// If `a == b`.
+    pub fn insert_new(&mut self, a: u32, b: u32) -> usize {
+        assert_ne!(a, b, "an object is no pair with itself");
+        debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.lines.reach(high);
+        let pair = small(self.pairs.len());
+        let low_place = self.lines.push(low, Link { partner: high, pair });
+        let high_place = self.lines.push(high, Link { partner: low, pair });
+        self.pairs.push((low, high));
+        self.places.push((low_place, high_place));
+        self.pairs.len() - 1
+    }
+
+    /// Takes the pair out, if it is there.
+    pub fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
+        let index = self.index_of(a, b)?;
+        Some(self.remove_at(index))
+    }
+
+    /// Takes out the pair that stands at `index`; constant time.
+    ///
+    /// # Panics
+    /// If `index` is not below [`Self::len`].
+    pub fn remove_at(&mut self, index: usize) -> Removed {
+        let (low, high) = self.pairs[index];
+        let (low_place, high_place) = self.places[index];
+        self.unlink(low, low_place);
+        self.unlink(high, high_place);
+        self.pairs.swap_remove(index);
+        self.places.swap_remove(index);
+        let was_last = index == self.pairs.len();
+        if !was_last {
+            self.relink(index);
+        }
+        Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
+    }
+
+    /// Takes the link at `place` out of the object's links and tells the pair of the link that
+    /// moved there.
+    fn unlink(&mut self, object: u32, place: u32) {
+        let Some(moved) = self.lines.swap_remove(object, place) else { return };
+        let places = &mut self.places[moved.pair as usize];
+        if object < moved.partner {
+            places.0 = place;
+        } else {
+            places.1 = place;
+        }
+    }
+
+    /// Tells both links of the pair at `index` that it stands there.
+    fn relink(&mut self, index: usize) {
+        let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
+        self.lines.link_mut(low, low_place).pair = small(index);
+        self.lines.link_mut(high, high_place).pair = small(index);
+    }
+
+    /// Takes out every pair.
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+        self.places.clear();
+        self.lines.clear();
+    }
+
+    /// Checks every invariant of the layout; for tests.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn validate(&self) -> Result<(), String> {
+        self.lines.validate()?;
+        if self.places.len() != self.pairs.len() {
+            return Err("places out of step with pairs".to_owned());
+        }
+        for (index, (&(low, high), &(low_place, high_place))) in
+            self.pairs.iter().zip(&self.places).enumerate()
+        {
+            let pair = small(index);
+            let from_low = low_place < small(self.count(low))
+                && self.lines.link(low, low_place) == Link { partner: high, pair };
+            let from_high = high_place < small(self.count(high))
+                && self.lines.link(high, high_place) == Link { partner: low, pair };
+            if !(low < high && from_low && from_high) {
+                return Err(format!("pair {index} = ({low}, {high}) is linked wrongly"));
+            }
+        }
+        let links: usize = (0..small(self.lines.objects())).map(|a| self.count(a)).sum();
+        if links != 2 * self.pairs.len() {
+            return Err(format!("{links} links for {} pairs", self.pairs.len()));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Numbers from a linear congruential generator, below `bound`.
+    fn next(state: &mut u64, bound: u32) -> u32 {
+        *state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
+    }
+
+    #[test]
+    fn random_calls_agree_with_a_sorted_set() {
+        let (mut state, mut table, mut set) = (7, PairTable::new(), BTreeSet::new());
+        let (mut payload, mut found) = (Vec::new(), 0);
+        for step in 0..20_000_u32 {
+            // 40 numbers: 780 pairs, so that about every second call hits one that is there.
+            let (a, b) = (next(&mut state, 40), next(&mut state, 40));
+            if a == b {
+                continue;
+            }
+            assert_eq!(table.index_of(a, b).is_some(), set.contains(&pack(a, b)), "step {step}");
+            if next(&mut state, 2) == 0 {
+                let inserted = table.insert(a, b);
+                assert_eq!(inserted.is_new, set.insert(pack(a, b)), "step {step}");
+                if inserted.is_new {
+                    payload.push(pack(a, b));
+                }
+                assert_eq!(payload[inserted.index], pack(b, a), "payload stays in step");
+            } else if let Some(removed) = table.remove(a, b) {
+                found += 1;
+                assert!(set.remove(&pack(a, b)), "step {step}");
+                assert_eq!(
+                    removed.moved_from.is_some(),
+                    removed.index + 1 < payload.len(),
+                    "moved"
+                );
+                assert_eq!(payload.swap_remove(removed.index), pack(a, b), "payload in step");
+            }
+            if step % 500 == 0 {
+                table.validate().expect("sound");
+            }
+        }
+        assert!((6_000..14_000).contains(&(found * 2)), "half of the removals hit: {found}");
+        let listed: Vec<u64> = table.pairs().iter().map(|&(a, b)| pack(a, b)).collect();
+        assert_eq!(listed, payload, "the dense array moves as documented");
+        let mut partners: Vec<u32> = table.partners(3).map(|(b, _)| b).collect();
+        partners.sort_unstable();
+        let expected: Vec<u32> = (0..40).filter(|&b| set.contains(&pack(3, b)) && b != 3).collect();
+        assert_eq!(partners, expected, "partners of 3");
+    }
+
+    #[test]
+    fn an_object_with_very_many_partners() {
+        let mut table = PairTable::new();
+        for b in 1..=200_000 {
+            table.insert(0, b);
+        }
+        assert_eq!(table.count(0), 200_000, "all are partners of 0");
+        // Quadratic searching would need 2·10^10 steps here.
+        for b in (1..=200_000).rev().step_by(2) {
+            assert!(table.remove(b, 0).is_some(), "{b} was there");
+        }
+        table.validate().expect("sound");
+        assert_eq!((table.len(), table.count(0)), (100_000, 100_000), "half are left");
+        table.clear();
+        table.validate().expect("sound");
+        assert!(table.is_empty(), "cleared");
+    }
+
+    #[test]
+    #[should_panic(expected = "no pair with itself")]
+    fn no_pair_with_itself() {
+        PairTable::new().insert(4, 4);
+    }
+}

@@ -1,0 +1,49 @@
+//! The points of two solids that are nearest to each other.
+
+use super::pair::Placed;
+use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
+use crate::shape::Shape;
+
+/// The nearest points of two solids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClosestPoints<N: Real, const D: usize> {
+    /// The solids touch or overlap.
+    Intersecting,
+    /// A point on the first solid and one on the second, in the world frame, whose distance is that
+    /// of the solids.
+    WithinMargin(Point<N, D>, Point<N, D>),
+    /// The solids are farther apart than was asked.
+    Disjoint,
+}
+
+impl<N: Real, const D: usize> ClosestPoints<N, D> {
+    /// The same answer with the solids swapped.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        match self {
+            Self::WithinMargin(point1, point2) => Self::WithinMargin(*point2, *point1),
+            other => *other,
+        }
+    }
+}
+
+/// The nearest points of two solids that are at most `max_distance` apart.
+///
+/// Where several pairs of points are equally near, one is chosen, the same for every order of the
+/// arguments. A distance equal to `max_distance` counts as within; a negative or NaN
+/// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite.
+pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    max_distance: N,
+) -> ClosestPoints<N, D> {
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    let limit = max(max_distance, N::ZERO);
+    match (N::tables().separation_in_world)(&placed1, &placed2, limit) {
+        None => ClosestPoints::Disjoint,
+        Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,
+        Some(found) => ClosestPoints::WithinMargin(found.point1, found.point2),
+    }
+}

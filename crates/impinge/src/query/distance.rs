@@ -1,0 +1,31 @@
+//! How far apart two solids are.
+
+use super::pair::Placed;
+use crate::math::{AbstractRotation, Isometry, Space, max};
+use crate::shape::Shape;
+
+/// The distance between two solids: zero if they touch or overlap.
+///
+/// The smallest length of a translation that makes them touch. Swapping the solids gives the same
+/// bits. Infinite if a pose is not finite.
+///
+/// ```
+/// use impinge::math::{Isometry2, Vector};
+/// use impinge::query::distance;
+/// use impinge::shape::{Ball, Cuboid};
+///
+/// let ball = Ball::new(1.0_f32);
+/// let cuboid = Cuboid::new(Vector::<f32, 2>::new(2.0, 2.0));
+/// let place = Isometry2::translation(5.0, 0.0);
+/// assert_eq!(distance(&Isometry2::identity(), &ball, &place, &cuboid), 2.0);
+/// ```
+pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+) -> N {
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    let found = (N::tables().separation_in_world)(&placed1, &placed2, N::INFINITY);
+    found.map_or(N::INFINITY, |found| max(found.distance, N::ZERO))
+}

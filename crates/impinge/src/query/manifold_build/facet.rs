@@ -1,0 +1,311 @@
+//! One solid's share of a contact: the part of its core that faces the other, seen along the normal.
+
+use smallvec::SmallVec;
+
+use super::frame::Frame;
+use crate::math::{Point, Pose, Real, Vector, cross2, max, max_component, min};
+use crate::shape::{Feature, FeatureId, SupportMap};
+
+/// Parts that lean more than 60° out of the plane of contact count as their nearest point.
+const LEAST_COSINE: f64 = 0.5;
+
+/// Which of the two solids of a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Which {
+    First,
+    Second,
+}
+
+/// A corner and the side that leads from it to the next.
+#[derive(Clone, Copy)]
+pub(super) struct Corner<N: Real, const D: usize> {
+    pub(super) point: Point<N, D>,
+    pub(super) flat: Vector<N, 2>,
+    pub(super) id: FeatureId,
+    pub(super) side: FeatureId,
+}
+
+/// A point, a segment or a convex polygon, in the frame of the first solid.
+///
+/// Corners that coincide when seen along the normal are merged, polygons without width are segments.
+pub(super) struct Facet<N: Real, const D: usize> {
+    which: Which,
+    pub(super) id: FeatureId,
+    pub(super) corners: SmallVec<[Corner<N, D>; 8]>,
+    /// For each side its unit inward normal, seen along the manifold's normal.
+    inward: SmallVec<[Vector<N, 2>; 8]>,
+    /// The outward normal of a polygon in space.
+    normal: Option<Vector<N, D>>,
+    rounding: N,
+    /// Between the manifold's normal and the facet's own.
+    cosine: N,
+}
+
+impl<N: Real, const D: usize> Facet<N, D> {
+    /// The facet of a solid that is placed at `pose` in the frame of the first.
+    pub(super) fn facing(
+        which: Which,
+        map: &dyn SupportMap<N, D>,
+        pose: &Pose<N, D>,
+        frame: &Frame<N, D>,
+    ) -> Self {
+        let outward = which.outward(frame);
+        let mut feature = Feature::default();
+        map.core_feature(&pose.inverse_vector(&outward), &mut feature);
+        let mut facet = Self {
+            which,
+            id: feature.id,
+            corners: corners(&feature, pose, frame),
+            inward: SmallVec::new(),
+            normal: feature.normal.map(|normal| pose.vector(&normal)),
+            rounding: map.rounding(),
+            cosine: N::ONE,
+        };
+        facet.settle(&outward, frame.tolerance);
+        facet
+    }
+
+    /// Simplifies what has no extent when seen along the normal, and prepares the sides.
+    fn settle(&mut self, outward: &Vector<N, D>, tolerance: N) {
+        merge_coincident(&mut self.corners, tolerance);
+        if self.corners.len() > 2 {
+            self.settle_polygon(outward, tolerance);
+        }
+        if self.corners.len() == 2 {
+            self.settle_segment(outward);
+        }
+        if self.corners.len() == 1 {
+            self.cosine = N::ONE;
+        }
+    }
+
+    fn settle_polygon(&mut self, outward: &Vector<N, D>, tolerance: N) {
+        let (area, longest) = self.area_and_longest_side();
+        let length = self.side(longest).norm();
+        if area.abs() <= N::TWO * tolerance * length {
+            return self.flatten(longest);
+        }
+        self.cosine = self.normal.map_or(N::ZERO, |normal| normal.dot(outward));
+        if self.cosine < N::lit(LEAST_COSINE) {
+            return self.keep_farthest(outward);
+        }
+        let turn = if area < N::ZERO { -N::ONE } else { N::ONE };
+        self.inward = (0..self.corners.len())
+            .map(|index| {
+                let side = self.side(index);
+                Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm())
+            })
+            .collect();
+    }
+
+    fn settle_segment(&mut self, outward: &Vector<N, D>) {
+        self.normal = None;
+        let flat = self.side(0);
+        let length = (self.corners[1].point - self.corners[0].point).norm();
+        self.cosine = flat.norm() / length;
+        if self.cosine < N::lit(LEAST_COSINE) {
+            return self.keep_farthest(outward);
+        }
+        let inward = Vector::<N, 2>::new(-flat.y, flat.x) / flat.norm();
+        self.inward = SmallVec::from_slice(&[inward]);
+    }
+
+    /// Leaves the two ends of a polygon without width, named as its longest side.
+    fn flatten(&mut self, longest: usize) {
+        let (along, from) = (self.side(longest), self.corners[longest].flat);
+        let at = |corner: &Corner<N, D>| (corner.flat - from).dot(&along);
+        let (mut low, mut high) = (self.corners[0], self.corners[0]);
+        for corner in &self.corners[1..] {
+            low = if at(corner) < at(&low) { *corner } else { low };
+            high = if at(corner) > at(&high) { *corner } else { high };
+        }
+        self.id = self.corners[longest].side;
+        self.corners = SmallVec::from_slice(&[low, high]);
+    }
+
+    fn keep_farthest(&mut self, outward: &Vector<N, D>) {
+        let at = |corner: &Corner<N, D>| corner.point.coords.dot(outward);
+        let first = self.corners[0];
+        let farthest =
+            self.corners.iter().fold(first, |best, c| if at(c) > at(&best) { *c } else { best });
+        self.id = farthest.id;
+        self.corners = SmallVec::from_slice(&[farthest]);
+        self.inward.clear();
+        self.normal = None;
+    }
+
+    /// Twice the signed area seen along the normal, and the index of the longest side.
+    fn area_and_longest_side(&self) -> (N, usize) {
+        let (mut area, mut longest) = (N::ZERO, 0);
+        let origin = self.corners[0].flat;
+        for index in 0..self.corners.len() {
+            let arm = self.corners[index].flat - origin;
+            area += cross2(&arm, &self.side(index));
+            if self.side(index).norm_squared() > self.side(longest).norm_squared() {
+                longest = index;
+            }
+        }
+        (area, longest)
+    }
+
+    /// A point without any extent across the normal.
+    pub(super) fn is_point(&self) -> bool {
+        self.corners.len() < 2
+    }
+
+    pub(super) fn is_segment(&self) -> bool {
+        self.corners.len() == 2
+    }
+
+    /// None for a point, one for a segment, else one for each corner.
+    pub(super) fn side_count(&self) -> usize {
+        self.inward.len()
+    }
+
+    pub(super) fn next(&self, index: usize) -> usize {
+        if index + 1 < self.corners.len() { index + 1 } else { 0 }
+    }
+
+    /// From a corner to the next, seen along the normal.
+    pub(super) fn side(&self, index: usize) -> Vector<N, 2> {
+        self.corners[self.next(index)].flat - self.corners[index].flat
+    }
+
+    /// How far inside the line of a side a place is; negative outside.
+    pub(super) fn inside(&self, side: usize, flat: &Vector<N, 2>) -> N {
+        self.inward[side].dot(&(flat - self.corners[side].flat))
+    }
+
+    /// The smallest part of the facet that contains a place: a corner, a side, the whole.
+    ///
+    /// `None` if the place is outside by more than the tolerance.
+    pub(super) fn locate(&self, flat: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
+        let mut touched = None;
+        for side in 0..self.side_count() {
+            let inside = self.inside(side, flat);
+            if inside < -tolerance || self.is_segment() && inside > tolerance {
+                return None;
+            }
+            if inside <= tolerance {
+                touched = self.on_side(side, flat, tolerance).or(touched);
+            }
+        }
+        if self.is_segment() { touched } else { Some(touched.unwrap_or(self.id)) }
+    }
+
+    /// The part of a side that contains a place on its line: one of its corners or itself.
+    fn on_side(&self, side: usize, flat: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
+        let (from, to) = (&self.corners[side], &self.corners[self.next(side)]);
+        let near = |corner: &Corner<N, D>| (corner.flat - flat).norm() <= N::TWO * tolerance;
+        if near(from) || near(to) {
+            return Some(if near(from) { from.id } else { to.id });
+        }
+        let (along, length) = ((flat - from.flat).dot(&self.side(side)), self.side(side).norm());
+        let within = along >= N::ZERO && along <= length * length;
+        within.then_some(if self.is_segment() { self.id } else { from.side })
+    }
+
+    /// The point of the core that is seen at the same place as `point`.
+    pub(super) fn under(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> Point<N, D> {
+        let Some(normal) = self.normal else {
+            return self.along_side(0, self.parameter(&frame.flat(point)));
+        };
+        let along = (self.corners[0].point - point).dot(&normal) / frame.normal().dot(&normal);
+        point + frame.normal() * along
+    }
+
+    /// Where on the first side a place is: 0 at its start, 1 at its end, never beyond.
+    fn parameter(&self, flat: &Vector<N, 2>) -> N {
+        let side = self.side(0);
+        let along = (flat - self.corners[0].flat).dot(&side) / side.norm_squared();
+        min(max(along, N::ZERO), N::ONE)
+    }
+
+    /// The point of a side at a parameter between 0 and 1.
+    pub(super) fn along_side(&self, side: usize, parameter: N) -> Point<N, D> {
+        let (from, to) = (&self.corners[side].point, &self.corners[self.next(side)].point);
+        from + (to - from) * parameter
+    }
+
+    /// How far the rounded surface is above a point of the core, along the manifold's normal.
+    ///
+    /// Above the flat part that is `rounding / cosine`; above the end nearest to the other solid the
+    /// ball around that end. Nothing rises above the witness. Exact for capsules, and wherever the
+    /// surface is parallel to the facet; between the two a rounded polygon may lie a little lower.
+    pub(super) fn lift(&self, core: &Point<N, D>, frame: &Frame<N, D>) -> N {
+        if self.rounding <= N::ZERO {
+            return N::ZERO;
+        }
+        let room = self.below_witness(core, frame);
+        let top = self.corners.iter().fold(&self.corners[0], |top, corner| {
+            let is_nearer =
+                self.below_witness(&corner.point, frame) < self.below_witness(&top.point, frame);
+            if is_nearer { corner } else { top }
+        });
+        let (radius, cosine) = (self.rounding, self.cosine);
+        let away_squared = (frame.flat(core) - top.flat).norm_squared();
+        let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+        let lift = if away_squared < turns_squared {
+            let rise = room - self.below_witness(&top.point, frame);
+            rise + (radius * radius - away_squared).sqrt()
+        } else {
+            radius / cosine
+        };
+        max(min(lift, room), N::ZERO)
+    }
+
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    fn below_witness(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> N {
+        let height = frame.height(point);
+        match self.which {
+            Which::First => -height,
+            Which::Second => height - frame.witness.distance,
+        }
+    }
+}
+
+impl Which {
+    /// The direction in which this solid faces the other.
+    fn outward<N: Real, const D: usize>(self, frame: &Frame<N, D>) -> Vector<N, D> {
+        match self {
+            Self::First => frame.normal(),
+            Self::Second => -frame.normal(),
+        }
+    }
+}
+
+fn corners<N: Real, const D: usize>(
+    feature: &Feature<N, D>,
+    pose: &Pose<N, D>,
+    frame: &Frame<N, D>,
+) -> SmallVec<[Corner<N, D>; 8]> {
+    let named = feature.vertices.iter().zip(&feature.vertex_ids).enumerate();
+    named
+        .map(|(index, (vertex, &id))| {
+            let point = pose.point(vertex);
+            let side = feature.side_ids.get(index).copied().unwrap_or(feature.id);
+            Corner { point, flat: frame.flat(&point), id, side }
+        })
+        .collect()
+}
+
+/// Merges each corner with those that follow it at the same place; the last one's side leads on.
+fn merge_coincident<N: Real, const D: usize>(
+    corners: &mut SmallVec<[Corner<N, D>; 8]>,
+    tolerance: N,
+) {
+    let apart = |a: &Corner<N, D>, b: &Corner<N, D>| max_component(&(a.flat - b.flat)) > tolerance;
+    let mut kept = 0;
+    for index in 1..corners.len() {
+        if apart(&corners[kept], &corners[index]) {
+            kept += 1;
+            corners[kept] = corners[index];
+        } else {
+            corners[kept].side = corners[index].side;
+        }
+    }
+    while kept > 0 && !apart(&corners[0], &corners[kept]) {
+        kept -= 1;
+    }
+    corners.truncate(kept + 1);
+}

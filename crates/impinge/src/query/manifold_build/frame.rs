@@ -1,0 +1,110 @@
+//! The plane of contact: what all points of one manifold are measured against.
+
+use super::super::{ManifoldRequest, Pair, RawPoint};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, max};
+use crate::shape::{FeatureId, Geometry, Kind};
+
+/// How many rounding errors of the pair's size are told from nothing.
+const ROUNDING_ERRORS: f64 = 16.0;
+
+/// The plane through the witness perpendicular to the normal, and what the request admits.
+///
+/// In the frame of the first solid. `flat` coordinates are those in the plane, with the witness at
+/// zero; in two dimensions the second of them is always zero.
+pub(super) struct Frame<N: Real, const D: usize> {
+    pub(super) witness: Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+    /// Lengths below this are rounding errors of the pair's size.
+    pub(super) tolerance: N,
+    prediction: N,
+    pub(super) sine: N,
+}
+
+/// A point that may enter the manifold.
+#[derive(Clone, Copy)]
+pub(super) struct Candidate<N: Real, const D: usize> {
+    pub(super) point1: Point<N, D>,
+    pub(super) distance: N,
+    pub(super) flat: Vector<N, 2>,
+    /// The part of each solid that it lies on.
+    pub(super) features: [FeatureId; 2],
+    /// The number it had in the previous manifold.
+    pub(super) kept_id: Option<u32>,
+}
+
+impl<N: Real, const D: usize> Candidate<N, D> {
+    pub(super) fn named(&self, id: u32) -> RawPoint<N, D> {
+        let [feature1, feature2] = self.features;
+        RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id }
+    }
+}
+
+impl<N: Real, const D: usize> Frame<N, D> {
+    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in the
+    /// plane.
+    pub(super) fn new(
+        pair: &Pair<'_, N, D>,
+        witness: &Separation<N, D>,
+        request: &ManifoldRequest<N>,
+        tangents: [Vector<N, D>; 2],
+    ) -> Self {
+        let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
+        Self {
+            witness: *witness,
+            tangents,
+            tolerance: N::lit(ROUNDING_ERRORS) * N::EPSILON * size,
+            prediction: request.prediction,
+            sine: request.sine,
+        }
+    }
+
+    pub(super) fn normal(&self) -> Vector<N, D> {
+        self.witness.normal
+    }
+
+    /// Where a point lies when seen along the normal.
+    pub(super) fn flat(&self, point: &Point<N, D>) -> Vector<N, 2> {
+        let arm = point - self.witness.point1;
+        Vector::<N, 2>::new(self.tangents[0].dot(&arm), self.tangents[1].dot(&arm))
+    }
+
+    /// How far along the normal a point lies, from the surface of the first solid at the witness.
+    pub(super) fn height(&self, point: &Point<N, D>) -> N {
+        self.normal().dot(&(point - self.witness.point1))
+    }
+
+    /// The distance to give to a pair of points that far apart and seen at `flat`; `None` if the
+    /// request does not ask for them.
+    ///
+    /// The witness is the nearest pair of points, so a smaller distance is a rounding error, and so
+    /// is one that exceeds the prediction by no more than the tolerance. A point beyond the
+    /// prediction stays if turning about the witness brings it nearer by enough.
+    pub(super) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
+        let distance = max(distance, self.witness.distance);
+        if distance <= self.prediction {
+            return Some(distance);
+        }
+        if distance <= self.prediction + self.tolerance {
+            return Some(self.prediction);
+        }
+        (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
+    }
+
+    /// The candidate at a pair of surface points of which the first is given.
+    pub(super) fn candidate(
+        &self,
+        point1: Point<N, D>,
+        distance: N,
+        features: [FeatureId; 2],
+    ) -> Option<Candidate<N, D>> {
+        let flat = self.flat(&point1);
+        let distance = self.admit(distance, &flat)?;
+        Some(Candidate { point1, distance, flat, features, kept_id: None })
+    }
+}
+
+/// The reach of a solid with its rounding; half-spaces have none.
+fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
+    Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
+}

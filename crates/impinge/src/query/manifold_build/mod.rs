@@ -1,0 +1,153 @@
+//! From the one fact about a pair to a manifold: the points that delimit the area of contact.
+//!
+//! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
+//! with the part of their core that faces the other; seen along the normal these are points, segments
+//! and convex polygons of the plane ([`facet`]), and the corners of what they have in common
+//! ([`overlap`]) are the candidates. [`half_space`] is the case of a face without end. The witness is
+//! always represented, so the smallest distance of a manifold is that of the separation exactly.
+//! At last [`reduce`] chooses a few candidates and [`names`] numbers them.
+//!
+//! Clipping along the normal instead of against the side planes of a reference face is the idea of
+//! contact patches as intersections of support sets (Tracy, Howell, Manchester, "Differentiable
+//! collision detection", 2022, use the same view).
+
+mod facet;
+mod frame;
+mod half_space;
+mod names;
+mod overlap;
+mod reduce;
+#[cfg(test)]
+pub(super) mod tests;
+
+use self::facet::{Facet, Which};
+use self::frame::{Candidate, Frame};
+use self::overlap::{Candidates, Overlap};
+use super::{ManifoldRequest, Pair, RawManifold};
+use crate::convex::Separation;
+use crate::math::{Pose, Real, Vector, orthonormal_basis, perp};
+use crate::shape::{FeatureId, Geometry, Kind};
+
+/// Builds the manifold of two solids in the plane: at most two points.
+///
+/// `out` holds the previous manifold of the pair, whose points hand on their ids; it is empty
+/// afterwards if and only if the solids are farther apart than the prediction or overlap without
+/// bound. A separation that is not a number gives an empty manifold.
+pub(crate) fn build2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    let tangents = [-perp(&separation.normal), Vector::<N, 2>::zeros()];
+    let frame = Frame::new(pair, separation, request, tangents);
+    build(pair, &frame, (request, request.max_points.min(2)), out);
+}
+
+/// Builds the manifold of two solids in space: at most `request.max_points` points.
+///
+/// As [`build2`].
+pub(crate) fn build3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) {
+    let (u, v) = orthonormal_basis(&separation.normal);
+    let frame = Frame::new(pair, separation, request, [u, v]);
+    build(pair, &frame, (request, request.max_points), out);
+}
+
+fn build<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &Frame<N, D>,
+    (request, limit): (&ManifoldRequest<N>, usize),
+    out: &mut RawManifold<N, D>,
+) {
+    let distance = frame.witness.distance;
+    if !(distance <= request.prediction && distance.is_finite_number()) {
+        out.points.clear();
+        return;
+    }
+    let mut candidates = candidates(pair, frame);
+    names::inherit(&out.points, &mut candidates);
+    let deepest = deepest(&candidates, frame);
+    candidates[deepest].distance = distance;
+    let chosen = reduce::chosen(&candidates, deepest, limit.max(1), frame.tolerance);
+    out.normal = frame.normal();
+    names::settle(&candidates, &chosen, out);
+}
+
+/// The corners of the common area, and the witness if it is none of them.
+fn candidates<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &Frame<N, D>,
+) -> Candidates<N, D> {
+    let first = facet(Which::First, pair.first, &Pose::identity(), frame);
+    let second = facet(Which::Second, pair.second, &pair.pose12, frame);
+    let mut out = match (&first, &second) {
+        (Some(first), Some(second)) => Overlap { frame, first, second }.candidates(),
+        (Some(first), None) => half_space::candidates(pair.first, first, frame),
+        _ => Candidates::new(),
+    };
+    let limit = frame.witness.distance + frame.tolerance;
+    if !out.iter().any(|candidate| candidate.distance <= limit) {
+        let features = [at_witness(first.as_ref(), frame), at_witness(second.as_ref(), frame)];
+        add_witness(frame, features, &mut out);
+    }
+    out
+}
+
+/// What a solid shows of itself; `None` for a half-space.
+fn facet<N: Real, const D: usize>(
+    which: Which,
+    kind: Kind<'_, N, D>,
+    pose: &Pose<N, D>,
+    frame: &Frame<N, D>,
+) -> Option<Facet<N, D>> {
+    Geometry(kind).as_support_map().map(|map| Facet::facing(which, map, pose, frame))
+}
+
+/// The part of a solid that the witness lies on.
+fn at_witness<N: Real, const D: usize>(
+    facet: Option<&Facet<N, D>>,
+    frame: &Frame<N, D>,
+) -> FeatureId {
+    let place = Vector::<N, 2>::zeros();
+    facet.map_or(half_space::BOUNDARY, |facet| {
+        facet.locate(&place, frame.tolerance).unwrap_or(facet.id)
+    })
+}
+
+/// Adds the witness, in place of any candidate with the same name unless the name is that of two
+/// faces, which many points may share.
+fn add_witness<N: Real, const D: usize>(
+    frame: &Frame<N, D>,
+    features: [FeatureId; 2],
+    out: &mut Candidates<N, D>,
+) {
+    let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
+    out.retain(|candidate| is_shared || candidate.features != features);
+    let (point1, distance) = (frame.witness.point1, frame.witness.distance);
+    let flat = Vector::<N, 2>::zeros();
+    out.push(Candidate { point1, distance, flat, features, kept_id: None });
+}
+
+/// The candidate that stands for the witness: of those whose distance is the smallest but for
+/// rounding, one that the previous manifold held, then the deepest.
+fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, frame: &Frame<N, D>) -> usize {
+    let limit = frame.witness.distance + frame.tolerance;
+    let rank = |index: usize| {
+        let candidate = &candidates[index];
+        let is_level = candidate.distance <= limit;
+        (!(is_level && candidate.kept_id.is_some()), candidate.distance)
+    };
+    (1..candidates.len()).fold(0, |best, index| {
+        let (new, old) = (rank(index), rank(best));
+        if (new.0, old.0) == (false, true) || new.0 == old.0 && new.1 < old.1 {
+            index
+        } else {
+            best
+        }
+    })
+}

@@ -1,0 +1,170 @@
+//! Where two facets overlap, seen along the normal: the corners of the common area.
+//!
+//! Both facets are treated alike, so there is no reference face that a small motion could exchange:
+//! a corner of the common area is a corner of one facet inside the other, or a crossing of two sides.
+//! That costs a product of the two numbers of corners, and names every point the same way whichever
+//! solid is first. A place within rounding of a side lies on it, which keeps the names still when
+//! sides or corners coincide.
+
+use smallvec::SmallVec;
+
+use super::facet::{Corner, Facet};
+use super::frame::{Candidate, Frame};
+use crate::math::{Point, Real, cross2, max};
+use crate::shape::FeatureId;
+
+/// What a manifold is chosen from.
+pub(super) type Candidates<N, const D: usize> = SmallVec<[Candidate<N, D>; 8]>;
+
+/// Two facets in one frame.
+pub(super) struct Overlap<'a, N: Real, const D: usize> {
+    pub(super) frame: &'a Frame<N, D>,
+    pub(super) first: &'a Facet<N, D>,
+    pub(super) second: &'a Facet<N, D>,
+}
+
+impl<N: Real, const D: usize> Overlap<'_, N, D> {
+    /// The corners of the common area that the request admits; none where a facet is a point.
+    pub(super) fn candidates(&self) -> Candidates<N, D> {
+        let mut out = Candidates::new();
+        if self.first.is_point() || self.second.is_point() {
+            return out;
+        }
+        if self.are_parallel_segments() {
+            self.common_stretch(&mut out);
+        } else {
+            self.corners_inside(&mut out);
+            self.crossings(&mut out);
+        }
+        out
+    }
+
+    /// Corners of either facet within the other.
+    fn corners_inside(&self, out: &mut Candidates<N, D>) {
+        let tolerance = self.frame.tolerance;
+        for corner in &self.first.corners {
+            if let Some(id) = self.second.locate(&corner.flat, tolerance) {
+                self.push_corner_of_first(corner, id, out);
+            }
+        }
+        for corner in &self.second.corners {
+            if let Some(id) = self.first.locate(&corner.flat, tolerance) {
+                self.push_corner_of_second(corner, id, out);
+            }
+        }
+    }
+
+    fn push_corner_of_first(
+        &self,
+        corner: &Corner<N, D>,
+        on: FeatureId,
+        out: &mut Candidates<N, D>,
+    ) {
+        let under = self.second.under(&corner.point, self.frame);
+        self.push(&corner.point, &under, [corner.id, on], out);
+    }
+
+    fn push_corner_of_second(
+        &self,
+        corner: &Corner<N, D>,
+        on: FeatureId,
+        out: &mut Candidates<N, D>,
+    ) {
+        let under = self.first.under(&corner.point, self.frame);
+        self.push(&under, &corner.point, [on, corner.id], out);
+    }
+
+    /// Sides that cross well inside both.
+    fn crossings(&self, out: &mut Candidates<N, D>) {
+        for side1 in 0..self.first.side_count() {
+            for side2 in 0..self.second.side_count() {
+                let at1 = self.crosses(self.first, side1, self.second, side2);
+                let at2 = self.crosses(self.second, side2, self.first, side1);
+                if let (Some(at1), Some(at2)) = (at1, at2) {
+                    let core1 = self.first.along_side(side1, at1);
+                    let core2 = self.second.along_side(side2, at2);
+                    let names = [self.first.corners[side1].side, self.second.corners[side2].side];
+                    self.push(&core1, &core2, names, out);
+                }
+            }
+        }
+    }
+
+    /// Where one side crosses the line of another, as a parameter, unless an end lies on the line.
+    fn crosses(
+        &self,
+        facet: &Facet<N, D>,
+        side: usize,
+        other: &Facet<N, D>,
+        line: usize,
+    ) -> Option<N> {
+        let from = other.inside(line, &facet.corners[side].flat);
+        let to = other.inside(line, &facet.corners[facet.next(side)].flat);
+        let tolerance = self.frame.tolerance;
+        let leaves = from > tolerance && to < -tolerance;
+        let enters = from < -tolerance && to > tolerance;
+        (leaves || enters).then(|| from / (from - to))
+    }
+
+    /// Two segments that a turn by the predicted angle would make parallel.
+    fn are_parallel_segments(&self) -> bool {
+        if !(self.first.is_segment() && self.second.is_segment()) {
+            return false;
+        }
+        let (a, b) = (self.first.side(0), self.second.side(0));
+        let least = N::lit(16.0) * N::EPSILON;
+        cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
+    }
+
+    /// The ends of the stretch that two nearly parallel segments share: each is an end of one of
+    /// them and the place beside it on the other.
+    fn common_stretch(&self, out: &mut Candidates<N, D>) {
+        for corner in &self.first.corners {
+            if let Some(on) = self.beside(corner, self.second) {
+                self.push_corner_of_first(corner, on, out);
+            }
+        }
+        for corner in &self.second.corners {
+            if let Some(on) = self.beside(corner, self.first) {
+                self.push_corner_of_second(corner, on, out);
+            }
+        }
+    }
+
+    /// The part of a segment beside a corner of the other; `None` beyond the ends.
+    fn beside(&self, corner: &Corner<N, D>, segment: &Facet<N, D>) -> Option<FeatureId> {
+        let (side, from) = (segment.side(0), segment.corners[0].flat);
+        let length = side.norm();
+        let along = (corner.flat - from).dot(&side) / length;
+        let tolerance = N::TWO * self.frame.tolerance;
+        if along < -tolerance || along > length + tolerance {
+            return None;
+        }
+        let end = if along <= tolerance { Some(0) } else { None };
+        let end = if along >= length - tolerance { Some(1) } else { end };
+        Some(end.map_or(segment.id, |end: usize| segment.corners[end].id))
+    }
+
+    /// Adds the pair of surface points above two points of the cores, once.
+    fn push(
+        &self,
+        core1: &Point<N, D>,
+        core2: &Point<N, D>,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let (lift1, lift2) =
+            (self.first.lift(core1, self.frame), self.second.lift(core2, self.frame));
+        let normal = self.frame.normal();
+        let distance = normal.dot(&(core2 - core1)) - lift1 - lift2;
+        let found = self.frame.candidate(core1 + normal * lift1, distance, features);
+        let Some(found) = found else { return };
+        let near = N::lit(4.0) * self.frame.tolerance;
+        let is_new = |old: &Candidate<N, D>| {
+            old.features != found.features || (old.flat - found.flat).norm() > near
+        };
+        if out.iter().all(is_new) {
+            out.push(found);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The few points that delimit the area of all.
+
+use smallvec::SmallVec;
+
+use super::frame::Candidate;
+use super::overlap::Candidates;
+use crate::math::{Real, Vector, cross2};
+
+/// A new point must span this much more than one that the previous manifold held.
+const NEW_POINT_WEIGHT: f64 = 0.95;
+/// Of points that span almost the same, the deeper one wins.
+const ALMOST: f64 = 1.0 + 1.0 / 1024.0;
+
+/// The indices of at most `limit` candidates: the deepest, which is given, then the farthest from it,
+/// then whatever adds most to the area seen along the normal, for as long as it adds anything.
+///
+/// Points of the previous manifold are preferred, so that rounding does not exchange the points of a
+/// solid at rest.
+pub(super) fn chosen<N: Real, const D: usize>(
+    candidates: &Candidates<N, D>,
+    deepest: usize,
+    limit: usize,
+    tolerance: N,
+) -> SmallVec<[usize; 8]> {
+    let mut outline = Outline { candidates, corners: SmallVec::from_slice(&[deepest]) };
+    if candidates.len() <= limit {
+        return (0..candidates.len()).collect();
+    }
+    let order = by_depth(candidates);
+    while outline.corners.len() < limit {
+        let Some((index, place)) = outline.best_addition(&order, tolerance) else { break };
+        outline.corners.insert(place, index);
+    }
+    outline.corners
+}
+
+fn by_depth<N: Real, const D: usize>(candidates: &Candidates<N, D>) -> SmallVec<[usize; 16]> {
+    let mut order: SmallVec<[usize; 16]> = (0..candidates.len()).collect();
+    order.sort_by(|&a, &b| {
+        candidates[a].distance.as_f64().total_cmp(&candidates[b].distance.as_f64())
+    });
+    order
+}
+
+/// The points chosen so far, counter-clockwise.
+struct Outline<'a, N: Real, const D: usize> {
+    candidates: &'a [Candidate<N, D>],
+    corners: SmallVec<[usize; 8]>,
+}
+
+impl<N: Real, const D: usize> Outline<'_, N, D> {
+    /// The candidate that adds most and its place in the outline; `None` if none adds more than
+    /// rounding errors.
+    fn best_addition(&self, order: &[usize], tolerance: N) -> Option<(usize, usize)> {
+        let (mut best, mut best_gain) = (None, N::ZERO);
+        for &index in order.iter().filter(|index| !self.corners.contains(index)) {
+            let candidate = &self.candidates[index];
+            let (gain, place) = self.gain(&candidate.flat, tolerance);
+            let is_new = candidate.kept_id.is_none();
+            let gain = if is_new { gain * N::lit(NEW_POINT_WEIGHT) } else { gain };
+            if gain > best_gain * N::lit(ALMOST) {
+                (best, best_gain) = (Some((index, place)), gain);
+            }
+        }
+        best
+    }
+
+    /// What a place adds: its distance from a single point, else the largest area (doubled) that it
+    /// spans with a side of the outline from outside.
+    fn gain(&self, flat: &Vector<N, 2>, tolerance: N) -> (N, usize) {
+        let place = |at: usize| self.candidates[self.corners[at]].flat;
+        if self.corners.len() == 1 {
+            let distance = (flat - place(0)).norm();
+            return (if distance > tolerance { distance } else { N::ZERO }, 1);
+        }
+        let (mut gain, mut best) = (N::ZERO, 0);
+        for at in 0..self.corners.len() {
+            let from = place(at);
+            let side = place(if at + 1 < self.corners.len() { at + 1 } else { 0 }) - from;
+            let area = -cross2(&side, &(flat - from));
+            if area > gain && area > tolerance * side.norm() {
+                (gain, best) = (area, at + 1);
+            }
+        }
+        (gain, best)
+    }
+}

@@ -1,0 +1,6 @@
+//! What every manifold must be, over random poses and in scenes worked out by hand.
+
+mod lasting;
+mod properties;
+mod resting;
+pub(in crate::query) mod scene;

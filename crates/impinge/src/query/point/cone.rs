@@ -1,0 +1,39 @@
+//! The nearest point of the surface of a cone, in its half-plane through the axis.
+
+use super::SurfacePoint;
+use super::cylinder::Meridian;
+use super::segment::nearest;
+use crate::math::{Point, Real};
+use crate::shape::{Cone, FeatureId};
+
+/// The base and the slanted side are two segments of the half-plane; the nearer one answers.
+pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
+    let (radius, half_height) = (cone.radius(), cone.half_height());
+    let meridian = Meridian::of(point);
+    let middle = Point::<N, 2>::new(N::ZERO, -half_height);
+    let rim = Point::<N, 2>::new(radius, -half_height);
+    let apex = Point::<N, 2>::new(N::ZERO, half_height);
+    let (on_base, base_place) = nearest([&middle, &rim], &meridian.flat);
+    let (on_side, side_place) = nearest([&rim, &apex], &meridian.flat);
+    let base_feature = if base_place >= N::ONE { FeatureId::Edge(0) } else { FeatureId::Face(0) };
+    let side_feature = match side_place {
+        place if place >= N::ONE => FeatureId::Vertex(0),
+        place if place <= N::ZERO => FeatureId::Edge(0),
+        _ => FeatureId::Face(1),
+    };
+    let base = SurfacePoint::on(on_base, base_feature);
+    let found = base.nearer(SurfacePoint::on(on_side, side_feature), &meridian.flat);
+    SurfacePoint {
+        point: meridian.lift(&found.point),
+        feature: found.feature,
+        is_inside: contains(cone, &meridian.flat),
+    }
+}
+
+/// `flat` is (distance from the axis, height).
+fn contains<N: Real>(cone: &Cone<N>, flat: &Point<N, 2>) -> bool {
+    let (radius, half_height) = (cone.radius(), cone.half_height());
+    flat.y.abs() <= half_height
+        && flat.x <= radius
+        && flat.x * (half_height + half_height) <= radius * (half_height - flat.y)
+}

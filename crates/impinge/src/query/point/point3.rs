@@ -1,0 +1,30 @@
+//! Space: which file answers for which solid.
+
+use super::{
+    SurfacePoint, ball, capsule, cone, cuboid, cylinder, plane, polytope, segment, support_map,
+    triangle3,
+};
+use crate::math::{Point, Real};
+use crate::shape::Kind;
+
+/// The nearest point of the solid's boundary, in its local frame.
+pub(crate) fn surface_point<N: Real>(
+    kind: Kind<'_, N, 3>,
+    point: &Point<N, 3>,
+) -> SurfacePoint<N, 3> {
+    match kind {
+        Kind::Ball(solid) => ball::surface_point(solid.radius(), point),
+        Kind::Segment(solid) => segment::surface_point(solid, point),
+        Kind::Capsule(solid) => capsule::surface_point(solid, point),
+        Kind::Triangle(solid) => triangle3::surface_point(solid, point),
+        Kind::Cuboid(solid) => {
+            let corner = Point::from(*solid.half_extents());
+            cuboid::surface_point([&-corner, &corner], point)
+        }
+        Kind::Polytope(solid) => polytope::surface_point3(solid, point),
+        Kind::Cylinder(solid, _) => cylinder::surface_point(solid, point),
+        Kind::Cone(solid, _) => cone::surface_point(solid, point),
+        Kind::SupportMap(map) => support_map::surface_point(map, point),
+        Kind::Plane(solid) => plane::surface_point(solid, point),
+    }
+}

@@ -1,0 +1,64 @@
+//! The nearest point of a boundary, and how it is settled whether the asking point is inside.
+
+use super::PointProjection;
+use crate::math::{Point, Real, Vector, max, max_component, unit};
+use crate::shape::FeatureId;
+
+/// The point of a solid's boundary that is nearest to some point, all in the local frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SurfacePoint<N: Real, const D: usize> {
+    pub(crate) point: Point<N, D>,
+    pub(crate) feature: FeatureId,
+    /// The asking point lies in the solid or on its boundary.
+    pub(crate) is_inside: bool,
+}
+
+impl<N: Real, const D: usize> SurfacePoint<N, D> {
+    /// A nearest point of something that has no inside.
+    pub(super) const fn on(point: Point<N, D>, feature: FeatureId) -> Self {
+        Self { point, feature, is_inside: false }
+    }
+
+    /// Of two nearest points of parts, the one nearer to `asked`; the first where equal.
+    pub(super) fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
+        let (first, second) = (asked - self.point, asked - other.point);
+        if second.norm_squared() < first.norm_squared() { other } else { self }
+    }
+
+    /// For a set without thickness: what lies on it within rounding is its own projection.
+    ///
+    /// `reach` is the largest distance of the set from the local origin: the rounding of coordinates
+    /// is in proportion to it and to those of the asking point.
+    pub(super) fn snapped(self, asked: &Point<N, D>, reach: N) -> Self {
+        let scale = max(max_component(&asked.coords), reach);
+        let near = length(&(asked - self.point)) <= N::lit(8.0) * N::EPSILON * scale;
+        if near { Self { point: *asked, ..self } } else { self }
+    }
+
+    /// The public form. A point that is its own projection is inside, whatever the arithmetic of
+    /// the shape has found: distance zero and being inside are one thing.
+    pub(super) fn projection(self, asked: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
+        let finite = asked.iter().all(|x| x.is_finite_number());
+        let touches = self.is_inside || length(&(asked - self.point)) == N::ZERO;
+        let is_inside = finite && touches;
+        (PointProjection { is_inside, point: self.point }, self.feature)
+    }
+}
+
+/// The length of a vector, right also where its square is no number of the type; NaN for NaN.
+pub(in crate::query) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+    unit(v).map_or_else(|| v.norm(), |(_, length)| length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiny_lengths_are_not_zero() {
+        let tiny = Vector::<f32, 2>::new(3e-30, 4e-30);
+        assert!((length(&tiny) / 5e-30 - 1.0).abs() < 1e-6, "{}", length(&tiny));
+        assert_eq!(length(&Vector::<f32, 3>::zeros()), 0.0, "zero stays");
+        assert!(length(&Vector::<f32, 3>::new(f32::NAN, 0.0, 0.0)).is_nan(), "NaN stays");
+    }
+}

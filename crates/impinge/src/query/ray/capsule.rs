@@ -1,0 +1,67 @@
+//! A line and a capsule.
+
+use super::ball::{around, roots};
+use super::clip::in_order;
+use super::segment::{Names, span as segment_span};
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Real, Vector, max, min, unit, unit_or};
+use crate::shape::{Capsule, FeatureId};
+
+/// The union of two balls and of the round side between them, which is convex: first in, last out.
+///
+/// A capsule of no radius is a segment.
+pub(super) fn span<N: Real, const D: usize>(
+    capsule: &Capsule<N, D>,
+    ray: &Ray<N, D>,
+) -> Option<Span<N, D>> {
+    let (segment, radius) = (capsule.segment(), capsule.radius());
+    if radius == N::ZERO {
+        return segment_span([segment.a(), segment.b()], Names::SEGMENT, ray);
+    }
+    let at_a = around(segment.a(), radius, FeatureId::Vertex(0), ray);
+    let at_b = around(segment.b(), radius, FeatureId::Vertex(1), ray);
+    Span::union_of(side(capsule, ray), Span::union_of(at_a, at_b))
+}
+
+/// The solid cylinder around the segment, cut off flat at its ends.
+///
+/// The normal is the radial one at both ends of the span, also where the line passes through a cut:
+/// the cut lies inside the balls, and only its rim may come first, by rounding.
+fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> {
+    let (a, b) = (capsule.segment().a(), capsule.segment().b());
+    let (along, length) = unit(&(b - a))?;
+    let origin = ray.origin - a;
+    let (height, climb) = (origin.dot(&along), ray.dir.dot(&along));
+    let (flat_origin, flat_dir) = (origin - along * height, ray.dir - along * climb);
+    let found = roots(&flat_origin, &flat_dir, capsule.radius())?;
+    let (mut enter, mut leave) = (found.enter, found.leave);
+    if climb == N::ZERO {
+        if height < N::ZERO || height > length {
+            return None;
+        }
+    } else {
+        let (first, second) = (-height / climb, (length - height) / climb);
+        enter = max(enter, min(first, second));
+        leave = min(leave, max(first, second));
+    }
+    let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
+    let normals = [(enter, against), (leave, -against)]
+        .map(|(t, fallback)| unit_or(&(flat_origin + flat_dir * t), fallback));
+    let [enter_normal, leave_normal] =
+        refined(&found.places(), normals, [enter == found.enter, leave == found.leave]);
+    let feature = FeatureId::Edge(0);
+    let enter = Crossing::new(enter, enter_normal, feature);
+    let leave = Crossing::new(leave, leave_normal, feature);
+    let span = Span { enter, leave, thin: false };
+    in_order(&span).then_some(span)
+}
+
+/// The accurate normals where the line passes through the round side itself.
+fn refined<N: Real, const D: usize>(
+    places: &[Vector<N, D>; 2],
+    normals: [Vector<N, D>; 2],
+    round: [bool; 2],
+) -> [Vector<N, D>; 2] {
+    [0, 1].map(|end| if round[end] { unit_or(&places[end], normals[end]) } else { normals[end] })
+}

@@ -1,0 +1,50 @@
+//! The span of an intersection of sets, found by clipping the line with one after the other.
+
+use super::span::{Crossing, Span};
+use crate::math::{Real, Vector, max};
+use crate::shape::FeatureId;
+
+/// A half-space in the local frame: the points where `normal · x ≤ offset`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfSpace<N: Real, const D: usize> {
+    /// Unit.
+    pub(super) normal: Vector<N, D>,
+    /// How far the line's origin lies below the boundary: `offset − normal · origin`.
+    pub(super) below: N,
+    /// How fast the line rises: `normal · dir`.
+    pub(super) rise: N,
+    pub(super) feature: FeatureId,
+}
+
+/// Clips the line with all half-spaces (Cyrus and Beck 1978); `None` where nothing is left.
+///
+/// A line that only touches the intersection may lose it to the rounding of two divisions, so a
+/// crossing order that is wrong by a few units in the last place counts as touching (Ize, "Robust
+/// BVH Ray Traversal", 2013, bounds it the same way).
+pub(super) fn clipped<N: Real, const D: usize>(
+    mut span: Span<N, D>,
+    half_spaces: impl IntoIterator<Item = HalfSpace<N, D>>,
+) -> Option<Span<N, D>> {
+    for half_space in half_spaces {
+        let HalfSpace { normal, below, rise, feature } = half_space;
+        if rise == N::ZERO {
+            if below < N::ZERO {
+                return None;
+            }
+            continue;
+        }
+        let crossing = Crossing::new(below / rise, normal, feature);
+        if rise < N::ZERO && crossing.t > span.enter.t {
+            span.enter = crossing;
+        } else if rise > N::ZERO && crossing.t < span.leave.t {
+            span.leave = crossing;
+        }
+    }
+    in_order(&span).then_some(span)
+}
+
+/// Entering comes before leaving, up to rounding.
+pub(super) fn in_order<N: Real, const D: usize>(span: &Span<N, D>) -> bool {
+    let (enter, leave) = (span.enter.t, span.leave.t);
+    enter <= leave || enter - leave <= N::lit(8.0) * N::EPSILON * max(enter.abs(), leave.abs())
+}

@@ -1,0 +1,118 @@
+//! A line and a cone.
+
+use super::clip::clipped;
+use super::cylinder::{cap, span as cylinder_span};
+use super::segment::{Names, span as segment_span};
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, Vector, cross2, max, min, unit_or};
+use crate::shape::{Cone, Cylinder, FeatureId};
+
+/// The infinite double cone of the slanted side, one nappe of it, clipped by the base and at the
+/// apex. A cone of no height is a disk, one of no radius a segment.
+pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
+    let (radius, half_height) = (cone.radius(), cone.half_height());
+    if half_height == N::ZERO {
+        return cylinder_span(&Cylinder::new(N::ZERO, radius), ray);
+    }
+    if radius == N::ZERO {
+        let apex = Point::<N, 3>::new(N::ZERO, half_height, N::ZERO);
+        return segment_span([&-apex, &apex], Names::SEGMENT, ray);
+    }
+    let side = Nappe::new(cone, ray).span()?;
+    let caps = [(-N::ONE, FeatureId::Face(0)), (N::ONE, FeatureId::Vertex(0))];
+    clipped(side, caps.map(|(sign, feature)| cap(half_height, sign, feature, ray)))
+}
+
+/// The infinite cone below its apex, and a line through it.
+///
+/// With `(cosine, sine)` of half the opening angle, a point at distance `x` from the axis and
+/// height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
+struct Nappe<N: Real> {
+    cosine: N,
+    sine: N,
+    /// The origin, in the horizontal plane and in height over the apex.
+    flat: Vector<N, 2>,
+    height: N,
+    /// The direction, split the same way.
+    flat_dir: Vector<N, 2>,
+    climb: N,
+}
+
+impl<N: Real> Nappe<N> {
+    fn new(cone: &Cone<N>, ray: &Ray<N, 3>) -> Self {
+        let rise = cone.half_height() + cone.half_height();
+        let slant = Vector::<N, 2>::new(rise, cone.radius()).norm();
+        Self {
+            cosine: rise / slant,
+            sine: cone.radius() / slant,
+            flat: Vector::<N, 2>::new(ray.origin.x, ray.origin.z),
+            height: ray.origin.y - cone.half_height(),
+            flat_dir: Vector::<N, 2>::new(ray.dir.x, ray.dir.z),
+            climb: ray.dir.y,
+        }
+    }
+
+    /// `cosine² a² − sine² b²`, without the cancellation of the squares; negative inside.
+    fn form(&self, a: N, b: N) -> N {
+        (self.cosine * a - self.sine * b) * (self.cosine * a + self.sine * b)
+    }
+
+    /// The span in this nappe; of the other nappe only the apex may be in it. May reach over the
+    /// apex by rounding, which clipping there mends.
+    fn span(&self) -> Option<Span<N, 3>> {
+        let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
+        let constant = self.form(self.flat.norm(), self.height.abs());
+        let linear = self.cosine * self.cosine * self.flat.dot(&self.flat_dir)
+            - self.sine * self.sine * self.height * self.climb;
+        // The discriminant by the line's moment about the apex: a difference of two squares.
+        let moment = (self.flat * self.climb - self.flat_dir * self.height).norm();
+        let twist = cross2(&self.flat, &self.flat_dir).abs();
+        let discriminant = -self.form(twist, moment);
+        if discriminant < N::ZERO && quadratic > N::ZERO && constant > N::ZERO {
+            return None;
+        }
+        let root = self.cosine * max(discriminant, N::ZERO).sqrt();
+        let larger = if linear < N::ZERO { root - linear } else { -(linear + root) };
+        let (enter, leave) = self.piece(quadratic, larger, constant)?;
+        Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin: false })
+    }
+
+    /// Where `quadratic · t² + 2 · linear · t + constant ≤ 0` below the apex, given
+    /// `larger = −linear ∓ root`, the numerator of the root without cancellation.
+    ///
+    /// A line steeper than the side (`quadratic < 0`) passes through both nappes, and is below the
+    /// apex at the end of time that it descends to.
+    fn piece(&self, quadratic: N, larger: N, constant: N) -> Option<(N, N)> {
+        let (never_in, never_out) = (-N::INFINITY, N::INFINITY);
+        if quadratic == N::ZERO {
+            let t = constant / larger;
+            return match (larger < N::ZERO, larger > N::ZERO) {
+                (true, _) => Some((never_in, t)),
+                (_, true) => Some((t, never_out)),
+                _ => (constant <= N::ZERO).then_some((never_in, never_out)),
+            };
+        }
+        let first = larger / quadratic;
+        let second = if larger == N::ZERO { first } else { constant / larger };
+        let (low, high) = (min(first, second), max(first, second));
+        Some(if quadratic > N::ZERO {
+            (low, high)
+        } else if self.climb < N::ZERO {
+            (high, never_out)
+        } else {
+            (never_in, low)
+        })
+    }
+
+    fn crossing(&self, t: N) -> Crossing<N, 3> {
+        if !t.is_finite_number() {
+            return Crossing::never(t);
+        }
+        let radial = unit_or(&(self.flat + self.flat_dir * t), Vector::<N, 2>::zeros());
+        let normal = Vector::<N, 3>::new(self.cosine * radial.x, self.sine, self.cosine * radial.y);
+        // At the apex itself there is no radial part: straight up.
+        let normal = unit_or(&normal, Vector::<N, 3>::y());
+        Crossing::new(t, normal, FeatureId::Face(1))
+    }
+}

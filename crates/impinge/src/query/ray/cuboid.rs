@@ -1,0 +1,37 @@
+//! A line and a box.
+
+use super::clip::{HalfSpace, clipped};
+use super::span::Span;
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, Vector};
+use crate::shape::FeatureId;
+
+/// The slab test (Kay and Kajiya 1986), with the faces that are crossed; corners may be infinite.
+///
+/// Of faces that are crossed at the same time, the first in the order of their numbers answers.
+pub(super) fn span<N: Real, const D: usize>(
+    corners: [&Point<N, D>; 2],
+    ray: &Ray<N, D>,
+) -> Option<Span<N, D>> {
+    clipped(Span::everything(), (0..2 * D).map(|number| face(corners, number, ray)))
+}
+
+/// The half-space of face number `2 · axis` on the positive side of an axis, one more on the other.
+fn face<N: Real, const D: usize>(
+    corners: [&Point<N, D>; 2],
+    number: usize,
+    ray: &Ray<N, D>,
+) -> HalfSpace<N, D> {
+    let [mins, maxs] = corners;
+    let (axis, positive) = (number / 2, number.is_multiple_of(2));
+    let (origin, speed) = (ray.origin[axis], ray.dir[axis]);
+    let (sign, below, rise) = if positive {
+        (N::ONE, maxs[axis] - origin, speed)
+    } else {
+        (-N::ONE, origin - mins[axis], -speed)
+    };
+    let mut normal = Vector::<N, D>::zeros();
+    normal[axis] = sign;
+    let feature = FeatureId::Face(u32::try_from(number).expect("a box has few faces"));
+    HalfSpace { normal, below, rise, feature }
+}

@@ -1,0 +1,49 @@
+//! A line and a cylinder.
+
+use super::ball::roots;
+use super::clip::{HalfSpace, clipped};
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Real, Vector, unit_or};
+use crate::shape::{Cylinder, FeatureId};
+
+/// The infinite round side, clipped by the two caps.
+pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
+    let side = round_side(cylinder.radius(), ray)?;
+    let half_height = cylinder.half_height();
+    let caps = [(N::ONE, FeatureId::Face(0)), (-N::ONE, FeatureId::Face(1))];
+    clipped(side, caps.map(|(sign, feature)| cap(half_height, sign, feature, ray)))
+}
+
+/// The line inside the infinite cylinder around the y axis.
+fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
+    let flat = |v: &Vector<N, 3>| Vector::<N, 2>::new(v.x, v.z);
+    let (origin, dir) = (flat(&ray.origin.coords), flat(&ray.dir));
+    let found = roots(&origin, &dir, radius)?;
+    let [entry, exit] = found.places();
+    // Around an axis of no thickness the normal faces the line.
+    let against = unit_or(&-dir, Vector::<N, 2>::zeros());
+    let [enter, leave] = [(found.enter, entry, against), (found.leave, exit, -against)].map(
+        |(t, place, fallback)| {
+            let normal = unit_or(&place, fallback);
+            let normal = Vector::<N, 3>::new(normal.x, N::ZERO, normal.y);
+            Crossing::new(t, normal, FeatureId::Face(2))
+        },
+    );
+    Some(Span { enter, leave, thin: false })
+}
+
+/// The half-space under a flat end: `sign · y ≤ half_height`.
+pub(super) fn cap<N: Real>(
+    half_height: N,
+    sign: N,
+    feature: FeatureId,
+    ray: &Ray<N, 3>,
+) -> HalfSpace<N, 3> {
+    HalfSpace {
+        normal: Vector::<N, 3>::new(N::ZERO, sign, N::ZERO),
+        below: half_height - sign * ray.origin.y,
+        rise: sign * ray.dir.y,
+        feature,
+    }
+}

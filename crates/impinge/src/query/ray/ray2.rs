@@ -1,0 +1,26 @@
+//! The plane: which file answers for which solid.
+
+use super::span::Span;
+use super::{ball, capsule, cuboid, plane, polytope, segment, support_map, triangle2};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real};
+use crate::shape::Kind;
+
+/// When the line of the ray is inside the solid, in its local frame; `None` if never.
+pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
+    match kind {
+        Kind::Ball(solid) => ball::span(solid.radius(), ray),
+        Kind::Segment(solid) => segment::span([solid.a(), solid.b()], segment::Names::SEGMENT, ray),
+        Kind::Capsule(solid) => capsule::span(solid, ray),
+        Kind::Triangle(solid) => triangle2::span(solid, ray),
+        Kind::Cuboid(solid) => {
+            let corner = Point::from(*solid.half_extents());
+            cuboid::span([&-corner, &corner], ray)
+        }
+        Kind::Polytope(solid) => polytope::span(solid, ray),
+        Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
+            support_map::span(map, ray)
+        }
+        Kind::Plane(solid) => plane::span(solid, ray),
+    }
+}

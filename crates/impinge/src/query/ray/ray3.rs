@@ -1,0 +1,28 @@
+//! Space: which file answers for which solid.
+
+use super::span::Span;
+use super::{
+    ball, capsule, cone, cuboid, cylinder, plane, polytope, segment, support_map, triangle3,
+};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real};
+use crate::shape::Kind;
+
+/// When the line of the ray is inside the solid, in its local frame; `None` if never.
+pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
+    match kind {
+        Kind::Ball(solid) => ball::span(solid.radius(), ray),
+        Kind::Segment(solid) => segment::span([solid.a(), solid.b()], segment::Names::SEGMENT, ray),
+        Kind::Capsule(solid) => capsule::span(solid, ray),
+        Kind::Triangle(solid) => triangle3::span(solid, ray),
+        Kind::Cuboid(solid) => {
+            let corner = Point::from(*solid.half_extents());
+            cuboid::span([&-corner, &corner], ray)
+        }
+        Kind::Polytope(solid) => polytope::span(solid, ray),
+        Kind::Cylinder(solid, _) => cylinder::span(solid, ray),
+        Kind::Cone(solid, _) => cone::span(solid, ray),
+        Kind::SupportMap(map) => support_map::span(map, ray),
+        Kind::Plane(solid) => plane::span(solid, ray),
+    }
+}

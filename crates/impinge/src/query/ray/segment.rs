@@ -1,0 +1,58 @@
+//! A line and a segment, in any dimension.
+
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, Vector, max, unit_or};
+use crate::query::point::{feature_at, nearest_on_segment};
+use crate::shape::FeatureId;
+
+/// The names of a segment and of its ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Names {
+    pub(super) ends: [u32; 2],
+    pub(super) between: FeatureId,
+}
+
+impl Names {
+    /// Those of a segment that is a shape.
+    pub(super) const SEGMENT: Self = Self { ends: [0, 1], between: FeatureId::Edge(0) };
+}
+
+/// Seen along the ray, the segment is a segment in one dimension less, and the ray a point: it hits
+/// if that point is on it within rounding. A segment that the ray runs along is a point too, and is
+/// entered at one end and left at the other.
+pub(super) fn span<N: Real, const D: usize>(
+    ends: [&Point<N, D>; 2],
+    names: Names,
+    ray: &Ray<N, D>,
+) -> Option<Span<N, D>> {
+    let squared = ray.dir.norm_squared();
+    let [a, b] = ends.map(|end| end - ray.origin);
+    let [at_a, at_b] = [a, b].map(|end| end.dot(&ray.dir) / squared);
+    let (across_a, across_b) = (a - ray.dir * at_a, b - ray.dir * at_b);
+    let rounding = N::lit(8.0) * N::EPSILON * max(a.norm(), b.norm());
+    let seen = [Point::from(across_a), Point::from(across_b)];
+    let (nearest, fraction) = nearest_on_segment([&seen[0], &seen[1]], &Point::origin());
+    if !(nearest.coords.norm() <= rounding) {
+        return None;
+    }
+    let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
+    if (across_b - across_a).norm() <= rounding {
+        let ends = [(at_a, names.ends[0]), (at_b, names.ends[1])];
+        return Some(lengthwise(ends, against));
+    }
+    let t = at_a + (at_b - at_a) * fraction;
+    let along = unit_or(&(b - a), Vector::<N, D>::zeros());
+    let normal = unit_or(&(against - along * along.dot(&against)), against);
+    let crossing = Crossing::new(t, normal, feature_at(fraction, names.ends, names.between));
+    Some(Span::thin(crossing, crossing))
+}
+
+/// From the end that the line meets first to the other.
+fn lengthwise<N: Real, const D: usize>(ends: [(N, u32); 2], against: Vector<N, D>) -> Span<N, D> {
+    let [first, second] = if ends[1].0 < ends[0].0 { [ends[1], ends[0]] } else { ends };
+    Span::thin(
+        Crossing::new(first.0, against, FeatureId::Vertex(first.1)),
+        Crossing::new(second.0, -against, FeatureId::Vertex(second.1)),
+    )
+}

@@ -1,0 +1,92 @@
+//! The span of time during which a line is inside a convex set.
+
+use super::RayIntersection;
+use crate::math::{Real, Vector};
+use crate::shape::FeatureId;
+
+/// Where a line crosses a boundary: when, with which outward normal, on which feature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing<N: Real, const D: usize> {
+    /// May be negative (behind the origin) or infinite (never).
+    pub(super) t: N,
+    /// Unit, out of the solid.
+    pub(super) normal: Vector<N, D>,
+    pub(super) feature: FeatureId,
+}
+
+/// From entering to leaving: `enter.t ≤ leave.t` up to rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span<N: Real, const D: usize> {
+    pub(super) enter: Crossing<N, D>,
+    pub(super) leave: Crossing<N, D>,
+    /// The set has no inside: a hollow query is the same as a solid one.
+    pub(super) thin: bool,
+}
+
+impl<N: Real, const D: usize> Crossing<N, D> {
+    pub(super) const fn new(t: N, normal: Vector<N, D>, feature: FeatureId) -> Self {
+        Self { t, normal, feature }
+    }
+
+    /// A crossing that never happens, at either end of time.
+    pub(super) fn never(t: N) -> Self {
+        Self::new(t, Vector::<N, D>::zeros(), FeatureId::Face(0))
+    }
+
+    fn hit(self) -> Option<RayIntersection<N, D>> {
+        let Self { t, normal, feature } = self;
+        // Adding to zero, so that minus zero does not come out.
+        let toi = N::ZERO + t;
+        toi.is_finite_number().then_some(RayIntersection { toi, normal, feature })
+    }
+}
+
+impl<N: Real, const D: usize> Span<N, D> {
+    /// All of time.
+    pub(super) fn everything() -> Self {
+        Self {
+            enter: Crossing::never(-N::INFINITY),
+            leave: Crossing::never(N::INFINITY),
+            thin: false,
+        }
+    }
+
+    /// One moment, or two, on a set without thickness.
+    pub(super) fn thin(enter: Crossing<N, D>, leave: Crossing<N, D>) -> Self {
+        Self { enter, leave, thin: true }
+    }
+
+    /// The span of the union of two convex sets whose union is convex.
+    pub(super) fn union(self, other: Self) -> Self {
+        Self {
+            enter: if other.enter.t < self.enter.t { other.enter } else { self.enter },
+            leave: if other.leave.t > self.leave.t { other.leave } else { self.leave },
+            thin: self.thin && other.thin,
+        }
+    }
+
+    /// The union where either may be missing.
+    pub(super) fn union_of(first: Option<Self>, second: Option<Self>) -> Option<Self> {
+        match (first, second) {
+            (Some(first), Some(second)) => Some(first.union(second)),
+            (first, second) => first.or(second),
+        }
+    }
+
+    /// The first hit at a time of zero or more.
+    pub(super) fn first_hit(self, solid: bool) -> Option<RayIntersection<N, D>> {
+        if self.enter.t >= N::ZERO {
+            return self.enter.hit();
+        }
+        let starts_inside = self.leave.t >= N::ZERO;
+        if !starts_inside {
+            return None;
+        }
+        if !solid && !self.thin {
+            return self.leave.hit();
+        }
+        let behind = -self.enter.t < self.leave.t;
+        let feature = if behind { self.enter.feature } else { self.leave.feature };
+        Some(RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature })
+    }
+}

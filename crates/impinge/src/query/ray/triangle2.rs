@@ -1,0 +1,99 @@
+//! A line and a filled triangle in the plane.
+
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, Vector, cross2, max, min, perp, unit_or};
+use crate::shape::{FeatureId, Triangle};
+
+/// A corner as the line sees it.
+#[derive(Clone, Copy)]
+struct Corner<N: Real> {
+    /// When the line is nearest to it.
+    t: N,
+    /// On which side of the line it lies, and how far, in units of the direction's length.
+    side: N,
+}
+
+/// The line enters through a side that leads from its left to its right (of a triangle that runs
+/// counter-clockwise) and leaves through one that leads back.
+///
+/// Whether it hits depends on the three signs alone, and each is computed from one corner and the
+/// ray: triangles that share corners leave no gap.
+pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
+    let corners = triangle.corners().map(|corner| seen(&corner, ray));
+    let [a, b, c] = corners.map(|corner| corner.side);
+    let left = a > N::ZERO && b > N::ZERO && c > N::ZERO;
+    let right = a < N::ZERO && b < N::ZERO && c < N::ZERO;
+    if left || right {
+        return None;
+    }
+    let against = unit_or(&-ray.dir, Vector::<N, 2>::zeros());
+    if a == N::ZERO && b == N::ZERO && c == N::ZERO {
+        return Some(lengthwise(&corners, against));
+    }
+    let [first, second, third] = triangle.corners();
+    let turns_left = cross2(&(second - first), &(third - first)) >= N::ZERO;
+    let crossings = |entering: bool| {
+        let falling = entering == turns_left;
+        let crossed = (0..3).filter(move |&side| crosses(&corners, side, falling));
+        crossed.map(move |side| crossing(triangle, &corners, side, turns_left))
+    };
+    let enter = crossings(true).reduce(|x, y| if y.t < x.t { y } else { x })?;
+    let leave = crossings(false).reduce(|x, y| if y.t > x.t { y } else { x })?;
+    Some(in_order(enter, leave))
+}
+
+fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> Corner<N> {
+    let to_corner = corner - ray.origin;
+    let t = to_corner.dot(&ray.dir) / ray.dir.norm_squared();
+    Corner { t, side: cross2(&ray.dir, &to_corner) }
+}
+
+/// The side leads from the left of the line, or from it, to the right (`falling`) or back.
+fn crosses<N: Real>(corners: &[Corner<N>; 3], side: usize, falling: bool) -> bool {
+    let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
+    let (high, low) = if falling { (from, to) } else { (to, from) };
+    high >= N::ZERO && low <= N::ZERO && high > low
+}
+
+/// Where the line crosses a side: between the times of its ends, in proportion to their distances.
+fn crossing<N: Real>(
+    triangle: &Triangle<N, 2>,
+    corners: &[Corner<N>; 3],
+    side: usize,
+    turns_left: bool,
+) -> Crossing<N, 2> {
+    let next = (side + 1) % 3;
+    let (from, to) = (corners[side], corners[next]);
+    let fraction = from.side.abs() / (from.side.abs() + to.side.abs());
+    let inward = perp(&(triangle.corners()[next] - triangle.corners()[side]));
+    let outward = if turns_left { -inward } else { inward };
+    let normal = unit_or(&outward, Vector::<N, 2>::zeros());
+    let number = u32::try_from(side).expect("a triangle has three sides");
+    Crossing::new(from.t + (to.t - from.t) * fraction, normal, FeatureId::Face(number))
+}
+
+/// The span, with the times exchanged where rounding has exchanged them: the sides are told apart by
+/// the way they lead, and the times by themselves.
+fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2> {
+    let (first, last) = (min(enter.t, leave.t), max(enter.t, leave.t));
+    Span {
+        enter: Crossing { t: first, ..enter },
+        leave: Crossing { t: last, ..leave },
+        thin: false,
+    }
+}
+
+/// All corners lie on the line: from the first to the last.
+fn lengthwise<N: Real>(corners: &[Corner<N>; 3], against: Vector<N, 2>) -> Span<N, 2> {
+    let (mut first, mut last) = (0, 0);
+    for index in 1..3 {
+        first = if corners[index].t < corners[first].t { index } else { first };
+        last = if corners[index].t > corners[last].t { index } else { last };
+    }
+    let [enter, leave] = [(first, against), (last, -against)].map(|(index, normal)| {
+        let number = u32::try_from(index).expect("a triangle has three corners");
+        Crossing::new(corners[index].t, normal, FeatureId::Vertex(number))
+    });
+    Span::thin(enter, leave)
+}

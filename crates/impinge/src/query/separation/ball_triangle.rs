@@ -1,0 +1,105 @@
+//! Ball against triangle in space, where a triangle has no thickness.
+
+use super::ball_segment;
+use super::projection::{Projection, center_in_second};
+use super::wrong_kinds;
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, cross, max, unit};
+use crate::query::Pair;
+use crate::shape::Kind;
+
+/// The separation of a ball from a triangle in space.
+///
+/// A centre on the triangle leaves on the side that sees the corners counter-clockwise; on a
+/// triangle without area, as it would leave the nearest side.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    let center = center_in_second(&pair.pose12);
+    project(triangle.corners(), &center).of_ball(ball.radius(), &pair.pose12, limit)
+}
+
+/// A point seen from a triangle; the distance is never negative.
+fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
+    let across = cross(&(corners[1] - corners[0]), &(corners[2] - corners[0]));
+    let normal = unit(&across).map(|(normal, _)| toward(&normal, &(center - corners[0])));
+    if let Some(normal) = normal
+        && lies_over(corners, &across, center)
+    {
+        let distance = max((center - corners[0]).dot(&normal), N::ZERO);
+        return Projection { distance, outward: normal, point: center - normal * distance };
+    }
+    let mut seen = project_on_sides(corners, center);
+    // Close to a side the offset is mostly rounding: the triangle's own normal may be better.
+    if let Some(normal) = normal
+        && height(&normal, corners, center) > height(&seen.outward, corners, center)
+    {
+        seen.outward = normal;
+    }
+    seen
+}
+
+/// The nearest of the three sides, the first of equals.
+fn project_on_sides<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
+    let [a, b, c] = *corners;
+    let mut best = ball_segment::project(&[a, b], center);
+    for side in [[b, c], [c, a]] {
+        let seen = ball_segment::project(&side, center);
+        if seen.distance < best.distance {
+            best = seen;
+        }
+    }
+    best
+}
+
+/// `normal` or its opposite, whichever does not point away from `direction`.
+fn toward<N: Real>(normal: &Vector<N, 3>, direction: &Vector<N, 3>) -> Vector<N, 3> {
+    if normal.dot(direction) < N::ZERO { -normal } else { *normal }
+}
+
+/// The point projects into the triangle along `across`, a normal of any length.
+fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], across: &Vector<N, 3>, p: &Point<N, 3>) -> bool {
+    (0..3).all(|side| {
+        let (from, to) = (corners[side], corners[(side + 1) % 3]);
+        cross(&(to - from), &(p - from)).dot(across) >= N::ZERO
+    })
+}
+
+/// How far `p` is above the highest corner along `direction`.
+fn height<N: Real>(direction: &Vector<N, 3>, corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
+    corners.iter().fold(N::INFINITY, |least, corner| {
+        let above = direction.dot(&(p - corner));
+        if above < least { above } else { least }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    #[test]
+    fn over_the_face_a_side_and_a_corner() {
+        let corners = CORNERS.map(Point::from);
+        let p = Point::<f64, 3>::new;
+        let below = project(&corners, &p(1.0, 1.0, -2.0));
+        assert_eq!((below.distance, below.outward.z), (2.0, -1.0), "below the face");
+        let side = project(&corners, &p(2.0, -3.0, 4.0));
+        assert_eq!((side.distance, side.point), (5.0, p(2.0, 0.0, 0.0)), "beside a side");
+        let corner = project(&corners, &p(6.0, -1.0, 2.0));
+        assert_eq!((corner.distance, corner.point), (3.0, p(4.0, 0.0, 0.0)), "beyond a corner");
+        let on = project(&corners, &p(1.0, 1.0, 0.0));
+        assert_eq!((on.distance, on.outward.z), (0.0, 1.0), "on the face, to its first side");
+    }
+
+    #[test]
+    fn without_area_it_is_a_segment() {
+        let line = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 0.0, 0.0]].map(Point::from);
+        let seen = project(&line, &Point::<f64, 3>::new(1.0, 3.0, 0.0));
+        assert_eq!((seen.distance, seen.outward.y), (3.0, 1.0), "above the segment");
+        let on = project(&line, &Point::<f64, 3>::new(1.0, 0.0, 0.0));
+        assert_eq!((on.distance, on.outward.x), (0.0, 0.0), "leaves sideways");
+    }
+}

@@ -1,0 +1,44 @@
+//! Any two convex solids: the general algorithm, and what it takes to agree with the others.
+
+use super::wrong_kinds;
+use crate::convex::{Separation, separation2, separation3};
+use crate::math::{Pose, Real};
+use crate::query::Pair;
+use crate::shape::{Geometry, SupportMap};
+
+/// The two solids of a pair as support maps.
+fn maps<'a, N: Real, const D: usize>(
+    pair: &Pair<'a, N, D>,
+) -> (&'a dyn SupportMap<N, D>, &'a dyn SupportMap<N, D>) {
+    let (first, second) = (Geometry(pair.first), Geometry(pair.second));
+    match (first.as_support_map(), second.as_support_map()) {
+        (Some(map1), Some(map2)) => (map1, map2),
+        _ => wrong_kinds(pair),
+    }
+}
+
+/// A limit that nothing within `limit` exceeds by rounding: the general algorithm may give up on a
+/// bound that is off by rounding, and the exact comparison is made with the final distance.
+fn loosened<N: Real, const D: usize>(
+    map1: &dyn SupportMap<N, D>,
+    map2: &dyn SupportMap<N, D>,
+    pose12: &Pose<N, D>,
+    limit: N,
+) -> N {
+    let sizes = map1.reach() + map1.rounding() + map2.reach() + map2.rounding();
+    limit + N::lit(64.0) * N::EPSILON * (sizes + pose12.translation.norm() + limit.abs())
+}
+
+/// The separation of any two convex solids of the plane.
+pub(super) fn plane<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+    let (map1, map2) = maps(pair);
+    let found = separation2(map1, map2, &pair.pose12, loosened(map1, map2, &pair.pose12, limit));
+    found.filter(|found| found.distance <= limit)
+}
+
+/// The separation of any two convex solids of space.
+pub(super) fn space<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let (map1, map2) = maps(pair);
+    let found = separation3(map1, map2, &pair.pose12, loosened(map1, map2, &pair.pose12, limit));
+    found.filter(|found| found.distance <= limit)
+}

@@ -1,0 +1,74 @@
+//! The one fact about a pair: how far apart or how deep, where and along what.
+//!
+//! Distance, closest points, proximity, contact and time of impact are all derived from the
+//! [`Separation`] that the functions here compute, so that they cannot contradict each other. One
+//! file per pair of kinds, named in the order of [`ShapeKind`]; a table per dimension says which
+//! function serves which pair.
+//!
+//! Every function is given a pair and a limit and answers in the frame of the first solid; `None`
+//! exactly if the signed distance is above the limit (or not a number). The limit never changes the
+//! answer.
+
+mod ball_ball;
+mod ball_cone;
+mod ball_cuboid;
+mod ball_cylinder;
+mod ball_polytope;
+mod ball_segment;
+mod ball_triangle;
+mod cuboid_axes;
+mod cuboid_cuboid;
+mod general;
+mod outline;
+mod plane_any;
+mod polygon_polygon;
+mod projection;
+mod segment_segment;
+mod segments;
+mod table2;
+mod table3;
+mod world;
+
+use crate::convex::Separation;
+use crate::math::{Real, Space};
+use crate::query::Pair;
+use crate::shape::{Geometry, ShapeKind};
+
+pub(crate) use table2::separation as separation_in_plane;
+pub(crate) use table3::separation as separation_in_space;
+pub(crate) use world::in_world;
+
+/// An algorithm for one pair of kinds.
+pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
+
+/// One algorithm for each pair of kinds, by row and column in the order of [`ShapeKind`].
+type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];
+
+/// The separation of any pair, in either order of kinds.
+pub(crate) fn separation<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    (N::tables().separation)(pair, limit)
+}
+
+/// The algorithm of a table for a pair.
+fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) -> Algorithm<N, D> {
+    table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
+}
+
+/// The entry below the diagonal: the pair in its fixed order, turned round.
+fn flipped<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let pose12 = pair.pose12.inverse();
+    let ordered = Pair { first: pair.second, second: pair.first, pose12 };
+    separation(&ordered, limit).map(|found| found.flipped(&pose12))
+}
+
+/// An algorithm was given kinds that it is not for: the table is wrong.
+fn wrong_kinds<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> ! {
+    let (first, second) = (Geometry(pair.first).kind(), Geometry(pair.second).kind());
+    unreachable!("the pair table sent {first:?} and {second:?} to the wrong algorithm")
+}

@@ -1,0 +1,230 @@
+//! Segments, triangles, boxes and polygons among themselves in the plane, rounded or not.
+//!
+//! The signed distance of two convex sets is the largest gap that any direction leaves between them
+//! (negative where every direction finds them overlapping). Where they overlap, a normal of one of
+//! their sides attains it. Where they are apart, the gap is a concave function of the direction
+//! while it is positive, so that the nearest points are ends of, or lie on, the sides next to the
+//! best normal.
+
+use super::outline::Outline;
+use super::segments::nearest_of_ends;
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, max, min, perp, unit};
+use crate::query::Pair;
+
+/// The separation of two outlines.
+///
+/// Equal gaps: the sides of the first solid come before those of the second, in their order. Points
+/// at one place are parted along the first axis of the first solid's frame. Cost: the product of
+/// the numbers of vertices.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+    let outline1 = Outline::of(pair, &pair.first);
+    let outline2 = Outline::of(pair, &pair.second).placed(&pair.pose12);
+    let rounding = outline1.rounding + outline2.rounding;
+    let noise = N::lit(4.0) * N::EPSILON * max(outline1.reach(), outline2.reach());
+    let best = best_axis(&outline1, &outline2);
+    // A lower bound: what it rejects by more than rounding is out of reach.
+    if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
+        return None;
+    }
+    let cores = if best.gap <= N::ZERO {
+        overlapping(&outline1, &outline2, &best, noise)
+    } else {
+        apart(&outline1, &outline2, &best, noise)
+    };
+    let found = cores.rounded(outline1.rounding, outline2.rounding);
+    (found.distance <= limit).then_some(found)
+}
+
+/// A direction from the first outline to the second and the gap that it leaves between them.
+#[derive(Clone, Copy)]
+struct Axis<N: Real> {
+    gap: N,
+    normal: Vector<N, 2>,
+}
+
+/// The gap between two outlines along a direction.
+fn axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>, normal: Vector<N, 2>) -> Axis<N> {
+    Axis { gap: -outline2.height(&-normal) - outline1.height(&normal), normal }
+}
+
+/// The direction of the largest gap among the normals of all sides and the tips.
+fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
+    let mut best: Option<Axis<N>> = None;
+    let mut attempt = |normal: Vector<N, 2>| {
+        let tried = axis(outline1, outline2, normal);
+        if best.is_none_or(|best| tried.gap > best.gap) {
+            best = Some(tried);
+        }
+    };
+    for at in 0..outline1.vertices.len() {
+        outline1.normals[at].into_iter().chain(outline1.tip(at)).for_each(&mut attempt);
+    }
+    for at in 0..outline2.vertices.len() {
+        let normals = outline2.normals[at].into_iter().chain(outline2.tip(at));
+        normals.map(|normal| -normal).for_each(&mut attempt);
+    }
+    // Two points have no sides: the direction between them will do.
+    best.unwrap_or_else(|| {
+        let between = unit(&(outline2.vertices[0] - outline1.vertices[0]));
+        axis(outline1, outline2, between.map_or_else(Vector::<N, 2>::x, |(along, _)| along))
+    })
+}
+
+/// Outlines that touch or overlap: the points are in the middle of what the two features that face
+/// each other have in common.
+fn overlapping<N: Real>(
+    outline1: &Outline<N>,
+    outline2: &Outline<N>,
+    best: &Axis<N>,
+    noise: N,
+) -> Separation<N, 2> {
+    let tangent = perp(&best.normal);
+    let [low1, high1] = outline1.feature(&best.normal, &tangent, noise);
+    let [low2, high2] = outline2.feature(&-best.normal, &tangent, noise);
+    let middle = (max(low1.0, low2.0) + min(high1.0, high2.0)) * N::HALF;
+    let length = high1.0 - low1.0;
+    let share = if length > N::ZERO { (middle - low1.0) / length } else { N::ZERO };
+    let point1 = low1.1 + (high1.1 - low1.1) * max(min(share, N::ONE), N::ZERO);
+    let point2 = point1 + best.normal * best.gap;
+    Separation { distance: best.gap, normal: best.normal, point1, point2 }
+}
+
+/// Outlines that are apart along the best axis.
+fn apart<N: Real>(
+    outline1: &Outline<N>,
+    outline2: &Outline<N>,
+    best: &Axis<N>,
+    noise: N,
+) -> Separation<N, 2> {
+    let (near1, near2) = (outline1.support(&best.normal), outline2.support(&-best.normal));
+    let mut points =
+        nearest_points(outline1, outline2, &around(near1, outline1), &around(near2, outline2));
+    let mut direct = direct_axis(outline1, outline2, &points, best);
+    // Rounding may have hidden the best axis behind another one that is nearly parallel.
+    if (points.1 - points.0).norm() - direct.gap > N::lit(4.0) * noise {
+        let all = |outline: &Outline<N>| (0..outline.vertices.len()).collect::<Vec<_>>();
+        points = nearest_points(outline1, outline2, &all(outline1), &all(outline2));
+        direct = direct_axis(outline1, outline2, &points, best);
+    }
+    let distance =
+        if direct.normal == best.normal { best.gap } else { (points.1 - points.0).norm() };
+    Separation { distance, normal: direct.normal, point1: points.0, point2: points.1 }
+}
+
+/// The two sides that meet at a vertex.
+fn around<N: Real>(vertex: usize, outline: &Outline<N>) -> [usize; 2] {
+    let count = outline.vertices.len();
+    [(vertex + count - 1) % count, vertex]
+}
+
+/// The nearest points of some sides of one outline and some of another.
+fn nearest_points<N: Real>(
+    outline1: &Outline<N>,
+    outline2: &Outline<N>,
+    sides1: &[usize],
+    sides2: &[usize],
+) -> (Point<N, 2>, Point<N, 2>) {
+    let mut best = (outline1.vertices[0], outline2.vertices[0]);
+    let mut least = N::INFINITY;
+    for &side1 in sides1 {
+        for &side2 in sides2 {
+            let found = nearest_of_ends(&outline1.side(side1), &outline2.side(side2));
+            let squared = (found.1 - found.0).norm_squared();
+            if squared < least {
+                (best, least) = (found, squared);
+            }
+        }
+    }
+    best
+}
+
+/// The direction between two nearest points, unless they are so close that it is mostly rounding
+/// and `best` leaves a larger gap.
+fn direct_axis<N: Real>(
+    outline1: &Outline<N>,
+    outline2: &Outline<N>,
+    points: &(Point<N, 2>, Point<N, 2>),
+    best: &Axis<N>,
+) -> Axis<N> {
+    let between = unit(&(points.1 - points.0));
+    let direct = between.map(|(along, _)| axis(outline1, outline2, along));
+    direct.filter(|direct| direct.gap >= best.gap).unwrap_or(*best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::shape::{Capsule, Cuboid, Segment, Shape, Triangle};
+
+    fn p(x: f64, y: f64) -> Point<f64, 2> {
+        Point::<f64, 2>::new(x, y)
+    }
+
+    fn of(
+        shape1: &dyn Shape<f64, 2>,
+        shape2: &dyn Shape<f64, 2>,
+        x: f64,
+        y: f64,
+    ) -> Separation<f64, 2> {
+        let pose12 = Pose::from_translation(Vector::<f64, 2>::new(x, y));
+        let pair = Pair { first: shape1.geometry().0, second: shape2.geometry().0, pose12 };
+        separation(&pair, f64::INFINITY).expect("nothing is beyond infinity")
+    }
+
+    #[test]
+    fn crossing_segments_have_a_depth() {
+        let flat = Segment::new(p(-3.0, 0.0), p(3.0, 0.0));
+        let upright = Segment::new(p(0.0, -1.0), p(0.0, 2.0));
+        let found = of(&flat, &upright, 0.0, 0.0);
+        assert_eq!((found.distance, found.normal.y), (-1.0, 1.0), "up by one");
+        assert_eq!(found.point1, p(0.0, 0.0), "on the flat one");
+        assert_eq!(found.point2, p(0.0, -1.0), "the low end of the upright one");
+    }
+
+    #[test]
+    fn segments_in_a_row() {
+        let segment = Segment::new(p(-1.0, 0.0), p(1.0, 0.0));
+        let apart = of(&segment, &segment, 5.0, 0.0);
+        assert_eq!((apart.distance, apart.normal.x), (3.0, 1.0), "end to end");
+        let over = of(&segment, &segment, 1.0, 0.0);
+        assert_eq!((over.distance, over.normal.x), (0.0, 0.0), "they leave sideways");
+        assert_eq!(over.point1, p(0.5, 0.0), "in the middle of the overlap");
+    }
+
+    #[test]
+    fn boxes_side_by_side_corner_to_corner_and_deep() {
+        let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 2.0));
+        let side = of(&cuboid, &cuboid, 3.0, 1.0);
+        assert_eq!((side.distance, side.normal.x), (1.0, 1.0), "side by side");
+        let corner = of(&cuboid, &cuboid, 5.0, 8.0);
+        assert_eq!((corner.distance, corner.point1), (5.0, p(1.0, 2.0)), "3 out and 4 up");
+        let deep = of(&cuboid, &cuboid, -0.5, 1.0);
+        assert_eq!((deep.distance, deep.normal.x), (-1.5, -1.0), "back to the left");
+        assert_eq!(deep.point1, p(-1.0, 0.5), "in the middle of what the sides share");
+    }
+
+    #[test]
+    fn triangle_in_either_order_and_capsule() {
+        let capsule = Capsule::<f64, 2>::new(1.0, 0.25);
+        for corners in
+            [[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)], [p(0.0, 3.0), p(4.0, 0.0), p(0.0, 0.0)]]
+        {
+            let [a, b, c] = corners;
+            // The right end of the capsule's lower ball is one unit left of the triangle's side.
+            let found = of(&capsule, &Triangle::new(a, b, c), 1.25, -1.0);
+            assert_eq!((found.distance, found.normal.x), (1.0, 1.0), "beside the upright side");
+        }
+    }
+
+    #[test]
+    fn a_flat_triangle_is_a_segment() {
+        let line = Triangle::new(p(0.0, 0.0), p(2.0, 0.0), p(1.0, 0.0));
+        let found = of(&line, &line, 5.0, 0.0);
+        assert_eq!((found.distance, found.normal.x), (3.0, 1.0), "in a row");
+        let point = Triangle::new(p(0.0, 0.0), p(0.0, 0.0), p(0.0, 0.0));
+        assert_eq!(of(&point, &point, 3.0, 4.0).distance, 5.0, "points");
+        assert_eq!(of(&point, &point, 0.0, 0.0).normal, Vector::<f64, 2>::x(), "at one place");
+    }
+}

@@ -1,0 +1,44 @@
+//! Which algorithm serves which pair of kinds in the plane.
+
+use super::{
+    Algorithm, Table, ball_ball, ball_cuboid, ball_segment, flipped, general, look_up, plane_any,
+    polygon_polygon,
+};
+use crate::convex::Separation;
+use crate::math::Real;
+use crate::query::Pair;
+
+/// The table of the plane, for one scalar.
+struct Plane<N>(core::marker::PhantomData<N>);
+
+impl<N: Real> Plane<N> {
+    const TABLE: Table<N, 2> = {
+        let bb: Algorithm<N, 2> = ball_ball::separation;
+        let bs: Algorithm<N, 2> = ball_segment::separation;
+        let bc: Algorithm<N, 2> = ball_cuboid::separation;
+        let oo: Algorithm<N, 2> = polygon_polygon::separation;
+        let gg: Algorithm<N, 2> = general::plane;
+        let gp: Algorithm<N, 2> = plane_any::separation;
+        let pp: Algorithm<N, 2> = plane_any::plane_plane;
+        let __: Algorithm<N, 2> = flipped;
+        // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone
+        // (neither occurs in the plane), support map, plane.
+        [
+            [bb, bs, bs, oo, bc, oo, gg, gg, gg, gp],
+            [__, oo, oo, oo, oo, oo, gg, gg, gg, gp],
+            [__, __, oo, oo, oo, oo, gg, gg, gg, gp],
+            [__, __, __, oo, oo, oo, gg, gg, gg, gp],
+            [__, __, __, __, oo, oo, gg, gg, gg, gp],
+            [__, __, __, __, __, oo, gg, gg, gg, gp],
+            [__, __, __, __, __, __, gg, gg, gg, gp],
+            [__, __, __, __, __, __, __, gg, gg, gp],
+            [__, __, __, __, __, __, __, __, gg, gp],
+            [__, __, __, __, __, __, __, __, __, pp],
+        ]
+    };
+}
+
+/// The separation of any pair in the plane.
+pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+    look_up(&Plane::<N>::TABLE, pair)(pair, limit)
+}

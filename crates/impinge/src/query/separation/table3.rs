@@ -1,0 +1,50 @@
+//! Which algorithm serves which pair of kinds in space.
+
+use super::{
+    Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polytope,
+    ball_segment, ball_triangle, cuboid_cuboid, flipped, general, look_up, plane_any,
+    segment_segment,
+};
+use crate::convex::Separation;
+use crate::math::Real;
+use crate::query::Pair;
+
+/// The table of space, for one scalar.
+struct Space<N>(core::marker::PhantomData<N>);
+
+impl<N: Real> Space<N> {
+    const TABLE: Table<N, 3> = {
+        let bb: Algorithm<N, 3> = ball_ball::separation;
+        let bs: Algorithm<N, 3> = ball_segment::separation;
+        let bt: Algorithm<N, 3> = ball_triangle::separation;
+        let bc: Algorithm<N, 3> = ball_cuboid::separation;
+        let bh: Algorithm<N, 3> = ball_polytope::separation;
+        let by: Algorithm<N, 3> = ball_cylinder::separation;
+        let bo: Algorithm<N, 3> = ball_cone::separation;
+        let ss: Algorithm<N, 3> = segment_segment::separation;
+        let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
+        let gg: Algorithm<N, 3> = general::space;
+        let gp: Algorithm<N, 3> = plane_any::separation;
+        let pp: Algorithm<N, 3> = plane_any::plane_plane;
+        let __: Algorithm<N, 3> = flipped;
+        // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
+        // support map, plane.
+        [
+            [bb, bs, bs, bt, bc, bh, by, bo, gg, gp],
+            [__, ss, ss, gg, gg, gg, gg, gg, gg, gp],
+            [__, __, ss, gg, gg, gg, gg, gg, gg, gp],
+            [__, __, __, gg, gg, gg, gg, gg, gg, gp],
+            [__, __, __, __, cc, gg, gg, gg, gg, gp],
+            [__, __, __, __, __, gg, gg, gg, gg, gp],
+            [__, __, __, __, __, __, gg, gg, gg, gp],
+            [__, __, __, __, __, __, __, gg, gg, gp],
+            [__, __, __, __, __, __, __, __, gg, gp],
+            [__, __, __, __, __, __, __, __, __, pp],
+        ]
+    };
+}
+
+/// The separation of any pair in space.
+pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    look_up(&Space::<N>::TABLE, pair)(pair, limit)
+}

@@ -1,0 +1,368 @@
+//! The world: objects in, changes by handle, everything else at the next update.
+
+use core::fmt;
+
+use super::error::{finite_pose, or_panic, usable_query};
+use super::filter::Filters;
+use super::objects::Description;
+use super::step::in_order;
+use super::{
+    BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase,
+    WorldBroadPhase, WorldError,
+};
+use crate::math::Space;
+use crate::narrow_phase::{
+    CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType,
+};
+use crate::shape::ShapeHandle;
+
+/// Objects that are told, at each update, who touches whom.
+///
+/// Objects are added, moved, changed and removed by handle; [`Self::update`] then finds the pairs
+/// (broad phase), computes their contacts and proximities (narrow phase) and collects the events
+/// since the update before. World-scale queries see every change at once; pairs, contacts and events
+/// are those of the last update.
+///
+/// `T` is the user's data, which the world stores and never touches: it need not be `Send` or
+/// `Sync`, and the world is what `T` is. All orders are canonical, by handle.
+pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
+    pub(super) objects: CollisionObjects<N, D, T>,
+    pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
+    pub(super) narrow_phase: Box<dyn NarrowPhase<N, D, T>>,
+    /// What takes over at the next update.
+    pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
+    pub(super) next_narrow_phase: Option<Box<dyn NarrowPhase<N, D, T>>>,
+    pub(super) filters: Filters<N, D, T>,
+    /// Those of the last update.
+    pub(super) events: Events,
+    /// Those that removals have caused since.
+    pub(super) queued: Events,
+    /// Scratch: the objects whose pairs need other algorithms.
+    pub(super) algorithms: Vec<u32>,
+}
+
+impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionWorld<N, D, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CollisionWorld")
+            .field("objects", &self.len())
+            .field("pairs", &self.broad_phase.num_interferences())
+            .field("filters", &self.filters)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Making a world and filling it.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// An empty world.
+    ///
+    /// `margin` is how far the broad phase loosens the boxes, so that objects that move less cost
+    /// little: a fiftieth of the size of a typical object is a good value. It never changes an exact
+    /// answer.
+    ///
+    /// # Panics
+    /// If the margin is negative or not finite; [`Self::try_new`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn new(margin: N) -> Self {
+        or_panic(Self::try_new(margin))
+    }
+
+    /// An empty world; see [`Self::new`].
+    ///
+    /// # Errors
+    /// If the margin is negative or not finite.
+    pub fn try_new(margin: N) -> Result<Self, WorldError> {
+        if margin < N::ZERO || !margin.is_finite_number() {
+            return Err(WorldError::Margin { value: margin.as_f64() });
+        }
+        Ok(Self {
+            objects: CollisionObjects::new(),
+            broad_phase: (N::tables().world.new_broad_phase)(margin),
+            narrow_phase: Box::new(DefaultNarrowPhase::<N, D>::new()),
+            next_broad_phase: None,
+            next_narrow_phase: None,
+            filters: Filters::new(),
+            events: Events::default(),
+            queued: Events::default(),
+            algorithms: Vec::new(),
+        })
+    }
+
+    /// Adds an object. Queries see it at once, pairs at the next update.
+    ///
+    /// # Panics
+    /// If a number of the position is not finite, a number of the query type is negative or not
+    /// finite, or the world is full; [`Self::try_add`] returns these.
+    #[track_caller]
+    pub fn add(
+        &mut self,
+        position: N::Isometry,
+        shape: ShapeHandle<N, D>,
+        groups: CollisionGroups,
+        query_type: GeometricQueryType<N>,
+        data: T,
+    ) -> CollisionObjectHandle {
+        or_panic(self.try_add(position, shape, groups, query_type, data))
+    }
+
+    /// Adds an object; see [`Self::add`].
+    ///
+    /// # Errors
+    /// If a number of the position is not finite, a number of the query type is negative or not
+    /// finite, or the world is full. The world is unchanged then.
+    pub fn try_add(
+        &mut self,
+        position: N::Isometry,
+        shape: ShapeHandle<N, D>,
+        groups: CollisionGroups,
+        query_type: GeometricQueryType<N>,
+        data: T,
+    ) -> Result<CollisionObjectHandle, WorldError> {
+        finite_pose(N::pose(&position), None)?;
+        let query_type = usable_query(query_type)?;
+        let handle = self.objects.next_handle()?;
+        let broad_phase = &mut self.broad_phase;
+        let object = Description { position, shape, groups, query_type, data };
+        self.objects.insert(handle, object, |volume| broad_phase.create_proxy(volume, handle));
+        Ok(handle)
+    }
+
+    /// Removes objects. Their pairs end at once; the events of that come first in the next batch.
+    ///
+    /// # Panics
+    /// If a handle is stale or occurs twice; [`Self::try_remove`] returns these.
+    #[track_caller]
+    pub fn remove(&mut self, handles: &[CollisionObjectHandle]) {
+        or_panic(self.try_remove(handles));
+    }
+
+    /// Removes objects; see [`Self::remove`].
+    ///
+    /// # Errors
+    /// If a handle is stale or occurs twice. No object is removed then.
+    pub fn try_remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
+        let mut proxies = Vec::with_capacity(handles.len());
+        for &handle in handles {
+            proxies.push(self.objects.fresh(handle)?.proxy_handle);
+        }
+        refuse_repeated(handles)?;
+        let (objects, queued) = (&self.objects, &mut self.queued);
+        let narrow_phase = &mut self.narrow_phase;
+        self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
+            let (first, second) = in_order(handle1, handle2);
+            narrow_phase.handle_removal(queued, objects, first, second);
+        });
+        for &handle in handles {
+            self.objects.remove(handle);
+        }
+        Ok(())
+    }
+}
+
+/// No handle occurs twice.
+fn refuse_repeated(handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
+    let mut sorted = handles.to_vec();
+    sorted.sort_unstable();
+    match sorted.windows(2).find(|two| two[0] == two[1]) {
+        Some(two) => Err(WorldError::RepeatedHandle(two[0])),
+        None => Ok(()),
+    }
+}
+
+/// Changing objects in place.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Moves an object. Queries see it at once, pairs at the next update.
+    ///
+    /// # Panics
+    /// If the handle is stale or a number of the position is not finite; [`Self::try_set_position`]
+    /// returns these.
+    #[track_caller]
+    pub fn set_position(&mut self, handle: CollisionObjectHandle, position: N::Isometry) {
+        or_panic(self.try_set_position(handle, position));
+    }
+
+    /// Moves an object; see [`Self::set_position`].
+    ///
+    /// # Errors
+    /// If the handle is stale or a number of the position is not finite. The world is unchanged then.
+    pub fn try_set_position(
+        &mut self,
+        handle: CollisionObjectHandle,
+        position: N::Isometry,
+    ) -> Result<(), WorldError> {
+        let object = self.objects.fresh(handle)?;
+        finite_pose(N::pose(&position), Some(handle))?;
+        object.position = position;
+        (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), position);
+        Ok(())
+    }
+
+    /// Moves many objects: all of them or, on an error, none. Of several positions for one object
+    /// the last one holds.
+    ///
+    /// # Panics
+    /// If a handle is stale or a number of a position is not finite; [`Self::try_set_positions`]
+    /// returns these.
+    #[track_caller]
+    pub fn set_positions(&mut self, positions: &[(CollisionObjectHandle, N::Isometry)]) {
+        or_panic(self.try_set_positions(positions));
+    }
+
+    /// Moves many objects; see [`Self::set_positions`].
+    ///
+    /// # Errors
+    /// If a handle is stale or a number of a position is not finite. The world is unchanged then.
+    pub fn try_set_positions(
+        &mut self,
+        positions: &[(CollisionObjectHandle, N::Isometry)],
+    ) -> Result<(), WorldError> {
+        for (handle, position) in positions {
+            self.objects.fresh(*handle)?;
+            finite_pose(N::pose(position), Some(*handle))?;
+        }
+        for (handle, position) in positions {
+            self.objects.fresh(*handle)?.position = *position;
+            (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), *position);
+        }
+        Ok(())
+    }
+
+    /// Gives an object another shape. Its pairs are evaluated anew at the next update.
+    ///
+    /// # Panics
+    /// If the handle is stale; [`Self::try_set_shape`] returns this.
+    #[track_caller]
+    pub fn set_shape(&mut self, handle: CollisionObjectHandle, shape: ShapeHandle<N, D>) {
+        or_panic(self.try_set_shape(handle, shape));
+    }
+
+    /// Gives an object another shape; see [`Self::set_shape`].
+    ///
+    /// # Errors
+    /// If the handle is stale. The world is unchanged then.
+    pub fn try_set_shape(
+        &mut self,
+        handle: CollisionObjectHandle,
+        shape: ShapeHandle<N, D>,
+    ) -> Result<(), WorldError> {
+        self.objects.fresh(handle)?.shape = shape.clone();
+        (N::tables().world.set_shape)(&mut self.objects.bodies, handle.index(), shape);
+        Ok(())
+    }
+
+    /// Gives an object other groups. Its pairs start and stop accordingly at the next update; queries
+    /// see the groups at once.
+    ///
+    /// # Panics
+    /// If the handle is stale; [`Self::try_set_collision_groups`] returns this.
+    #[track_caller]
+    pub fn set_collision_groups(&mut self, handle: CollisionObjectHandle, groups: CollisionGroups) {
+        or_panic(self.try_set_collision_groups(handle, groups));
+    }
+
+    /// Gives an object other groups; see [`Self::set_collision_groups`].
+    ///
+    /// # Errors
+    /// If the handle is stale. The world is unchanged then.
+    pub fn try_set_collision_groups(
+        &mut self,
+        handle: CollisionObjectHandle,
+        groups: CollisionGroups,
+    ) -> Result<(), WorldError> {
+        self.objects.fresh(handle)?.collision_groups = groups;
+        self.objects.bodies.set_groups(handle.index(), groups);
+        Ok(())
+    }
+
+    /// Asks something else of an object's pairs from the next update on.
+    ///
+    /// # Panics
+    /// If the handle is stale or a number of the query type is negative or not finite;
+    /// [`Self::try_set_query_type`] returns these.
+    #[track_caller]
+    pub fn set_query_type(
+        &mut self,
+        handle: CollisionObjectHandle,
+        query_type: GeometricQueryType<N>,
+    ) {
+        or_panic(self.try_set_query_type(handle, query_type));
+    }
+
+    /// Asks something else of an object's pairs; see [`Self::set_query_type`].
+    ///
+    /// # Errors
+    /// If the handle is stale or a number of the query type is negative or not finite. The world is
+    /// unchanged then.
+    pub fn try_set_query_type(
+        &mut self,
+        handle: CollisionObjectHandle,
+        query_type: GeometricQueryType<N>,
+    ) -> Result<(), WorldError> {
+        let object = self.objects.fresh(handle)?;
+        object.query_type = usable_query(query_type)?;
+        self.objects.bodies.set_query(handle.index(), query_type);
+        Ok(())
+    }
+
+    /// Adds a filter of pairs, in place of the one of this name if there is one. All pairs are
+    /// filtered again at the next update.
+    pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
+    where
+        F: BroadPhasePairFilter<N, D, T> + 'static,
+    {
+        self.filters.register(name, Box::new(filter));
+        self.broad_phase.deferred_recompute_all_proximities();
+    }
+
+    /// Takes a filter away; nothing happens if there is none of this name. All pairs are filtered
+    /// again at the next update.
+    pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
+        if self.filters.unregister(name) {
+            self.broad_phase.deferred_recompute_all_proximities();
+        }
+    }
+}
+
+/// Looking objects up.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The object of a handle; `None` for a stale one.
+    #[must_use]
+    pub fn collision_object(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> Option<&CollisionObject<N, D, T>> {
+        self.objects.get(handle)
+    }
+
+    /// The object of a handle, to change its data; `None` for a stale one.
+    #[must_use]
+    pub fn collision_object_mut(
+        &mut self,
+        handle: CollisionObjectHandle,
+    ) -> Option<&mut CollisionObject<N, D, T>> {
+        self.objects.get_mut(handle)
+    }
+
+    /// The objects, in order of their handles.
+    pub fn collision_objects(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
+        self.objects.iter()
+    }
+
+    /// The handle names an object of this world.
+    #[must_use]
+    pub fn contains(&self, handle: CollisionObjectHandle) -> bool {
+        self.objects.get(handle).is_some()
+    }
+
+    /// How many objects there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// There is no object.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.objects.is_empty()
+    }
+}

@@ -1,0 +1,90 @@
+//! Why a world refuses an operation.
+
+use core::fmt;
+
+use crate::math::{Pose, Real};
+use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+
+/// Why a world refused an operation; the world is unchanged then. Values are given as `f64`, exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// The handle names no object of the world, or no longer.
+    StaleHandle(CollisionObjectHandle),
+    /// The handle occurs twice among those to remove.
+    RepeatedHandle(CollisionObjectHandle),
+    /// A number of a position is NaN or infinite.
+    Position {
+        /// The object to be moved; `None` for one to be added.
+        handle: Option<CollisionObjectHandle>,
+        /// The number.
+        value: f64,
+    },
+    /// A number of a query type is negative, NaN or infinite.
+    QueryType {
+        /// The number.
+        value: f64,
+    },
+    /// The margin of a world is negative, NaN or infinite.
+    Margin {
+        /// The number.
+        value: f64,
+    },
+    /// The world holds as many objects as it can name.
+    Full,
+}
+
+impl fmt::Display for WorldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StaleHandle(handle) => write!(f, "{handle:?} names no object of this world"),
+            Self::RepeatedHandle(handle) => write!(f, "{handle:?} is to be removed twice"),
+            Self::Position { handle: Some(handle), value } => {
+                write!(f, "a number of the position for {handle:?} is {value}")
+            }
+            Self::Position { handle: None, value } => {
+                write!(f, "a number of the position of a new object is {value}")
+            }
+            Self::QueryType { value } => {
+                write!(f, "a number of the query type is {value}: it must be finite and not negative")
+            }
+            Self::Margin { value } => {
+                write!(f, "the margin is {value}: it must be finite and not negative")
+            }
+            Self::Full => write!(f, "the world holds as many objects as it can name"),
+        }
+    }
+}
+
+impl std::error::Error for WorldError {}
+
+/// The pose, if all of its numbers are finite.
+pub(super) fn finite_pose<N: Real, const D: usize>(
+    pose: Pose<N, D>,
+    handle: Option<CollisionObjectHandle>,
+) -> Result<Pose<N, D>, WorldError> {
+    let mut numbers = pose.translation.iter().chain(pose.rotation.iter());
+    match numbers.find(|x| !x.is_finite_number()) {
+        Some(value) => Err(WorldError::Position { handle, value: value.as_f64() }),
+        None => Ok(pose),
+    }
+}
+
+/// The query type, if its numbers are finite and not negative.
+pub(super) fn usable_query<N: Real>(
+    query: GeometricQueryType<N>,
+) -> Result<GeometricQueryType<N>, WorldError> {
+    match query.bad_number() {
+        Some(value) => Err(WorldError::QueryType { value: value.as_f64() }),
+        None => Ok(query),
+    }
+}
+
+/// The value, or a panic with the error's text: the end of every panicking method.
+#[track_caller]
+pub(super) fn or_panic<S>(result: Result<S, WorldError>) -> S {
+    match result {
+        Ok(value) => value,
+        Err(error) => panic!("{error}"),
+    }
+}

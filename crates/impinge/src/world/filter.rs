@@ -1,0 +1,73 @@
+//! Filters of the user's own on the pairs that the broad phase finds.
+
+use core::fmt;
+
+use super::CollisionObject;
+use crate::math::Space;
+
+/// Says which pairs shall exist at all.
+///
+/// Asked only about pairs that the groups allow, and only when a pair is about to start; all filters
+/// of a world must agree. The answer must not change in time unless the filter is registered anew or
+/// the groups of one of the objects are set again.
+pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
+    /// The two objects may interact. `co1` is the one whose handle comes first.
+    fn is_pair_valid(
+        &self,
+        co1: &CollisionObject<N, D, T>,
+        co2: &CollisionObject<N, D, T>,
+    ) -> bool;
+}
+
+type Named<N, const D: usize, T> = (String, Box<dyn BroadPhasePairFilter<N, D, T>>);
+
+/// The filters of a world, sorted by name.
+pub(super) struct Filters<N: Space<D>, const D: usize, T> {
+    filters: Vec<Named<N, D, T>>,
+}
+
+impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
+    pub(super) const fn new() -> Self {
+        Self { filters: Vec::new() }
+    }
+
+    /// Puts a filter under a name, in place of the one that has it.
+    pub(super) fn register(&mut self, name: &str, filter: Box<dyn BroadPhasePairFilter<N, D, T>>) {
+        match self.position(name) {
+            Ok(place) => self.filters[place].1 = filter,
+            Err(place) => self.filters.insert(place, (name.to_owned(), filter)),
+        }
+    }
+
+    /// Forgets the filter under a name; `false` if there is none.
+    pub(super) fn unregister(&mut self, name: &str) -> bool {
+        let place = self.position(name);
+        if let Ok(place) = place {
+            self.filters.remove(place);
+        }
+        place.is_ok()
+    }
+
+    fn position(&self, name: &str) -> Result<usize, usize> {
+        self.filters.binary_search_by(|(other, _)| other.as_str().cmp(name))
+    }
+
+    /// All filters agree.
+    pub(super) fn allow(
+        &self,
+        co1: &CollisionObject<N, D, T>,
+        co2: &CollisionObject<N, D, T>,
+    ) -> bool {
+        self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.filters.is_empty()
+    }
+}
+
+impl<N: Space<D>, const D: usize, T> fmt::Debug for Filters<N, D, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.filters.iter().map(|(name, _)| name)).finish()
+    }
+}

@@ -1,0 +1,316 @@
+//! Who may interact with whom: groups as bit masks.
+
+use core::fmt;
+
+/// The largest group number.
+const LAST_GROUP: usize = 29;
+/// The mask of all groups, 0 to 29.
+const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
+
+/// The groups that an object belongs to, accepts and refuses.
+///
+/// Two objects interact if each is a member of at least one group that the other whitelists, and
+/// neither is a member of a group that the other blacklists: the blacklist wins. Groups are
+/// numbered 0 to 29.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CollisionGroups {
+    membership: u32,
+    whitelist: u32,
+    blacklist: u32,
+    self_collision: bool,
+}
+
+/// A group number above 29.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GroupError(pub usize);
+
+impl fmt::Display for GroupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "there is no group {}: groups are numbered 0 to {LAST_GROUP}", self.0)
+    }
+}
+
+impl std::error::Error for GroupError {}
+
+impl Default for CollisionGroups {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The mask of one group.
+fn bit(group: usize) -> Result<u32, GroupError> {
+    if group > LAST_GROUP { Err(GroupError(group)) } else { Ok(1 << group) }
+}
+
+/// The mask of some groups; an error leaves nothing half done because the mask is made first.
+fn mask(groups: &[usize]) -> Result<u32, GroupError> {
+    groups.iter().try_fold(0, |mask, &group| Ok(mask | bit(group)?))
+}
+
+/// `mask` with one group put in or taken out.
+fn with_group(mask: u32, group: usize, present: bool) -> Result<u32, GroupError> {
+    let bit = bit(group)?;
+    Ok(if present { mask | bit } else { mask & !bit })
+}
+
+/// `mask` has the group; none has a group above the last.
+fn has(mask: u32, group: usize) -> bool {
+    bit(group).is_ok_and(|bit| mask & bit != 0)
+}
+
+/// The value, or a panic with the error's text.
+#[track_caller]
+fn or_panic(result: Result<(), GroupError>) {
+    if let Err(error) = result {
+        panic!("{error}");
+    }
+}
+
+impl CollisionGroups {
+    /// Member of all groups, whitelists all, blacklists none; no self-collision.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            membership: ALL_GROUPS,
+            whitelist: ALL_GROUPS,
+            blacklist: 0,
+            self_collision: false,
+        }
+    }
+
+    /// Makes the object a member of these groups and no others.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_membership`] returns it.
+    #[track_caller]
+    pub fn set_membership(&mut self, groups: &[usize]) {
+        or_panic(self.try_set_membership(groups));
+    }
+
+    /// Makes the object a member of these groups and no others.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_set_membership(&mut self, groups: &[usize]) -> Result<(), GroupError> {
+        self.membership = mask(groups)?;
+        Ok(())
+    }
+
+    /// Lets the object interact with members of these groups and no others.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_whitelist`] returns it.
+    #[track_caller]
+    pub fn set_whitelist(&mut self, groups: &[usize]) {
+        or_panic(self.try_set_whitelist(groups));
+    }
+
+    /// Lets the object interact with members of these groups and no others.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_set_whitelist(&mut self, groups: &[usize]) -> Result<(), GroupError> {
+        self.whitelist = mask(groups)?;
+        Ok(())
+    }
+
+    /// Keeps the object from interacting with members of these groups and no others.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_blacklist`] returns it.
+    #[track_caller]
+    pub fn set_blacklist(&mut self, groups: &[usize]) {
+        or_panic(self.try_set_blacklist(groups));
+    }
+
+    /// Keeps the object from interacting with members of these groups and no others.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_set_blacklist(&mut self, groups: &[usize]) -> Result<(), GroupError> {
+        self.blacklist = mask(groups)?;
+        Ok(())
+    }
+
+    /// Makes the object a member of one group, or no longer a member.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_modify_membership`] returns it.
+    #[track_caller]
+    pub fn modify_membership(&mut self, group: usize, add: bool) {
+        or_panic(self.try_modify_membership(group, add));
+    }
+
+    /// Makes the object a member of one group, or no longer a member.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_modify_membership(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
+        self.membership = with_group(self.membership, group, add)?;
+        Ok(())
+    }
+
+    /// Puts one group on the whitelist, or takes it off.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_modify_whitelist`] returns it.
+    #[track_caller]
+    pub fn modify_whitelist(&mut self, group: usize, add: bool) {
+        or_panic(self.try_modify_whitelist(group, add));
+    }
+
+    /// Puts one group on the whitelist, or takes it off.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_modify_whitelist(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
+        self.whitelist = with_group(self.whitelist, group, add)?;
+        Ok(())
+    }
+
+    /// Puts one group on the blacklist, or takes it off.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_modify_blacklist`] returns it.
+    #[track_caller]
+    pub fn modify_blacklist(&mut self, group: usize, add: bool) {
+        or_panic(self.try_modify_blacklist(group, add));
+    }
+
+    /// Puts one group on the blacklist, or takes it off.
+    ///
+    /// # Errors
+    /// On a group above 29; nothing is changed then.
+    pub fn try_modify_blacklist(&mut self, group: usize, add: bool) -> Result<(), GroupError> {
+        self.blacklist = with_group(self.blacklist, group, add)?;
+        Ok(())
+    }
+
+    /// Takes over the membership of other groups.
+    pub const fn copy_membership(&mut self, other: &Self) {
+        self.membership = other.membership;
+    }
+
+    /// Takes over the whitelist of other groups.
+    pub const fn copy_whitelist(&mut self, other: &Self) {
+        self.whitelist = other.whitelist;
+    }
+
+    /// Takes over the blacklist of other groups.
+    pub const fn copy_blacklist(&mut self, other: &Self) {
+        self.blacklist = other.blacklist;
+    }
+
+    /// The object is a member of the group; `false` for a group above 29.
+    #[must_use]
+    pub fn is_member_of(&self, group: usize) -> bool {
+        has(self.membership, group)
+    }
+
+    /// The group is on the whitelist; `false` for a group above 29.
+    #[must_use]
+    pub fn is_group_whitelisted(&self, group: usize) -> bool {
+        has(self.whitelist, group)
+    }
+
+    /// The group is on the blacklist; `false` for a group above 29.
+    #[must_use]
+    pub fn is_group_blacklisted(&self, group: usize) -> bool {
+        has(self.blacklist, group)
+    }
+
+    /// Lets the narrow phase query the object against itself: meaningful for deformable and
+    /// composite shapes. Off by default.
+    pub const fn enable_self_collision(&mut self) {
+        self.self_collision = true;
+    }
+
+    /// Keeps the narrow phase from querying the object against itself.
+    pub const fn disable_self_collision(&mut self) {
+        self.self_collision = false;
+    }
+
+    /// Objects with these groups and with `other`'s may interact. Symmetric.
+    #[must_use]
+    #[inline]
+    pub const fn can_interact_with_groups(&self, other: &Self) -> bool {
+        self.membership & other.blacklist == 0
+            && other.membership & self.blacklist == 0
+            && self.membership & other.whitelist != 0
+            && other.membership & self.whitelist != 0
+    }
+
+    /// The object may be queried against itself.
+    #[must_use]
+    pub const fn can_interact_with_self(&self) -> bool {
+        self.self_collision
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn groups(membership: &[usize], whitelist: &[usize], blacklist: &[usize]) -> CollisionGroups {
+        let mut groups = CollisionGroups::new();
+        groups.set_membership(membership);
+        groups.set_whitelist(whitelist);
+        groups.set_blacklist(blacklist);
+        groups
+    }
+
+    #[test]
+    fn three_objects() {
+        let a = groups(&[1, 3, 6], &[6, 7], &[1]);
+        let b = groups(&[1, 3, 7], &[3, 7], &[]);
+        let c = groups(&[6, 9], &[3, 7], &[]);
+        for (first, second, expected) in [(a, b, false), (b, c, false), (a, c, true)] {
+            assert_eq!(first.can_interact_with_groups(&second), expected, "{first:?} {second:?}");
+            assert_eq!(second.can_interact_with_groups(&first), expected, "symmetric");
+        }
+    }
+
+    #[test]
+    fn defaults_and_single_changes() {
+        let mut groups = CollisionGroups::new();
+        assert!((0..=29).all(|g| groups.is_member_of(g)), "member of all");
+        assert!((0..=29).all(|g| groups.is_group_whitelisted(g)), "whitelists all");
+        assert!(!(0..=29).any(|g| groups.is_group_blacklisted(g)), "blacklists none");
+        assert!(!groups.can_interact_with_self(), "off by default");
+        groups.modify_blacklist(29, true);
+        assert!(!groups.can_interact_with_groups(&CollisionGroups::new()), "29 is refused");
+        groups.modify_blacklist(29, false);
+        assert_eq!(groups, CollisionGroups::new(), "and no longer");
+        groups.enable_self_collision();
+        assert!(groups.can_interact_with_self(), "on");
+    }
+
+    #[test]
+    fn copies_take_one_mask_each() {
+        let source = groups(&[1], &[2], &[3]);
+        let mut target = CollisionGroups::new();
+        target.copy_membership(&source);
+        assert_eq!(target, { let mut g = CollisionGroups::new(); g.set_membership(&[1]); g }, "1");
+        target.copy_whitelist(&source);
+        target.copy_blacklist(&source);
+        assert_eq!(target, source, "all three");
+    }
+
+    #[test]
+    fn groups_above_the_last_are_refused() {
+        let mut groups = groups(&[4], &[5], &[6]);
+        let before = groups;
+        assert_eq!(groups.try_set_membership(&[1, 30]), Err(GroupError(30)), "30");
+        assert_eq!(groups.try_modify_whitelist(64, true), Err(GroupError(64)), "64");
+        assert_eq!(groups, before, "nothing changed");
+        assert!(!groups.is_member_of(usize::MAX), "nobody is");
+    }
+
+    #[test]
+    #[should_panic(expected = "no group 30")]
+    fn the_panic_names_the_group() {
+        CollisionGroups::new().set_blacklist(&[30]);
+    }
+}

@@ -1,0 +1,173 @@
+//! The narrow phase as a world sees it: told of pairs, asked for contacts and proximities.
+
+use super::CollisionObjects;
+use crate::math::Space;
+use crate::narrow_phase::{
+    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
+};
+
+/// Pairs with their contacts, in canonical order.
+pub type ContactPairs<'a, N, const D: usize> = Box<
+    dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ContactPair<'a, N, D>)> + 'a,
+>;
+
+/// Pairs with their proximities, in canonical order.
+pub type ProximityPairs<'a> =
+    Box<dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ProximityPair)> + 'a>;
+
+/// Exact answers for the pairs that the broad phase proposes.
+///
+/// A world calls, in each update: [`Self::handle_change`] for each object with another shape or
+/// query type, [`Self::handle_interaction`] for each pair that started or stopped, then
+/// [`Self::update`]. In all calls `handle1 < handle2`, and [`CollisionObjects::table`] has the poses,
+/// shapes and query types that the call is about.
+pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
+    /// Computes all contacts and proximities, with the events of what changed.
+    fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
+
+    /// A pair started (its algorithm is picked; nothing happens if the pair is known) or stopped (its
+    /// algorithm is freed, with the event that the pair is over if it had begun). No geometric query.
+    fn handle_interaction(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+        started: bool,
+    );
+
+    /// The pair ends because one of its objects is being removed. What it did at the last update is
+    /// over: one event at most.
+    fn handle_removal(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    );
+
+    /// The shape or the query type of an object is another one: the algorithms of its pairs are
+    /// picked anew.
+    fn handle_change(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle: CollisionObjectHandle,
+    );
+
+    /// Where the names of contacts come from: handed on when another narrow phase takes over, so that
+    /// no name is given twice.
+    fn ids(&mut self) -> Option<&mut IdAllocator> {
+        None
+    }
+
+    /// The contacts of a pair, as of the last update; `None` if there is no such pair or it is asked
+    /// for proximity only.
+    fn contact_pair<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> Option<ContactPair<'a, N, D>>;
+
+    /// The proximity of a pair, as of the last update; `None` if there is no such pair or it is asked
+    /// for contacts.
+    fn proximity_pair(
+        &self,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> Option<ProximityPair>;
+
+    /// All pairs that are asked for contacts.
+    fn contact_pairs<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactPairs<'a, N, D>;
+
+    /// All pairs that are asked for proximity.
+    fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
+}
+
+impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase<N, D> {
+    fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events) {
+        (N::tables().update_pairs)(self, objects.table(), events);
+    }
+
+    fn handle_interaction(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+        started: bool,
+    ) {
+        let (index1, index2) = (handle1.index(), handle2.index());
+        if started {
+            (N::tables().world.pair_started)(self, objects.table(), index1, index2);
+        } else {
+            (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
+        }
+    }
+
+    fn handle_removal(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) {
+        let (index1, index2) = (handle1.index(), handle2.index());
+        (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
+    }
+
+    fn handle_change(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle: CollisionObjectHandle,
+    ) {
+        (N::tables().world.object_changed)(self, objects.table(), handle.index(), events);
+    }
+
+    fn ids(&mut self) -> Option<&mut IdAllocator> {
+        Some(&mut self.ids)
+    }
+
+    fn contact_pair<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> Option<ContactPair<'a, N, D>> {
+        Self::contact_pair(self, objects.table(), handle1.index(), handle2.index())
+    }
+
+    fn proximity_pair(
+        &self,
+        _: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> Option<ProximityPair> {
+        Self::proximity_pair(self, handle1.index(), handle2.index())
+    }
+
+    fn contact_pairs<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactPairs<'a, N, D> {
+        let table = objects.table();
+        let pairs = Self::contact_pairs(self, table);
+        Box::new(pairs.map(|(first, second, pair)| {
+            (table.handle(first), table.handle(second), pair)
+        }))
+    }
+
+    fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
+        let table = objects.table();
+        let pairs = Self::proximity_pairs(self);
+        Box::new(pairs.map(|(first, second, pair)| {
+            (table.handle(first), table.handle(second), pair)
+        }))
+    }
+}

@@ -1,0 +1,213 @@
+//! One update of a world, and the exchange of its phases.
+
+use super::{CollisionObjects, CollisionWorld, NarrowPhase, WorldBroadPhase};
+use crate::math::Space;
+use crate::narrow_phase::{
+    CollisionObjectHandle, ContactEvent, Events, ProximityEvent,
+};
+use crate::query::Proximity;
+
+type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
+
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Finds out what the changes since the last update have led to: pairs, contacts, proximities,
+    /// and the events of this update.
+    ///
+    /// The events of the last update are forgotten; those that removals have queued since come first.
+    pub fn update(&mut self) {
+        self.events.begin_batch(&mut self.queued);
+        if self.next_broad_phase.is_some() || self.next_narrow_phase.is_some() {
+            self.update_with_other_phases();
+        } else {
+            self.write_changes();
+            self.update_broad_phase(&mut |_| {});
+            self.narrow_phase.update(&self.objects, &mut self.events);
+        }
+        self.events.sort();
+    }
+
+    /// Brings what the phases read of the objects up to date.
+    fn write_changes(&mut self) {
+        let CollisionObjects { bodies, table, .. } = &mut self.objects;
+        (N::tables().world.flush)(bodies, table, &mut *self.broad_phase, &mut self.algorithms);
+        for &index in &self.algorithms {
+            let handle = self.objects.bodies.at(index).handle;
+            self.narrow_phase.handle_change(&mut self.events, &self.objects, handle);
+        }
+    }
+
+    /// Lets the broad phase find what started and stopped and tells the narrow phase; `started` sees
+    /// each pair that started.
+    fn update_broad_phase(&mut self, started: &mut dyn FnMut(HandlePair)) {
+        let Self { objects, filters, broad_phase, narrow_phase, events, .. } = self;
+        let objects = &*objects;
+        let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
+            if !objects.bodies.can_interact(handle1.index(), handle2.index()) {
+                return false;
+            }
+            if filters.is_empty() {
+                return true;
+            }
+            let (first, second) = in_order(*handle1, *handle2);
+            let both = objects.get(first).zip(objects.get(second));
+            both.is_some_and(|(co1, co2)| filters.allow(co1, co2))
+        };
+        broad_phase.update(&mut filter, &mut |&handle1, &handle2, has_started| {
+            let (first, second) = in_order(handle1, handle2);
+            narrow_phase.handle_interaction(events, objects, first, second, has_started);
+            if has_started {
+                started((first, second));
+            }
+        });
+    }
+}
+
+/// Two handles in canonical order.
+pub(super) fn in_order(
+    handle1: CollisionObjectHandle,
+    handle2: CollisionObjectHandle,
+) -> HandlePair {
+    if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
+}
+
+/// What a pair was at the last update, if anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Status {
+    Touching,
+    Near(Proximity),
+}
+
+/// Exchanging the phases. The old ones serve until the next update, which makes all proxies anew.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Gives the world another broad phase, to which nothing has been added yet.
+    ///
+    /// It takes over at the next update, which reports what changed, as any other does.
+    pub fn set_broad_phase(&mut self, broad_phase: Box<WorldBroadPhase<N, D>>) {
+        self.next_broad_phase = Some(broad_phase);
+    }
+
+    /// Gives the world another narrow phase, which knows no pair yet.
+    ///
+    /// It takes over at the next update, which reports what changed, as any other does; contacts get
+    /// new names.
+    pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn NarrowPhase<N, D, T>>) {
+        self.next_narrow_phase = Some(narrow_phase);
+    }
+
+    /// An update in which a phase is replaced. With all proxies new, every pair is reported as
+    /// started: a narrow phase that stays knows most of these already, and is told which of its
+    /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
+    /// what was before.
+    fn update_with_other_phases(&mut self) {
+        let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
+            let before = self.renew_proxies();
+            self.write_changes();
+            let now = self.started_pairs();
+            self.stop_all_but(&now, before);
+            return self.narrow_phase.update(&self.objects, &mut self.events);
+        };
+        let before = self.statuses();
+        if let (Some(old), Some(new)) = (self.narrow_phase.ids(), narrow_phase.ids()) {
+            core::mem::swap(old, new);
+        }
+        self.narrow_phase = narrow_phase;
+        self.renew_proxies();
+        self.write_changes();
+        self.started_pairs();
+        self.narrow_phase.update(&self.objects, &mut Events::default());
+        push_differences(&before, &self.statuses(), &mut self.events);
+    }
+
+    /// Makes a proxy for every object, in the next broad phase if there is one. Answers which pairs
+    /// there were.
+    fn renew_proxies(&mut self) -> Vec<HandlePair> {
+        let known = self.objects.iter().map(|object| (object.handle, object.proxy_handle));
+        let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
+        let mut pairs = Vec::new();
+        self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
+            pairs.push(in_order(handle1, handle2));
+        });
+        if let Some(broad_phase) = self.next_broad_phase.take() {
+            self.broad_phase = broad_phase;
+        }
+        for handle in handles {
+            let volume = self.objects.bodies.at(handle.index()).volume();
+            let proxy = self.broad_phase.create_proxy(volume, handle);
+            self.objects.set_proxy(handle, proxy);
+        }
+        pairs
+    }
+
+    /// Updates the broad phase and answers which pairs started, sorted.
+    fn started_pairs(&mut self) -> Vec<HandlePair> {
+        let mut pairs = Vec::new();
+        self.update_broad_phase(&mut |pair| pairs.push(pair));
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// Stops the pairs of `before` that are not in the sorted list `now`.
+    fn stop_all_but(&mut self, now: &[HandlePair], before: Vec<HandlePair>) {
+        let (objects, events) = (&self.objects, &mut self.events);
+        for (handle1, handle2) in before {
+            if now.binary_search(&(handle1, handle2)).is_err() {
+                self.narrow_phase.handle_interaction(events, objects, handle1, handle2, false);
+            }
+        }
+    }
+
+    /// The pairs that something is to be said of, sorted.
+    fn statuses(&self) -> Vec<(HandlePair, Status)> {
+        let contacts = self.narrow_phase.contact_pairs(&self.objects);
+        let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);
+        let touching = touching.map(|(h1, h2, _)| ((h1, h2), Status::Touching));
+        let proximities = self.narrow_phase.proximity_pairs(&self.objects);
+        let near = proximities.filter(|(_, _, pair)| pair.proximity() != Proximity::Disjoint);
+        let near = near.map(|(h1, h2, pair)| ((h1, h2), Status::Near(pair.proximity())));
+        let mut statuses: Vec<_> = touching.chain(near).collect();
+        statuses.sort_unstable();
+        statuses
+    }
+}
+
+/// The events that lead from one sorted list of statuses to another.
+fn push_differences(
+    before: &[(HandlePair, Status)],
+    after: &[(HandlePair, Status)],
+    events: &mut Events,
+) {
+    let find = |list: &[(HandlePair, Status)], pair| {
+        let found = list.binary_search_by_key(&pair, |&(other, _)| other);
+        found.ok().map(|place| list[place].1)
+    };
+    for &(pair, status) in before {
+        push_change(pair, Some(status), find(after, pair), events);
+    }
+    for &(pair, status) in after {
+        if find(before, pair).is_none() {
+            push_change(pair, None, Some(status), events);
+        }
+    }
+}
+
+/// The events that lead from one status of a pair to another.
+fn push_change(
+    (collider1, collider2): HandlePair,
+    before: Option<Status>,
+    after: Option<Status>,
+    events: &mut Events,
+) {
+    let touching = |status| status == Some(Status::Touching);
+    let proximity = |status| match status {
+        Some(Status::Near(proximity)) => proximity,
+        _ => Proximity::Disjoint,
+    };
+    if touching(before) && !touching(after) {
+        events.push_contact(ContactEvent::Stopped(collider1, collider2));
+    }
+    if touching(after) && !touching(before) {
+        events.push_contact(ContactEvent::Started(collider1, collider2));
+    }
+    let (prev_status, new_status) = (proximity(before), proximity(after));
+    events.push_proximity(ProximityEvent { collider1, collider2, prev_status, new_status });
+}

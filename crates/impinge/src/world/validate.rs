@@ -1,0 +1,56 @@
+//! Whether a world's parts agree: for tests.
+
+use super::CollisionWorld;
+use super::bodies::Body;
+use crate::bounding_volume::BoundingVolume;
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Checks the bookkeeping, and that the narrow phase knows every pair whose boxes meet and that
+    /// groups and filters allow. Looks at every pair of objects. Call it right after an update.
+    ///
+    /// # Errors
+    /// A sentence that says what does not agree.
+    #[doc(hidden)]
+    pub fn validate(&self) -> Result<(), String> {
+        self.objects.validate()?;
+        let contacts = self.contact_pairs().map(|(a, b, _)| (a.handle, b.handle));
+        let proximities = self.proximity_pairs().map(|(a, b, _)| (a.handle, b.handle));
+        let mut known: Vec<_> = contacts.chain(proximities).collect();
+        known.sort_unstable();
+        if known.windows(2).any(|two| two[0] == two[1]) {
+            return Err("a pair is known twice".to_owned());
+        }
+        for pair in self.expected_pairs() {
+            if known.binary_search(&pair).is_err() {
+                return Err(format!("the boxes of {pair:?} meet, but the pair is not known"));
+            }
+        }
+        match known.iter().find(|(a, b)| !self.is_allowed(*a, *b)) {
+            Some(pair) => Err(format!("{pair:?} is known, but groups or filters forbid it")),
+            None => Ok(()),
+        }
+    }
+
+    /// The allowed pairs whose volumes meet.
+    fn expected_pairs(&self) -> Vec<(CollisionObjectHandle, CollisionObjectHandle)> {
+        let bodies: Vec<_> = self.objects.bodies.iter().collect();
+        let mut pairs = Vec::new();
+        for (place, first) in bodies.iter().enumerate() {
+            let volume = first.volume();
+            let meets = |second: &&Body<N, D>| volume.intersects(&second.volume());
+            let others = bodies[place + 1..].iter().copied().filter(meets);
+            let allowed = others.filter(|second| self.is_allowed(first.handle, second.handle));
+            pairs.extend(allowed.map(|second| (first.handle, second.handle)));
+        }
+        pairs
+    }
+
+    /// Groups and filters allow the pair.
+    fn is_allowed(&self, handle1: CollisionObjectHandle, handle2: CollisionObjectHandle) -> bool {
+        let both = self.objects.get(handle1).zip(self.objects.get(handle2));
+        self.objects.bodies.can_interact(handle1.index(), handle2.index())
+            && both.is_some_and(|(co1, co2)| self.filters.allow(co1, co2))
+    }
+}
