@@ -12,6 +12,7 @@
 //! solids by a power of two scales the answer bit by bit.
 
 mod candidate;
+mod climb;
 mod difference;
 mod epa2;
 mod epa3;
@@ -23,7 +24,7 @@ mod separation;
 mod simplex;
 mod simplex2;
 mod simplex3;
-#[cfg(any())]
+#[cfg(test)]
 mod tests;
 mod witness;
 

@@ -163,3 +163,28 @@ pub(in crate::query) fn near_pose<N: Scene<D>, const D: usize>(
     pose12.translation -= apart.normal * (apart.distance - target);
     pose12
 }
+
+/// Runs a check on every pair of kinds at `count` random poses near touching; the half-space is
+/// always second.
+pub(in crate::query) fn for_all_pairs<N: Scene<D>, const D: usize>(
+    count: u64,
+    scale: f64,
+    mut check: impl FnMut(&Pair<'_, N, D>),
+) {
+    for seed in 0..count {
+        let mut random = Random(seed);
+        let all = solids::<N, D>(scale, &mut random);
+        for (index, first) in all[..all.len() - 1].iter().enumerate() {
+            for second in &all[index..] {
+                let kinds = [first.geometry().0, second.geometry().0];
+                let pose12 = near_pose(kinds, (scale, -0.1, 0.1), &mut random);
+                check(&Pair { first: kinds[0], second: kinds[1], pose12 });
+            }
+        }
+    }
+}
+
+pub(in crate::query) fn describe<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> String {
+    let kinds = [pair.first, pair.second].map(|kind| Geometry(kind).kind());
+    format!("{kinds:?} at {:?}", pair.pose12)
+}

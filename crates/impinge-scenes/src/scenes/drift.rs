@@ -1,0 +1,94 @@
+//! Boxes that fly about at random and are reflected at the walls of their space.
+
+use super::pile::{axis, edge};
+use super::{MARGIN, NEAR_CONTACTS};
+use crate::random::Random;
+use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
+
+/// Boxes of half extents 0.35 to 0.65, all moving by 0.01 to 0.09 per step and turning slowly, with
+/// about 3 neighbours each: boxes around them that meet the box around it.
+#[must_use]
+pub fn sparse_drift<const D: usize>(count: usize) -> Scene<D> {
+    let random = &mut Random::new(2);
+    let edge = edge::<D>(count, space_per_box::<D>());
+    let objects = (0..count).map(|_| drifting(edge, random)).collect();
+    Scene { name: "sparse drift", margin: MARGIN, objects, steps: 100 }
+}
+
+/// The space per box at which a box has 3 neighbours.
+///
+/// Two boxes meet where their centres are within the sum of their reaches along each axis: 1 in the
+/// mean if they were not turned, and the more the more ways there are to turn. Counted, not derived.
+fn space_per_box<const D: usize>() -> f64 {
+    let width = 2.0 + 0.28 * D as f64;
+    (0..D).fold(1.0 / 3.0, |space, _| space * width)
+}
+
+fn drifting<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
+    let speed = random.between(0.2, 1.8) * 0.05;
+    let velocity = random.direction::<D>().map(|x| x * speed);
+    let place = velocity.map(|v| Wave::new((0.0, edge), random.between(0.0, edge), v));
+    let tangent = Wave::new((-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.001, 0.01));
+    let half_extents = [0.0; D].map(|_: f64| rounded(random.between(0.35, 0.65)));
+    let motion = Motion { axis: axis::<D>(random), tangent, ..Motion::translation(place) };
+    SceneObject::new(SceneShape::Cuboid { half_extents }, NEAR_CONTACTS, motion)
+}
+
+/// The sparse drift with all but every hundredth box frozen.
+#[must_use]
+pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
+    let mut scene = sparse_drift(count);
+    for (index, object) in scene.objects.iter_mut().enumerate() {
+        if !index.is_multiple_of(100) {
+            object.motion = object.motion.frozen();
+        }
+    }
+    Scene { name: "1 % moving", ..scene }
+}
+
+/// The sparse drift with births and deaths: at each step a hundredth of the boxes vanish and as many
+/// appear. At every step `count` boxes are alive, or up to a hundred more where 100 does not divide
+/// `count`.
+#[must_use]
+pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
+    let random = &mut Random::new(3);
+    let edge = edge::<D>(count, space_per_box::<D>());
+    let (life, steps) = (100_u32, 100_u32);
+    let churn = count.div_ceil(100);
+    let mut objects = Vec::new();
+    for death in 1..life + steps {
+        // Those that die within the first life are alive at step 0, each generation a step older.
+        let alive = death.saturating_sub(life)..death;
+        let born = || SceneObject { alive: alive.clone(), ..drifting::<D>(edge, random) };
+        objects.extend(std::iter::repeat_with(born).take(churn));
+    }
+    Scene { name: "spawn and despawn", margin: MARGIN, objects, steps }
+}
+
+/// Boxes whose half extents range over four orders of magnitude, from about 0.001 to about 10, as
+/// many in each octave; each moves by a few percent of its own size per step.
+#[must_use]
+pub fn mixed_sizes<const D: usize>(count: usize) -> Scene<D> {
+    let random = &mut Random::new(4);
+    let edge = edge::<D>(count, space_per_mixed_box::<D>());
+    let mut objects: Vec<_> = (0..count).map(|n| sized(n % OCTAVES, edge, random)).collect();
+    random.shuffle(&mut objects);
+    Scene { name: "mixed sizes", margin: 0.02, objects, steps: 100 }
+}
+
+const OCTAVES: usize = 14;
+
+/// The largest boxes, a seventh of all, meet one another and some of the rest; at this density a box
+/// has a few neighbours in the mean.
+fn space_per_mixed_box<const D: usize>() -> f64 {
+    (0..D).fold(0.06, |space, _| space * 20.0)
+}
+
+fn sized<const D: usize>(octave: usize, edge: f64, random: &mut Random) -> SceneObject<D> {
+    let size = (0..octave).fold(0.001, |size, _| 2.0 * size);
+    let velocity = random.direction::<D>().map(|x| x * size * random.between(0.01, 0.09));
+    let place = velocity.map(|v| Wave::new((0.0, edge), random.between(0.0, edge), v));
+    let half_extents = [0.0; D].map(|_: f64| rounded(size * random.between(0.7, 1.4)));
+    let shape = SceneShape::Cuboid { half_extents };
+    SceneObject::new(shape, NEAR_CONTACTS, Motion::translation(place))
+}

@@ -1,0 +1,217 @@
+//! What the scenes say of themselves, counted.
+
+use impinge_scenes::{
+    Placement, Scene, SceneQuery, SceneShape, few_moving, mixed_shapes, mixed_sizes, pile, room,
+    sparse_drift, spawn_and_despawn, tower,
+};
+
+/// The pairs of living objects whose boxes meet, by sweeping along the first axis.
+fn box_pairs<const D: usize>(scene: &Scene<D>, step: u32) -> Vec<(usize, usize)> {
+    let alive = (0..scene.objects.len()).filter(|&n| scene.is_alive(n, step));
+    let mut boxes: Vec<_> =
+        alive.filter_map(|n| scene.aabb(n, step).map(|(low, high)| (low, high, n))).collect();
+    boxes.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+    let mut pairs = Vec::new();
+    for (k, (low1, high1, n1)) in boxes.iter().enumerate() {
+        let near = boxes[k + 1..].iter().take_while(|(low2, ..)| low2[0] <= high1[0]);
+        let meets = |low2: &[f64; D], high2: &[f64; D]| {
+            (0..D).all(|i| low1[i] <= high2[i] && low2[i] <= high1[i])
+        };
+        let found = near.filter(|(low2, high2, _)| meets(low2, high2));
+        pairs.extend(found.map(|(.., n2)| (*n1.min(n2), *n1.max(n2))));
+    }
+    pairs
+}
+
+fn mean_neighbours<const D: usize>(scene: &Scene<D>, step: u32) -> f64 {
+    let alive = (0..scene.objects.len()).filter(|&n| scene.is_alive(n, step)).count();
+    2.0 * box_pairs(scene, step).len() as f64 / alive as f64
+}
+
+/// A world point, in the local frame of a placement: the turn undone by the opposite tangent.
+fn local<const D: usize>(placement: &Placement<D>, world: &[f64; D]) -> [f64; D] {
+    let back = Placement { tangent: -placement.tangent, ..*placement };
+    back.turned(&std::array::from_fn(|i| world[i] - placement.translation[i]))
+}
+
+fn holds<const D: usize>(scene: &Scene<D>, object: usize, step: u32, world: &[f64; D]) -> bool {
+    let SceneShape::Cuboid { half_extents } = &scene.objects[object].shape else {
+        panic!("a pile is of boxes")
+    };
+    let point = local(&scene.placement(object, step), world);
+    (0..D).all(|i| point[i].abs() <= half_extents[i])
+}
+
+/// Each box holds the points halfway to its neighbours on the grid, so it touches them all.
+fn check_pile<const D: usize>(count: usize, expected_pairs: usize) {
+    let scene: Scene<D> = pile(count);
+    assert_eq!(scene.objects.len(), count, "size");
+    for step in [0, 1, 17, 99] {
+        let pairs = box_pairs(&scene, step);
+        assert_eq!(pairs.len(), expected_pairs, "pairs of neighbours at step {step}");
+        for (one, two) in pairs {
+            let (a, b) = (scene.placement(one, step), scene.placement(two, step));
+            let middle = std::array::from_fn(|i| 0.5 * (a.translation[i] + b.translation[i]));
+            assert!(holds(&scene, one, step, &middle), "{one} {two} at step {step}");
+            assert!(holds(&scene, two, step, &middle), "{two} {one} at step {step}");
+        }
+    }
+}
+
+#[test]
+fn every_box_of_a_pile_touches_its_neighbours() {
+    // A grid of side s has ((3 s − 2)^D − s^D) / 2 pairs of neighbours, the diagonal ones included.
+    check_pile::<2>(400, (58 * 58 - 400) / 2);
+    check_pile::<3>(1000, (28 * 28 * 28 - 1000) / 2);
+}
+
+#[test]
+fn a_large_pile_has_as_many_pairs_as_it_says() {
+    let pairs = box_pairs(&pile::<3>(10_000), 3).len();
+    assert!((112_000..122_000).contains(&pairs), "{pairs} pairs");
+}
+
+#[test]
+fn a_box_of_the_sparse_drift_has_about_three_neighbours() {
+    for step in [0, 50] {
+        let counts = [
+            mean_neighbours(&sparse_drift::<2>(1000), step),
+            mean_neighbours(&sparse_drift::<2>(10_000), step),
+            mean_neighbours(&sparse_drift::<3>(1000), step),
+            mean_neighbours(&sparse_drift::<3>(10_000), step),
+        ];
+        let fits = counts.iter().all(|mean| (2.5..=3.5).contains(mean));
+        assert!(fits, "step {step}: {counts:?}");
+    }
+}
+
+#[test]
+fn mixed_sizes_span_four_orders_of_magnitude() {
+    fn check<const D: usize>() {
+        let scene = mixed_sizes::<D>(2000);
+        let sizes = scene.objects.iter().map(|object| match &object.shape {
+            SceneShape::Cuboid { half_extents } => half_extents[0],
+            _ => panic!("boxes only"),
+        });
+        let (least, greatest) =
+            sizes.fold((f64::MAX, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        assert!(least < 0.001 && greatest > 10.0 * 0.9, "{least} to {greatest}");
+        let mean = mean_neighbours(&scene, 10);
+        assert!((1.0..10.0).contains(&mean), "{mean} neighbours in {D} dimensions");
+    }
+    check::<2>();
+    check::<3>();
+}
+
+#[test]
+fn one_in_a_hundred_moves() {
+    let scene = few_moving::<3>(1000);
+    let moves = |n: &usize| scene.placement(*n, 0) != scene.placement(*n, 1);
+    assert_eq!((0..1000).filter(moves).count(), 10);
+    assert_eq!((0..1000).filter(|&n| scene.placement(n, 0) != scene.placement(n, 90)).count(), 10);
+}
+
+#[test]
+fn births_and_deaths_balance_at_every_step() {
+    let scene = spawn_and_despawn::<2>(500);
+    for step in 0..scene.steps {
+        let alive = (0..scene.objects.len()).filter(|&n| scene.is_alive(n, step)).count();
+        assert_eq!(alive, 500, "step {step}");
+        let born = (0..scene.objects.len()).filter(|&n| scene.objects[n].alive.start == step);
+        assert!(step == 0 || born.count() == 5, "step {step}");
+    }
+}
+
+#[test]
+fn a_tower_rests_on_its_plane() {
+    fn check<const D: usize>() {
+        let scene = tower::<D>(25);
+        assert_eq!(scene.objects.len(), 26, "a plane and boxes");
+        let pairs = box_pairs(&scene, 7);
+        assert_eq!(pairs.len(), 9 + 9 + 4, "each touches the one above");
+        for (one, two) in pairs {
+            let (low, high) =
+                (scene.aabb(two, 0).expect("a box").0, scene.aabb(one, 0).expect("a box").1);
+            assert_eq!(low[1], high[1], "{two} stands on {one} exactly");
+        }
+        assert_eq!(scene.aabb(1, 0).expect("a box").0[1], 0.0, "the first stands on the plane");
+    }
+    check::<2>();
+    check::<3>();
+}
+
+#[test]
+fn all_kinds_of_shapes_are_there_with_both_queries() {
+    fn check<const D: usize>(kinds: usize) {
+        let scene = mixed_shapes::<D>(kinds * 70);
+        let mut seen = std::collections::BTreeMap::new();
+        for object in &scene.objects {
+            let name = format!("{:?}", object.shape);
+            let name = name.split_whitespace().next().expect("a name").to_owned();
+            let contacts = matches!(object.query, SceneQuery::Contacts { .. });
+            *seen.entry((name, contacts)).or_insert(0) += 1;
+        }
+        assert_eq!(seen.len(), 2 * kinds + 1, "the plane asks for contacts only: {seen:?}");
+        let mean = mean_neighbours(&scene, 5);
+        assert!((1.0..4.0).contains(&mean), "{mean} neighbours");
+    }
+    check::<2>(6);
+    check::<3>(8);
+}
+
+#[test]
+fn the_room_has_walls_and_areas() {
+    let (plane, space) = (room::<2>(), room::<3>());
+    assert_eq!((plane.scene.objects.len(), space.scene.objects.len()), (9, 11));
+    for area in plane.areas {
+        let center = plane.scene.placement(area.object, 0).translation;
+        let expected = match area.name {
+            "purple" => [-5.0, 5.0],
+            "blue" => [5.0, 5.0],
+            "green" => [5.0, -5.0],
+            _ => [-5.0, -5.0],
+        };
+        assert_eq!(center, expected, "{}", area.name);
+    }
+    let is_plane = |n: &usize| matches!(space.scene.objects[*n].shape, SceneShape::Plane { .. });
+    for n in (0..11).filter(is_plane) {
+        let SceneShape::Plane { normal } = &space.scene.objects[n].shape else { unreachable!() };
+        let at = space.scene.placement(n, 0).translation;
+        let height: f64 = (0..3).map(|i| normal[i] * at[i]).sum();
+        assert_eq!(height, -10.0, "plane {n} faces the middle of the room");
+    }
+}
+
+/// Every scene: the same when made again, in `f32`, and never beyond its bounds.
+fn check_motion<const D: usize>(make: impl Fn() -> Scene<D>) {
+    let (scene, again) = (make(), make());
+    for step in [0, 1, 33, 99, 1_000_000] {
+        for n in 0..scene.objects.len() {
+            let placement = scene.placement(n, step);
+            assert_eq!(placement, again.placement(n, step), "{}: pure", scene.name);
+            for (i, &x) in placement.translation.iter().enumerate() {
+                let wave = &scene.objects[n].motion.place[i];
+                assert!((wave.low..=wave.high).contains(&x), "{}: bounded", scene.name);
+                assert_eq!(x.to_bits() << 35, 0, "{}: {x} is an f32", scene.name);
+            }
+            let axis: f64 = placement.axis.iter().map(|x| x * x).sum();
+            assert!((axis - 1.0).abs() < 1e-15, "{}: the axis is a unit vector", scene.name);
+        }
+    }
+}
+
+#[test]
+fn motion_is_pure_and_bounded() {
+    fn check<const D: usize>() {
+        check_motion(|| pile::<D>(100));
+        check_motion(|| sparse_drift::<D>(100));
+        check_motion(|| few_moving::<D>(100));
+        check_motion(|| mixed_sizes::<D>(100));
+        check_motion(|| mixed_shapes::<D>(100));
+        check_motion(|| spawn_and_despawn::<D>(100));
+        check_motion(|| tower::<D>(100));
+        check_motion(|| room::<D>().scene);
+    }
+    check::<2>();
+    check::<3>();
+}
