@@ -246,12 +246,11 @@ fn an_object_with_five_thousand_pairs() {
     broad_phase.validate().expect("sound");
 }
 
-/// Twenty thousand flat boxes with one common centre, of which only neighbours overlap: nothing in
-/// the order of a tree tells them apart, yet the work must stay near the output.
+/// Twenty thousand points in heaps of ten along a line, so that all centres tie on two axes and
+/// ten each on the third: the work must stay near the output.
 #[test]
 fn twenty_thousand_objects_at_one_point() {
     let mut broad_phase = DBVTBroadPhase::new(0.0);
-    // Points at one place in heaps of ten: all keys tie on two axes.
     for i in 0..20_000_u32 {
         let place = [f64::from(i / 10), 0.0, 0.0];
         let _ = broad_phase.create_proxy(ball::<f32, 3>(place, 0.0), i);
