@@ -52,7 +52,10 @@ fn mix<N: Simplicial<D>, const D: usize>(
         simplex.push(next);
         nearest = N::nearest(simplex.points());
         // Judged by what the weights make, not by what they should: slivers give poor weights.
-        let found = Mix::of(&simplex, &nearest.weights);
+        let mut found = Mix::of(&simplex, &nearest.weights);
+        if nearest.enclosed && found.miss > noise::<N>() * noise() {
+            found = Mix::of_facets(&simplex, found);
+        }
         if found.miss >= best.miss {
             break;
         }
@@ -80,6 +83,22 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
             missed += vertex.point * weight;
         }
         Self { on1, on2, miss: missed.norm_squared() }
+    }
+
+    /// The best over the facets of a simplex that holds the target, or `best`: one so flat that its
+    /// volume is mostly rounding errors has poor weights, but its facets come as near.
+    fn of_facets(simplex: &Simplex<N, D>, mut best: Self) -> Self {
+        for dropped in 0..=D {
+            let mut kept = [N::ONE; 4];
+            kept[dropped] = N::ZERO;
+            let mut facet = *simplex;
+            facet.keep(&kept);
+            let found = Self::of(&facet, &N::nearest(facet.points()).weights);
+            if found.miss < best.miss {
+                best = found;
+            }
+        }
+        best
     }
 }
 

@@ -57,7 +57,9 @@ impl Generator {
                 half_extents.push(length(slim));
                 json!({ "type": kind, "half_extents": half_extents, "r": length(slim) * 0.25 })
             }
-            "segment" => json!({ "type": kind, "a": self.list::<D>(size), "b": self.list::<D>(size) }),
+            "segment" => {
+                json!({ "type": kind, "a": self.list::<D>(size), "b": self.list::<D>(size) })
+            }
             "triangle" => {
                 let [a, b, c] = [0; 3].map(|_| self.list::<D>(size));
                 json!({ "type": kind, "a": a, "b": b, "c": c })

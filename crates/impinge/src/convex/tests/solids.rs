@@ -197,10 +197,7 @@ pub(super) fn height<N: Real, const D: usize>(
 }
 
 /// The signed distance of a point from a solid.
-pub(super) fn outside<const D: usize>(
-    solid: &dyn SupportMap<f64, D>,
-    point: &Point<f64, D>,
-) -> f64
+pub(super) fn outside<const D: usize>(solid: &dyn SupportMap<f64, D>, point: &Point<f64, D>) -> f64
 where
     f64: Simplicial<D>,
 {
