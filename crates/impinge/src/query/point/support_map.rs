@@ -19,6 +19,9 @@ pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     };
     let mut feature = Feature::default();
     map.core_feature(&found.normal, &mut feature);
+    // From the point itself along the normal: on a round surface this is off by the square of the
+    // error of the normal, a mix of support points by the error.
+    let nearest = point - found.normal * found.distance;
     let is_inside = found.distance <= N::ZERO;
-    SurfacePoint { point: found.point1, feature: feature.id, is_inside }
+    SurfacePoint { point: nearest, feature: feature.id, is_inside }
 }
