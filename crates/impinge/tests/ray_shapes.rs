@@ -6,7 +6,7 @@ use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Rea
 use impinge::query::{PointQuery, Ray, RayCast, RayIntersection};
 use solids::{
     Flat, Rng, Solid, local, narrow, plane_solids, random_segment, random_triangle, space_solids,
-    wide,
+    turned_back, wide,
 };
 
 /// A ray in the world, and the same in the local frame in `f64`.
@@ -22,7 +22,7 @@ impl<N: Real, const D: usize> Shot<N, D> {
     }
 }
 
-/// From up to three sizes away: every second ray aims at the middle, the others anywhere; with a
+/// From up to two sizes away: some rays aim at the middle, more in space; the others anywhere; with a
 /// direction of any length.
 fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     rng: &mut Rng,
@@ -32,14 +32,18 @@ fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     let endless = solid.name == "plane";
     let above = if endless { solid.center * -2.0 } else { Vector::<f64, D>::zeros() };
     let origin = above + rng.vector::<D>(2.0 * solid.size);
-    let aim = if !endless && rng.bits() % 2 == 0 { 0.25 } else { 3.0 };
-    let dir = solid.center + rng.vector::<D>(aim * solid.size) - origin;
+    let aim = if !endless && (rng.bits() % 8) < 2 * (D as u64 - 1) { 0.25 } else { 3.0 };
+    let dir = if endless {
+        rng.vector::<D>(1.0)
+    } else {
+        solid.center + rng.vector::<D>(aim * solid.size) - origin
+    };
     let length = 10_f64.powi((rng.bits() % 7) as i32 - 3);
     let world = m.transform_point(&Point::from(narrow(&origin)));
     let turned = m.rotation.transform_vector(&narrow(&(dir * length)));
     let ray = Ray::new(world, turned);
     let tip = local(m, &wide(&(world.coords)));
-    let toward = local(m, &(wide(&turned) + wide(&m.translation.vector)));
+    let toward = turned_back(m, &turned);
     Shot { ray, origin: tip, dir: toward }
 }
 
@@ -123,7 +127,7 @@ fn check_hit<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     assert!(solid.at(&place).abs() <= 4.0 * close, "off the boundary: {what}");
     let distance = solid.shape.distance_to_point(m, &shot.ray.point_at(found.toi), false);
     assert!(distance.as_f64().abs() <= 4.0 * close, "{distance} from the boundary: {what}");
-    let normal = local(m, &(wide(&found.normal) + wide(&m.translation.vector)));
+    let normal = turned_back(m, &found.normal);
     assert!((normal.norm() - 1.0).abs() <= 100.0 * N::EPSILON.as_f64(), "not unit: {what}");
     let along = normal.dot(&shot.dir.normalize());
     assert!(if leaving { along > -1e-3 } else { along < 1e-3 }, "wrong side: {what}");

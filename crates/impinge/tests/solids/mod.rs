@@ -2,6 +2,8 @@
 //!
 //! The function is negative inside and positive outside; all in `f64`, from numbers that `f32` holds.
 
+#![allow(dead_code, reason = "each of the tests that share this file uses its part")]
+
 use impinge::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector};
 use impinge::shape::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Geometry, Plane, Segment, Shape, ShapeHandle,
@@ -59,6 +61,14 @@ pub fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 ) -> Vector<f64, D> {
     let pose = Pose::from_isometry(m);
     pose.rotation.map(N::as_f64).tr_mul(&(point - wide(&pose.translation)))
+}
+
+/// The direction of the outer frame in the local one, in `f64`.
+pub fn turned_back<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+    m: &Isometry<N, R, D>,
+    direction: &Vector<N, D>,
+) -> Vector<f64, D> {
+    Pose::from_isometry(m).rotation.map(N::as_f64).tr_mul(&wide(direction))
 }
 
 pub type Level<const D: usize> = Box<dyn Fn(&Vector<f64, D>) -> f64>;
