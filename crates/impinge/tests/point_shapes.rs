@@ -11,7 +11,7 @@ use solids::{
 
 fn rounding<N: Real, const D: usize>(solid: &Solid<N, D>, far: f64) -> f64 {
     let iterated = ["ellipsoid", "round box"].contains(&solid.name);
-    let unit = N::EPSILON.as_f64().max(if iterated { 4e-10 } else { 0.0 });
+    let unit = N::EPSILON.as_f64().max(if iterated { 1e-11 } else { 0.0 });
     50.0 * unit * (solid.size + far)
 }
 

@@ -58,6 +58,16 @@ where
     }
 }
 
+/// The normal of the nearest point of a difference that lies well away from the origin.
+pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
+    difference: &impl Difference<N, D>,
+    start: &Vector<N, D>,
+) -> Vector<N, D> {
+    let mut search = Search::new(Candidate::along(difference, *start));
+    search.run(difference, N::INFINITY);
+    search.best.normal
+}
+
 impl<N: Simplicial<D>, const D: usize> Search<N, D> {
     fn new(first: Candidate<N, D>) -> Self {
         Self {
@@ -123,7 +133,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
         bundle.extend([self.best.vertex, self.spare]);
-        refine(difference, &mut bundle, &mut self.best, -N::ONE);
+        refine(difference, &mut bundle, &mut self.best);
         let apart = locate(&self.best, &bundle);
         if !self.open() {
             return apart;

@@ -12,6 +12,7 @@
 //! solids by a power of two scales the answer bit by bit.
 
 mod candidate;
+mod climb;
 mod difference;
 mod epa2;
 mod epa3;

@@ -2,7 +2,7 @@
 
 use super::SurfacePoint;
 use crate::convex::{Simplicial, separation};
-use crate::math::{Point, Pose, Real};
+use crate::math::{Point, Pose};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
 /// The separation of the solid and a point: a ball of no radius.
