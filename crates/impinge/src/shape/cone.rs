@@ -1,16 +1,21 @@
 //! Cones, in space.
 
-use super::cylinder::{disk_reach, rim_toward};
 use super::error::{or_panic, size};
-use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::round::{Disk, radial_of};
+use super::tilt::Tilt;
+use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Point, Pose, Real, Vector, max, min, unit};
 
 /// The points between the apex at `(0, half_height, 0)` and the disk of `radius` around
 /// `(0, -half_height, 0)`.
 ///
 /// Sizes may be zero: a disk, a segment, a point. `Vertex(0)` is the apex, `Face(0)` the base,
 /// `Face(1)` the round side, `Edge(0)` the rim.
+///
+/// As features the base is an octagon inscribed in it, whose vertices and sides all bear the name of
+/// the rim; the round side is the segment on it that faces the direction, from the rim to the apex.
+/// A cone of no height is a disk: its upper side is the octagon turned over, named `Face(1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone<N: Real> {
     half_height: N,
@@ -52,15 +57,49 @@ impl<N: Real> Cone<N> {
     }
 }
 
+impl<N: Real> Cone<N> {
+    fn base(&self) -> Disk<N> {
+        Disk { radius: self.radius, y: -self.half_height }
+    }
+
+    fn apex(&self) -> Point<N, 3> {
+        Point::<N, 3>::new(N::ZERO, self.half_height, N::ZERO)
+    }
+
+    /// How steeply the generating line that faces a unit vector leans along it: the sine, positive
+    /// if the apex lies farther along.
+    fn lean(&self, direction: &Vector<N, 3>) -> Option<N> {
+        let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
+        let (line, _) = unit(&line)?;
+        Some(line.x * radial_of(direction).norm() + line.y * direction.y)
+    }
+}
+
 impl<N: Real> SupportMap<N, 3> for Cone<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
-        let rim = rim_toward(self.radius, -self.half_height, direction);
-        let apex = Point::<N, 3>::new(N::ZERO, self.half_height, N::ZERO);
-        if (apex - rim).dot(direction) > N::ZERO { apex } else { rim }
+        let rim = self.base().rim_toward(direction);
+        if (self.apex() - rim).dot(direction) > N::ZERO { self.apex() } else { rim }
     }
 
     fn reach(&self) -> N {
         (self.half_height * self.half_height + self.radius * self.radius).sqrt()
+    }
+
+    fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
+        let (base, apex, rim) = (self.base(), FeatureId::Vertex(0), FeatureId::Edge(0));
+        let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
+        let is_below = direction.y < N::ZERO;
+        let lean = self.lean(direction).unwrap_or(N::ZERO);
+        if is_axial && (is_below || self.half_height == N::ZERO) {
+            base.fill_polygon(FeatureId::Face(u32::from(!is_below)), rim, direction, out);
+        } else if Tilt::usual().admits(lean * lean) && self.half_height > N::ZERO {
+            let ends = [(rim, base.rim_toward(direction)), (apex, self.apex())];
+            out.set_segment(FeatureId::Face(1), ends);
+        } else if lean > N::ZERO {
+            out.set_point(apex, self.apex());
+        } else {
+            out.set_point(rim, base.rim_toward(direction));
+        }
     }
 }
 
@@ -76,7 +115,7 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let (apex, disk) = (axis * self.half_height, disk_reach(self.radius, &axis));
+        let (apex, disk) = (axis * self.half_height, self.base().reach(&axis));
         let mins = pose.translation + apex.zip_map(&(-apex - disk), min);
         let maxs = pose.translation + apex.zip_map(&(-apex + disk), max);
         Aabb::new(Point::from(mins), Point::from(maxs))

@@ -1,15 +1,20 @@
 //! Cylinders, in space.
 
 use super::error::{or_panic, size};
-use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::round::{Disk, radial_of};
+use super::tilt::Tilt;
+use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector, max, unit};
+use crate::math::{Point, Pose, Real, Vector};
 
 /// The points within `radius` of the y axis whose y is within `half_height` of zero.
 ///
 /// Sizes may be zero: a disk, a segment, a point. `Face(0)` is the cap on the positive side of y,
 /// `Face(1)` the one on the negative side, `Face(2)` the round side; the rims are `Edge(0)` and
 /// `Edge(1)`.
+///
+/// As features the caps are octagons inscribed in them, whose vertices and sides all bear the name of
+/// the rim; the round side is the segment on it that faces the direction, its ends named as the rims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<N: Real> {
     half_height: N,
@@ -51,28 +56,36 @@ impl<N: Real> Cylinder<N> {
     }
 }
 
-/// The point of the rim of a disk of `radius` around the y axis that lies farthest along `direction`;
-/// the middle of the disk for a direction along the axis.
-pub(super) fn rim_toward<N: Real>(radius: N, y: N, direction: &Vector<N, 3>) -> Point<N, 3> {
-    let radial = unit(&Vector::<N, 2>::new(direction.x, direction.z));
-    let (x, z) =
-        radial.map_or((N::ZERO, N::ZERO), |(along, _)| (along.x * radius, along.y * radius));
-    Point::<N, 3>::new(x, y, z)
-}
-
-/// How far a disk of `radius` reaches along each outer axis when its axis points along `axis`.
-pub(super) fn disk_reach<N: Real>(radius: N, axis: &Vector<N, 3>) -> Vector<N, 3> {
-    axis.map(|a| max(N::ONE - a * a, N::ZERO).sqrt() * radius)
+impl<N: Real> Cylinder<N> {
+    fn disk(&self, y: N) -> Disk<N> {
+        Disk { radius: self.radius, y }
+    }
 }
 
 impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
         let y = if direction.y < N::ZERO { -self.half_height } else { self.half_height };
-        rim_toward(self.radius, y, direction)
+        self.disk(y).rim_toward(direction)
     }
 
     fn reach(&self) -> N {
         (self.half_height * self.half_height + self.radius * self.radius).sqrt()
+    }
+
+    fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
+        let (side, y) =
+            if direction.y < N::ZERO { (1, -self.half_height) } else { (0, self.half_height) };
+        let (disk, rim) = (self.disk(y), FeatureId::Edge(side));
+        if Tilt::usual().admits(radial_of(direction).norm_squared()) {
+            disk.fill_polygon(FeatureId::Face(side), rim, direction, out);
+        } else if Tilt::usual().admits(direction.y * direction.y) && self.half_height > N::ZERO {
+            let other = FeatureId::Edge(1 - side);
+            let ends =
+                [(other, self.disk(-y).rim_toward(direction)), (rim, disk.rim_toward(direction))];
+            out.set_segment(FeatureId::Face(2), ends);
+        } else {
+            out.set_point(rim, disk.rim_toward(direction));
+        }
     }
 }
 
@@ -88,7 +101,7 @@ impl<N: Real> Shape<N, 3> for Cylinder<N> {
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let reach = axis.abs() * self.half_height + disk_reach(self.radius, &axis);
+        let reach = axis.abs() * self.half_height + self.disk(N::ZERO).reach(&axis);
         Aabb::around(Point::from(pose.translation), reach)
     }
 }

@@ -19,6 +19,20 @@ pub enum FeatureId {
     Face(u32),
 }
 
+impl FeatureId {
+    /// The name of a flat part of `dimension` of a solid in `D` dimensions: a point is a vertex, a
+    /// part that bounds the solid (a side in the plane, a polygon in space) a face, else an edge.
+    pub(super) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
+        if dimension == 0 {
+            Self::Vertex(index)
+        } else if dimension + 1 == D {
+            Self::Face(index)
+        } else {
+            Self::Edge(index)
+        }
+    }
+}
+
 /// The part of a core that faces some direction, as a point, a segment or a flat convex polygon.
 ///
 /// All in the local frame of the solid, roundings left out.
@@ -76,5 +90,81 @@ impl<N: Real, const D: usize> Feature<N, D> {
             self.vertex_ids.push(end_id);
         }
         self.side_ids.push(id);
+    }
+
+    /// Adds a vertex and its name.
+    pub(super) fn push(&mut self, id: FeatureId, vertex: Point<N, D>) {
+        self.vertices.push(vertex);
+        self.vertex_ids.push(id);
+    }
+
+    /// Drops vertices that equal the one after, and the sides between them: what is left of a
+    /// polygon without width is a segment or a point, named so and without a normal.
+    pub(super) fn drop_repeated(&mut self) {
+        let mut at = self.vertices.len();
+        while at > 0 && self.vertices.len() > 1 {
+            at -= 1;
+            let next = if at + 1 < self.vertices.len() { at + 1 } else { 0 };
+            if self.vertices[at] == self.vertices[next] {
+                self.drop_vertex(at);
+            }
+        }
+    }
+
+    /// Drops a vertex and the side from it.
+    fn drop_vertex(&mut self, at: usize) {
+        self.vertices.remove(at);
+        self.vertex_ids.remove(at);
+        if at < self.side_ids.len() {
+            self.side_ids.remove(at);
+        }
+        self.rename_collapsed();
+    }
+
+    fn rename_collapsed(&mut self) {
+        match self.vertices.len() {
+            1 => {
+                self.id = self.vertex_ids[0];
+                self.side_ids.clear();
+                self.normal = None;
+            }
+            2 => {
+                self.id = self.side_ids[0];
+                self.side_ids.truncate(1);
+                self.normal = None;
+            }
+            _ => (),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_without_width_becomes_a_segment() {
+        let mut feature = Feature::<f32, 2>::default();
+        for (index, x) in [(0, 1.0), (1, 1.0), (2, -1.0), (3, -1.0)] {
+            feature.push(FeatureId::Vertex(index), Point::<f32, 2>::new(x, 0.0));
+            feature.side_ids.push(FeatureId::Edge(index));
+        }
+        feature.drop_repeated();
+        assert_eq!(feature.vertices.len(), 2, "{feature:?}");
+        assert_eq!(feature.vertices.len(), feature.vertex_ids.len(), "each has a name");
+        assert_eq!(feature.side_ids.as_slice(), [feature.id], "one side, the segment itself");
+        assert!(matches!(feature.id, FeatureId::Edge(1 | 3)), "a side with a length: {feature:?}");
+    }
+
+    #[test]
+    fn a_polygon_without_extent_becomes_a_point() {
+        let mut feature = Feature::<f32, 2>::default();
+        for index in 0..4 {
+            feature.push(FeatureId::Vertex(index), Point::<f32, 2>::new(2.0, 3.0));
+            feature.side_ids.push(FeatureId::Edge(index));
+        }
+        feature.drop_repeated();
+        assert_eq!((feature.vertices.len(), feature.side_ids.len()), (1, 0), "{feature:?}");
+        assert_eq!(feature.id, feature.vertex_ids[0], "named as its vertex");
     }
 }

@@ -46,11 +46,22 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         }
     }
 
-    /// The part of the core that faces the unit vector `direction`: the widest of point, segment
-    /// and polygon whose supporting plane comes nearest to being perpendicular to it.
+    /// The part of the core that faces the unit vector `direction`, for contact manifolds: a polygon,
+    /// a segment or a point, which always contains every point of the core that touches the
+    /// supporting plane perpendicular to `direction`.
     ///
-    /// A polytope answers with the face whose normal is most aligned. The default is the support
-    /// point alone, named `Face(0)`: right for surfaces that are curved everywhere.
+    /// The rule for flat faces: among the edges at the support vertex take the one that leans least
+    /// out of the supporting plane; of the two faces beside it take the one whose normal is most
+    /// aligned. Answer with that face if it leans by at most atan(1/2) ≈ 26.6°, else with the edge if
+    /// it does, else with the vertex. In the plane the sides at the vertex are the faces. So the two
+    /// crossing edges of an edge-edge contact are found as edges or as sides of the faces answered.
+    /// The rule knows angles only, treats mirrored directions alike, and near its two limits both
+    /// answers contain the touching part. No regular polyhedron, nor a regular prism on an edge,
+    /// lies at a limit.
+    ///
+    /// A flat cap that is round is answered as an inscribed polygon with a vertex towards
+    /// `direction`, a round side as its generating segment. The default is the support point alone,
+    /// named `Face(0)`: right for surfaces that are curved everywhere.
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_point(FeatureId::Face(0), self.core_support(direction));
     }
@@ -91,6 +102,9 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
 
     /// The largest feature that touches the supporting plane in `direction`, once the solid may be
     /// turned by up to `angle` radians: a face, else an edge, else a vertex.
+    ///
+    /// The rule of [`SupportMap::core_feature`] with `angle` in place of its limit; angles are cut
+    /// off at the smallest that arithmetic resolves and a little below a right angle.
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);
 
     /// The name of the feature that [`Self::support_feature_toward`] finds for a tiny angle.

@@ -2,7 +2,8 @@
 
 use super::error::{finite, or_panic};
 use super::segment::{box_of, farther};
-use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::tilt::Tilt;
+use super::{Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector, centroid, max};
 
@@ -12,6 +13,12 @@ use crate::math::{Point, Pose, Real, Vector, centroid, max};
 /// In space it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
 /// from vertex `i` to the next; they are faces in the plane and edges in space. In space `Face(0)`
 /// is the side that sees `a`, `b`, `c` counter-clockwise and `Face(1)` the other.
+///
+/// As features, sides are given so that the loop they belong to runs counter-clockwise: in the plane
+/// with the triangle on the left, in space as seen from where the direction points. The normal on a
+/// side, and in space on an edge, lies in the triangle's plane and points out. A triangle without
+/// area has its longest side as its only feature besides the vertices, a triangle without extent its
+/// first vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle<N: Real, const D: usize> {
     corners: [Point<N, D>; 3],
@@ -67,6 +74,10 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
     fn reach(&self) -> N {
         let [a, b, c] = &self.corners;
         max(farther(a, b), c.coords.norm())
+    }
+
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.fill_toward(direction, Tilt::usual(), out);
     }
 }
 

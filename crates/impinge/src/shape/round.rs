@@ -1,0 +1,76 @@
+//! Disks across the y axis: the caps of cylinders and cones.
+
+use super::{Feature, FeatureId};
+use crate::math::{Point, Real, Vector, max, unit};
+
+/// The points within `radius` of the y axis at height `y`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disk<N: Real> {
+    pub(super) radius: N,
+    pub(super) y: N,
+}
+
+/// The part of a direction across the y axis, as (x, z).
+pub(super) fn radial_of<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
+    Vector::<N, 2>::new(direction.x, direction.z)
+}
+
+impl<N: Real> Disk<N> {
+    /// The point of the rim farthest along `direction`; the middle for a direction along the axis.
+    pub(super) fn rim_toward(self, direction: &Vector<N, 3>) -> Point<N, 3> {
+        self.at(unit(&radial_of(direction)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| along))
+    }
+
+    /// How far the disk, moved to the origin, reaches along each outer axis when its axis points
+    /// along `axis`.
+    pub(super) fn reach(self, axis: &Vector<N, 3>) -> Vector<N, 3> {
+        axis.map(|a| max(N::ONE - a * a, N::ZERO).sqrt() * self.radius)
+    }
+
+    fn at(self, radial: Vector<N, 2>) -> Point<N, 3> {
+        Point::<N, 3>::new(radial.x * self.radius, self.y, radial.y * self.radius)
+    }
+
+    /// Gives the disk as an inscribed octagon that faces the side of the axis on which `direction`
+    /// lies, with its first vertex towards `direction` (towards x where that is lost in rounding).
+    /// A disk of no radius is a point.
+    pub(super) fn fill_polygon(
+        self,
+        face: FeatureId,
+        rim: FeatureId,
+        direction: &Vector<N, 3>,
+        out: &mut Feature<N, 3>,
+    ) {
+        if self.radius == N::ZERO {
+            return out.set_point(rim, self.at(Vector::<N, 2>::zeros()));
+        }
+        out.clear();
+        out.id = face;
+        // Seen from the positive side of y, with x to the right, z points down: clockwise in (x, z)
+        // is counter-clockwise there.
+        let turn = if direction.y < N::ZERO { N::ONE } else { -N::ONE };
+        let mut radial = first_sample(direction);
+        for _ in 0..8 {
+            out.push(rim, self.at(radial));
+            out.side_ids.push(rim);
+            radial = eighth_turn(&radial, turn);
+        }
+        out.normal = Some(Vector::<N, 3>::new(N::ZERO, -turn, N::ZERO));
+    }
+}
+
+/// The radial unit vector of a direction, or x where it is lost in rounding.
+fn first_sample<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
+    let fallback = Vector::<N, 2>::new(N::ONE, N::ZERO);
+    match unit(&radial_of(direction)) {
+        Some((along, length)) if length > N::lit(64.0) * N::EPSILON => along,
+        _ => fallback,
+    }
+}
+
+/// A vector of the plane turned by 45 degrees, counter-clockwise for `turn` 1, clockwise for −1.
+fn eighth_turn<N: Real>(v: &Vector<N, 2>, turn: N) -> Vector<N, 2> {
+    let cosine = N::lit(std::f64::consts::FRAC_1_SQRT_2);
+    let sine = cosine * turn;
+    Vector::<N, 2>::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y)
+}

@@ -1,0 +1,67 @@
+//! How far a feature may lean out of the supporting plane and still be the one that faces.
+
+use crate::math::{Real, Vector};
+
+/// The limit, kept as the square of its sine: small angles lose nothing to rounding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tilt<N: Real> {
+    sine_squared: N,
+}
+
+impl<N: Real> Tilt<N> {
+    /// The limit of [`super::SupportMap::core_feature`], atan(1/2): its sine squared is 1/5.
+    pub(super) fn usual() -> Self {
+        Self { sine_squared: N::lit(0.2) }
+    }
+
+    /// The least angle that unit vectors in rounded arithmetic tell from zero.
+    pub(super) fn least() -> Self {
+        let sine = N::lit(64.0) * N::EPSILON;
+        Self { sine_squared: sine * sine }
+    }
+
+    /// The limit of `angle` radians, cut off at [`Self::least`] and a little below a right angle,
+    /// beyond which nothing faces any more.
+    pub(super) fn of_angle(angle: N) -> Self {
+        let largest = N::ONE - N::lit(0.001);
+        let sine = if angle < N::lit(1.57) { angle.sine_cosine().0 } else { N::ONE };
+        let squared = if sine > N::ZERO { sine * sine } else { N::ZERO };
+        let least = Self::least().sine_squared;
+        let sine_squared = if squared > least { squared } else { least };
+        Self { sine_squared: if sine_squared < largest { sine_squared } else { largest } }
+    }
+
+    /// A part that leans out of the plane by an angle with this squared sine still faces.
+    pub(super) fn admits(self, sine_squared: N) -> bool {
+        sine_squared <= self.sine_squared
+    }
+
+    /// A face with this unit normal faces the unit vector `direction`.
+    pub(super) fn admits_face<const D: usize>(
+        self,
+        normal: &Vector<N, D>,
+        direction: &Vector<N, D>,
+    ) -> bool {
+        let along = normal.dot(direction);
+        along > N::ZERO && self.admits((direction - normal * along).norm_squared())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_the_documented_angles() {
+        let normal = Vector::<f64, 2>::new(1.0, 0.0);
+        for (tilt, limit) in [(Tilt::<f64>::usual(), 0.5_f64.atan()), (Tilt::of_angle(0.3), 0.3)] {
+            let turned = |angle: f64| Vector::<f64, 2>::new(angle.cos(), angle.sin());
+            assert!(tilt.admits_face(&normal, &turned(limit - 1e-9)), "just inside {limit}");
+            assert!(!tilt.admits_face(&normal, &turned(limit + 1e-9)), "just outside {limit}");
+            assert!(!tilt.admits_face(&normal, &-turned(0.0)), "the back of a face never faces");
+        }
+        assert!(Tilt::<f32>::of_angle(-1.0).admits(0.0), "no angle is below the least");
+        assert!(!Tilt::<f32>::of_angle(f32::INFINITY).admits(1.0), "nothing upright faces");
+        assert!(Tilt::<f32>::of_angle(f32::NAN).admits(0.0), "NaN ends somewhere");
+    }
+}
