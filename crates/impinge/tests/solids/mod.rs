@@ -6,8 +6,8 @@
 
 use impinge::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Geometry, Plane, Segment, Shape, ShapeHandle,
-    SupportMap, Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry, Plane, Segment,
+    Shape, ShapeHandle, SupportMap, Triangle,
 };
 
 /// A small deterministic generator (Steele, Lea and Flood, `SplitMix`, 2014).
@@ -236,7 +236,50 @@ pub fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
     let mut triangle = Solid::new("triangle", Triangle::new(a, b, c), 3.0, Box::new(level));
     triangle.center = (corners[0] + corners[1] + corners[2]) / 3.0;
     solids.push(triangle);
+    let corners = hull_corners::<2>(rng);
+    let points: Vec<_> = corners.iter().map(|corner| Point::from(narrow(corner))).collect();
+    let size = corners.iter().map(Vector::<f64, 2>::norm).fold(0.0, f64::max);
+    let level = hull_level(corners, |c, i| {
+        let side = c[i[1]] - c[i[0]];
+        Vector::<f64, 2>::new(-side.y, side.x)
+    });
+    solids.push(Solid::new("polygon", ConvexPolygon::from_points(&points), size, level));
     solids
+}
+
+/// Any corners, and two on each axis, to both sides: the origin is inside their hull.
+fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
+    let mut corners: Vec<_> = (0..8).map(|_| rng.vector::<D>(2.0)).collect();
+    for axis in 0..D {
+        for sign in [-1.0, 1.0] {
+            let mut corner = Vector::<f64, D>::zeros();
+            corner[axis] = sign * rng.between(0.5, 2.0);
+            corners.push(corner);
+        }
+    }
+    corners
+}
+
+/// The height over the highest of all planes through `D` corners that have all corners on one side.
+fn hull_level<const D: usize>(
+    corners: Vec<Vector<f64, D>>,
+    normal: impl Fn(&[Vector<f64, D>], [usize; D]) -> Vector<f64, D>,
+) -> Level<D> {
+    let (count, mut planes) = (corners.len(), Vec::new());
+    for choice in 0..count.pow(D as u32) {
+        let picked: [usize; D] = std::array::from_fn(|i| choice / count.pow(i as u32) % count);
+        let across = normal(&corners, picked);
+        let length = across.norm();
+        if length == 0.0 {
+            continue;
+        }
+        let unit = across / length;
+        let offset = unit.dot(&corners[picked[0]]);
+        if corners.iter().all(|corner| unit.dot(corner) <= offset + 1e-12 * offset.abs()) {
+            planes.push((unit, offset));
+        }
+    }
+    Box::new(move |p| planes.iter().map(|(n, o)| n.dot(p) - o).fold(f64::NEG_INFINITY, f64::max))
 }
 
 pub fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
@@ -250,6 +293,11 @@ pub fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
     solids.push(Solid::new("cone", Cone::new(N::lit(h), N::lit(r)), size, {
         Box::new(move |p| ((p.x.hypot(p.z) * 2.0 * h + r * (p.y - h)) / slant).max(-p.y - h))
     }));
+    let corners = hull_corners::<3>(rng);
+    let points: Vec<_> = corners.iter().map(|corner| Point::from(narrow(corner))).collect();
+    let size = corners.iter().map(Vector::<f64, 3>::norm).fold(0.0, f64::max);
+    let level = hull_level(corners, |c, i| (c[i[1]] - c[i[0]]).cross(&(c[i[2]] - c[i[0]])));
+    solids.push(Solid::new("hull", ConvexHull::from_points(&points), size, level));
     solids
 }
 
