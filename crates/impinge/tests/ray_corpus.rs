@@ -4,7 +4,9 @@ use impinge::bounding_volume::Aabb;
 use impinge::math::na::{Quaternion, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
 use impinge::query::{PointQuery, Ray, RayCast};
-use impinge::shape::{Ball, Capsule, Cone, Cylinder, Segment, ShapeHandle, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Cone, ConvexHull, Cylinder, Segment, Shape, ShapeHandle, Triangle,
+};
 use serde_json::Value;
 
 /// Kinds of shape that no single convex solid stands for.
@@ -204,4 +206,66 @@ fn points<N: Real>() {
 fn points_of_the_corpus() {
     points::<f64>();
     points::<f32>();
+}
+
+fn corners<N: Real>(list: &Value) -> Vec<Point<N, 3>> {
+    list.as_array().expect("a list").iter().map(point).collect()
+}
+
+/// Closed meshes that are convex, as hulls: signs and distances must not depend on the faces.
+fn convex_meshes<N: Space<3>>() {
+    let mut checked = 0;
+    for case in cases() {
+        let id = case["id"].as_str().expect("a name");
+        if case["query"] != "point_projection" || !id.starts_with("trimesh-73") {
+            continue;
+        }
+        let hull = ConvexHull::from_points(&corners::<N>(&case["shape1"]["vertices"]));
+        let m = Isometry3::<N>::identity();
+        check_point(&case, &ShapeHandle::new(hull), &m);
+        checked += 1;
+    }
+    assert_eq!(checked, 4, "all of the cube");
+}
+
+/// Inside a tetrahedron by its four planes, on a grid around it.
+fn tetrahedron<N: Space<3>>() {
+    let all = cases();
+    let case = all.iter().find(|case| case["query"] == "point_sign_grid").expect("it is there");
+    let hull = ConvexHull::from_points(&corners::<N>(&case["shape1"]["vertices"]));
+    let mut inside = 0;
+    for index in 0..21_u32.pow(3) {
+        let at = |power: u32| f64::from(index / 21_u32.pow(power) % 21) * 0.25 - 2.0;
+        let (x, y, z) = (at(0), at(1), at(2));
+        let margin = x.min(y).min(z).min(1.0 - x - y - z);
+        if margin == 0.0 {
+            continue;
+        }
+        let asked = Point::from(Vector::<f64, 3>::new(x, y, z).map(N::lit));
+        let (found, _) = hull.project_local_point(&asked);
+        assert_eq!(found.is_inside, margin > 0.0, "{asked}: {found:?}");
+        inside += u32::from(found.is_inside);
+    }
+    assert_eq!(inside, 1, "only (1/4, 1/4, 1/4) is not on the surface");
+}
+
+fn hull_box<N: Space<3>>() {
+    let all = of_kind("local_aabb");
+    assert_eq!(all.len(), 1, "all of them");
+    for case in all {
+        let hull = ConvexHull::from_points(&corners::<N>(&case["shape1"]["points"]));
+        let (aabb, expected) = (hull.local_aabb(), &case["expected"]);
+        let corners = (*aabb.mins(), *aabb.maxs());
+        assert_eq!(corners, (point(&expected["mins"]), point(&expected["maxs"])), "{case}");
+    }
+}
+
+#[test]
+fn hulls_of_the_corpus() {
+    convex_meshes::<f64>();
+    convex_meshes::<f32>();
+    tetrahedron::<f64>();
+    tetrahedron::<f32>();
+    hull_box::<f64>();
+    hull_box::<f32>();
 }
