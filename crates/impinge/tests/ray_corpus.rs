@@ -41,10 +41,7 @@ fn tolerance<N: Real>(case: &Value) -> f64 {
     case["tolerance"][name].as_f64().unwrap_or(0.0)
 }
 
-fn common<N: Space<D>, const D: usize>(shape: &Value) -> Option<ShapeHandle<N, D>>
-where
-    Segment<N, D>: impinge::shape::Shape<N, D>,
-{
+fn common<N: Space<D>, const D: usize>(shape: &Value) -> Option<ShapeHandle<N, D>> {
     let [a, b, c] = ["a", "b", "c"].map(|name| point::<N, D>(&shape[name]));
     Some(match shape["type"].as_str()? {
         "segment" => ShapeHandle::new(Segment::new(a, b)),

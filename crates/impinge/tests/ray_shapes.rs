@@ -231,7 +231,7 @@ fn far_rays<N: Space<D>, const D: usize>(solids: Vec<Solid<N, D>>, away: f64) {
     for solid in solids.iter().filter(|solid| solid.name != "plane") {
         for _ in 0..20 {
             let toward = rng.vector::<D>(1.0);
-            let origin = toward.map(|x| x.signum()) * away + rng.vector::<D>(1.0);
+            let origin = toward.map(f64::signum) * away + rng.vector::<D>(1.0);
             let origin = wide::<N, D>(&narrow(&origin));
             let dir = wide::<N, D>(&narrow(&((solid.center - origin) * 0.125)));
             let ray = Ray::new(Point::from(narrow(&origin)), narrow(&dir));
@@ -280,7 +280,8 @@ fn segments_of_the_plane_agree_with_cramer() {
             continue;
         }
         clear += 1;
-        let found = shape.cast_local_ray(&Ray::new(Point::from(origin), dir), rng.bits() % 2 == 0);
+        let found =
+            shape.cast_local_ray(&Ray::new(Point::from(origin), dir), rng.bits().is_multiple_of(2));
         let expected = t > 0.0 && (0.0..=1.0).contains(&u);
         assert_eq!(found.is_some(), expected, "{corners:?} {origin} {dir}: {found:?}");
         if let Some(found) = found {
@@ -326,7 +327,7 @@ fn triangles_of_space<N: Real>() {
         }
         clear += 1;
         let ray = Ray::new(Point::from(narrow(&origin)), narrow(&dir));
-        let found = shape.cast_local_ray(&ray, rng.bits() % 2 == 0);
+        let found = shape.cast_local_ray(&ray, rng.bits().is_multiple_of(2));
         let expected = t > 0.0 && u > 0.0 && v > 0.0 && u + v < 1.0;
         assert_eq!(found.is_some(), expected, "{corners:?} {origin} {dir}: {found:?}");
         if let Some(found) = found {
@@ -390,7 +391,7 @@ fn scaling<N: Space<D>, const D: usize>(solids: impl Fn(&mut Rng) -> Vec<Solid<N
         for _ in 0..50 {
             let origin: Vector<N, D> = narrow(&rng.vector::<D>(3.0));
             let dir: Vector<N, D> = narrow(&(rng.vector::<D>(1.0)));
-            let solid = rng.bits() % 2 == 0;
+            let solid = rng.bits().is_multiple_of(2);
             let ray = Ray::new(Point::from(origin), dir);
             let grown = Ray::new(Point::from(origin * factor), dir);
             let hit = one.shape.cast_local_ray(&ray, solid);

@@ -12,22 +12,22 @@ use impinge::shape::{
 
 /// A small deterministic generator (Steele, Lea and Flood, `SplitMix`, 2014).
 #[derive(Debug)]
-pub struct Rng {
+pub(crate) struct Rng {
     state: u64,
     scale: f64,
 }
 
 impl Rng {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self::scaled(seed, 1.0)
     }
 
     /// Its lengths are those of `new` times a power of two.
-    pub fn scaled(seed: u64, scale: f64) -> Self {
+    pub(crate) fn scaled(seed: u64, scale: f64) -> Self {
         Self { state: seed, scale }
     }
 
-    pub fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -36,26 +36,26 @@ impl Rng {
     }
 
     /// A multiple of 1/1024 between the two, times the scale: exact in `f32`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         let fraction = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         ((low + (high - low) * fraction) * 1024.0).round() / 1024.0 * self.scale
     }
 
-    pub fn vector<const D: usize>(&mut self, reach: f64) -> Vector<f64, D> {
+    pub(crate) fn vector<const D: usize>(&mut self, reach: f64) -> Vector<f64, D> {
         Vector::<f64, D>::from_fn(|_, _| self.between(-reach, reach))
     }
 }
 
-pub fn narrow<N: Real, const D: usize>(v: &Vector<f64, D>) -> Vector<N, D> {
+pub(crate) fn narrow<N: Real, const D: usize>(v: &Vector<f64, D>) -> Vector<N, D> {
     v.map(N::lit)
 }
 
-pub fn wide<N: Real, const D: usize>(v: &Vector<N, D>) -> Vector<f64, D> {
+pub(crate) fn wide<N: Real, const D: usize>(v: &Vector<N, D>) -> Vector<f64, D> {
     v.map(N::as_f64)
 }
 
 /// The point of the outer frame in the local one, in `f64`.
-pub fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+pub(crate) fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     point: &Vector<f64, D>,
 ) -> Vector<f64, D> {
@@ -64,27 +64,27 @@ pub fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 }
 
 /// The direction of the outer frame in the local one, in `f64`.
-pub fn turned_back<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+pub(crate) fn turned_back<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     direction: &Vector<N, D>,
 ) -> Vector<f64, D> {
     Pose::from_isometry(m).rotation.map(N::as_f64).tr_mul(&wide(direction))
 }
 
-pub type Level<const D: usize> = Box<dyn Fn(&Vector<f64, D>) -> f64>;
+pub(crate) type Level<const D: usize> = Box<dyn Fn(&Vector<f64, D>) -> f64>;
 
 #[derive(Debug)]
-pub struct Solid<N: Real, const D: usize> {
-    pub name: &'static str,
-    pub shape: ShapeHandle<N, D>,
-    pub level: Debugless<D>,
+pub(crate) struct Solid<N: Real, const D: usize> {
+    pub(crate) name: &'static str,
+    pub(crate) shape: ShapeHandle<N, D>,
+    pub(crate) level: Debugless<D>,
     /// A point inside.
-    pub center: Vector<f64, D>,
+    pub(crate) center: Vector<f64, D>,
     /// No point is farther from the local origin (of those that rays aim at).
-    pub size: f64,
+    pub(crate) size: f64,
 }
 
-pub struct Debugless<const D: usize>(pub Level<D>);
+pub(crate) struct Debugless<const D: usize>(pub(crate) Level<D>);
 
 impl<const D: usize> std::fmt::Debug for Debugless<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -98,12 +98,12 @@ impl<N: Real, const D: usize> Solid<N, D> {
         Self { name, shape: ShapeHandle::new(shape), level: Debugless(level), center, size }
     }
 
-    pub fn at(&self, point: &Vector<f64, D>) -> f64 {
+    pub(crate) fn at(&self, point: &Vector<f64, D>) -> f64 {
         (self.level.0)(point)
     }
 
     /// Where the boundary is crossed on the way from the centre along a direction.
-    pub fn boundary(&self, direction: &Vector<f64, D>) -> Option<Vector<f64, D>> {
+    pub(crate) fn boundary(&self, direction: &Vector<f64, D>) -> Option<Vector<f64, D>> {
         let (mut low, mut high) = (0.0, 4.0 * self.size / direction.norm());
         if self.at(&(self.center + direction * high)) < 0.0 {
             return None;
@@ -124,7 +124,7 @@ fn to_segment<const D: usize>(p: &Vector<f64, D>, a: &Vector<f64, D>, b: &Vector
 
 /// An ellipsoid (an ellipse), known to the library by its support points only.
 #[derive(Debug)]
-pub struct Ellipsoid<N: Real, const D: usize>(pub Vector<N, D>);
+pub(crate) struct Ellipsoid<N: Real, const D: usize>(pub(crate) Vector<N, D>);
 
 impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
@@ -149,7 +149,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
 
 /// A box with rounded edges, known by its support points and its rounding only.
 #[derive(Debug)]
-pub struct RoundBox<N: Real, const D: usize>(pub Cuboid<N, D>, pub N);
+pub(crate) struct RoundBox<N: Real, const D: usize>(pub(crate) Cuboid<N, D>, pub(crate) N);
 
 impl<N: Real, const D: usize> SupportMap<N, D> for RoundBox<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
@@ -177,7 +177,7 @@ fn beyond<const D: usize>(p: &Vector<f64, D>, half: &Vector<f64, D>) -> Vector<f
 }
 
 /// Solids of random sizes that exist in every dimension.
-pub fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>> {
+pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>> {
     let radius = rng.between(0.25, 2.0);
     let half = Vector::<f64, D>::from_fn(|_, _| rng.between(0.25, 2.0));
     let (a, b) = (rng.vector::<D>(2.0), rng.vector::<D>(2.0));
@@ -186,7 +186,7 @@ pub fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>> {
     normal[(rng.bits() % 2) as usize] = 1.0;
     let capsule =
         Capsule::try_from_ends(Point::from(narrow(&a)), Point::from(narrow(&b)), N::lit(thickness))
-            .unwrap();
+            .expect("good numbers");
     let round = RoundBox(Cuboid::new(narrow(&half)), N::lit(thickness));
     let mut solids = vec![
         Solid::new("ball", Ball::new(N::lit(radius)), radius, {
@@ -216,7 +216,7 @@ pub fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>> {
     solids
 }
 
-pub fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
+pub(crate) fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
     let mut solids = common::<N, 2>(rng);
     let corners = loop {
         let corners = [rng.vector::<2>(2.0), rng.vector::<2>(2.0), rng.vector::<2>(2.0)];
@@ -266,8 +266,14 @@ fn hull_level<const D: usize>(
     normal: impl Fn(&[Vector<f64, D>], [usize; D]) -> Vector<f64, D>,
 ) -> Level<D> {
     let (count, mut planes) = (corners.len(), Vec::new());
-    for choice in 0..count.pow(D as u32) {
-        let picked: [usize; D] = std::array::from_fn(|i| choice / count.pow(i as u32) % count);
+    let choices: usize = [count; D].iter().product();
+    for choice in 0..choices {
+        let mut rest = choice;
+        let picked: [usize; D] = std::array::from_fn(|_| {
+            let digit = rest % count;
+            rest /= count;
+            digit
+        });
         let across = normal(&corners, picked);
         let length = across.norm();
         if length == 0.0 {
@@ -282,7 +288,7 @@ fn hull_level<const D: usize>(
     Box::new(move |p| planes.iter().map(|(n, o)| n.dot(p) - o).fold(f64::NEG_INFINITY, f64::max))
 }
 
-pub fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
+pub(crate) fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
     let mut solids = common::<N, 3>(rng);
     let (h, r) = (rng.between(0.25, 2.0), rng.between(0.25, 2.0));
     let size = h.hypot(r);
@@ -303,18 +309,18 @@ pub fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
 
 /// Sets without thickness: their corners, of which they are the hull.
 #[derive(Debug)]
-pub struct Flat<N: Real, const D: usize> {
-    pub shape: ShapeHandle<N, D>,
-    pub corners: Vec<Vector<f64, D>>,
+pub(crate) struct Flat<N: Real, const D: usize> {
+    pub(crate) shape: ShapeHandle<N, D>,
+    pub(crate) corners: Vec<Vector<f64, D>>,
 }
 
-pub fn random_segment<N: Real, const D: usize>(rng: &mut Rng) -> Flat<N, D> {
+pub(crate) fn random_segment<N: Real, const D: usize>(rng: &mut Rng) -> Flat<N, D> {
     let corners = vec![rng.vector::<D>(2.0), rng.vector::<D>(2.0)];
     let [a, b] = [0, 1].map(|i: usize| Point::from(narrow(&corners[i])));
     Flat { shape: ShapeHandle::new(Segment::new(a, b)), corners }
 }
 
-pub fn random_triangle<N: Real>(rng: &mut Rng) -> Flat<N, 3> {
+pub(crate) fn random_triangle<N: Real>(rng: &mut Rng) -> Flat<N, 3> {
     let corners = vec![rng.vector::<3>(2.0), rng.vector::<3>(2.0), rng.vector::<3>(2.0)];
     let [a, b, c] = [0, 1, 2].map(|i: usize| Point::from(narrow(&corners[i])));
     Flat { shape: ShapeHandle::new(Triangle::new(a, b, c)), corners }
