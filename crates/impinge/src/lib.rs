@@ -5,6 +5,8 @@ pub mod bounding_volume;
 pub mod broad_phase;
 pub mod bvh;
 pub(crate) mod convex;
+pub mod dim2;
+pub mod dim3;
 pub mod math;
 pub mod narrow_phase;
 pub mod pairs;

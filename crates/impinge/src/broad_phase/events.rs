@@ -121,11 +121,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     fn met_by_unbounded(&self, u: u32, met: &mut Vec<u64>) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
-            // Of two unbounded objects that changed, the smaller one speaks for the pair.
-            let is_told_by_other = is_changed
-                && other < u
-                && self.homes[other as usize] == Home::Unbounded
-                && self.marks[other as usize] & CHANGED != 0;
+            // Of two unbounded objects, the one that changed speaks, of two that did the smaller.
+            let is_told_by_other = self.homes[other as usize] == Home::Unbounded
+                && self.marks[other as usize] & CHANGED != 0
+                && (!is_changed || other < u);
             if other != u && !is_told_by_other && self.began(u, other) {
                 met.push(pack(u, other));
             }

@@ -43,6 +43,15 @@ pub struct Joiner {
 pub(super) struct Scratch {
     pub(super) tasks: TaskList,
     pub(super) next: TaskList,
+    met: Vec<Met>,
+}
+
+/// A slot and the lanes of a block that it overlaps.
+#[derive(Clone, Copy, Debug, Default)]
+struct Met {
+    slot: u32,
+    block: u32,
+    mask: u32,
 }
 
 impl Joiner {
@@ -135,7 +144,7 @@ impl Joiner {
         let tasks = &self.tasks;
         let run = |range: core::ops::Range<usize>, out: &mut TaskList, scratch: &mut Scratch| {
             with_kernel!(sides.first.lanes, kernel => {
-                join_leaves(kernel, sides, tasks, range, out, &mut scratch.tasks);
+                join_leaves(kernel, sides, tasks, range, out, scratch);
             });
         };
         let chunks = Chunks { count: tasks.len(), size: LEAF_CHUNK };
@@ -209,29 +218,27 @@ fn expand<K: Kernel, const D: usize>(
     out: &mut TaskList,
 ) {
     let (layer_a, layer_b) = (&sides.first.layers[layer], &sides.second.layers[layer]);
-    let children = &sides.first.layers[layer - 1].bounds;
+    let (blocks_a, changed_a) = (&layer_a.blocks[..], &layer_a.changed[..]);
+    let (blocks_b, changed_b) = (&layer_b.blocks[..], &layer_b.changed[..]);
+    let (bounds_b, children) = (&layer_b.bounds[..], &sides.first.layers[layer - 1].bounds[..]);
     let (first, second) = tasks.parts();
     for (&a, &b) in first[range.clone()].iter().zip(&second[range]) {
-        let (block_a, block_b) = (&layer_a.blocks[a as usize], &layer_b.blocks[b as usize]);
-        let changed_a = u32::from(layer_a.changed[a as usize]);
-        let changed_b = u32::from(layer_b.changed[b as usize]);
-        let mut lanes = kernel.overlaps(block_a, &layer_b.bounds[b as usize]);
+        let block_b = &blocks_b[b as usize];
+        let changed_a = u32::from(changed_a[a as usize]);
+        let changed_b = u32::from(changed_b[b as usize]);
+        let mut lanes = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
         if changed_b == 0 {
             lanes &= changed_a;
         }
-        let is_diagonal = sides.is_self && a == b;
+        let is_diagonal = sides.is_self & (a == b);
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
             let child = a * small(LANES) + lane;
-            let mut mask = kernel.overlaps(block_b, &children[child as usize]);
-            if is_diagonal {
-                mask &= u32::MAX << lane;
-            }
-            if changed_a >> lane & 1 == 0 {
-                mask &= changed_b;
-            }
-            kernel.push(out, child, b * small(LANES), mask);
+            let mask = kernel.overlaps(block_b, &children[child as usize]);
+            let upper = u32::MAX << lane | u32::from(is_diagonal).wrapping_sub(1);
+            let changed = changed_b | 0_u32.wrapping_sub(changed_a >> lane & 1);
+            kernel.push(out, child, b * small(LANES), mask & upper & changed);
         }
     }
 }
@@ -244,32 +251,42 @@ fn join_leaves<K: Kernel, const D: usize>(
     tasks: &TaskList,
     range: core::ops::Range<usize>,
     out: &mut TaskList,
-    lanes: &mut TaskList,
+    scratch: &mut Scratch,
 ) {
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
+    let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
+    let (blocks_b, changed_b) = (&leaves_b.blocks[..], &leaves_b.changed[..]);
+    let (bounds_b, boxes) = (&leaves_b.bounds[..], &sides.first.boxes[..]);
     let (first, second) = tasks.parts();
+    let Scratch { tasks: lanes, met, .. } = scratch;
     lanes.clear();
     for (&a, &b) in first[range.clone()].iter().zip(&second[range]) {
-        let mut mask = kernel.overlaps(&leaves_a.blocks[a as usize], &leaves_b.bounds[b as usize]);
-        if leaves_b.changed[b as usize] == 0 {
-            mask &= u32::from(leaves_a.changed[a as usize]);
+        let mut mask = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
+        if changed_b[b as usize] == 0 {
+            mask &= u32::from(changed_a[a as usize]);
         }
         kernel.push(lanes, b, a * small(LANES), mask);
     }
     let (blocks, slots) = lanes.parts();
+    met.clear();
+    met.resize(blocks.len(), Met::default());
+    let mut count = 0;
     for (&b, &slot) in blocks.iter().zip(slots) {
         let (a, lane) = (slot / small(LANES), slot % small(LANES));
-        let block = &leaves_b.blocks[b as usize];
-        let mut mask = kernel.overlaps(block, &sides.first.boxes[slot as usize]);
-        if sides.is_self && a == b {
-            mask &= 0xfffe << lane;
-        }
-        if leaves_a.changed[a as usize] >> lane & 1 == 0 {
-            mask &= u32::from(leaves_b.changed[b as usize]);
-        }
+        let mask = kernel.overlaps(&blocks_b[b as usize], &boxes[slot as usize]);
+        // Arithmetic in place of branches: how these go, no processor foresees.
+        let is_diagonal = sides.is_self & (a == b);
+        let upper = 0xfffe << lane | u32::from(is_diagonal).wrapping_sub(1);
+        let is_changed = u32::from(changed_a[a as usize]) >> lane & 1;
+        let changed = u32::from(changed_b[b as usize]) | 0_u32.wrapping_sub(is_changed);
+        let mask = mask & upper & changed;
+        met[count] = Met { slot, block: b, mask };
+        count += usize::from(mask != 0);
+    }
+    for &Met { slot, block, mask } in &met[..count] {
+        let mask = mask & !overlapped_before(kernel, sides, slot, block);
         if mask != 0 {
-            mask &= !overlapped_before(kernel, sides, slot, b);
-            kernel.push(out, slot, b * small(LANES), mask);
+            kernel.push(out, slot, block * small(LANES), mask);
         }
     }
 }

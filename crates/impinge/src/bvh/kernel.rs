@@ -261,7 +261,7 @@ mod tests {
         let mut block = Block::EMPTY;
         for lane in 0..LANES {
             let lo = [(); 3].map(|()| f32::from(next()));
-            let hi = lo.map(|x| x + f32::from(next()));
+            let hi = lo.map(|x| x + f32::from(next()) + 4.0);
             if next() > 2 {
                 block.set_lane(lane, &Bounds { lo, hi });
             }
@@ -292,7 +292,7 @@ mod tests {
             hits += expected.0.count_ones();
             tests += 16;
         }
-        assert!((tests / 5..tests / 2).contains(&hits), "{hits} of {tests} tests hit");
+        assert!((tests * 3 / 10..tests * 7 / 10).contains(&hits), "{hits} of {tests} tests hit");
     }
 
     #[test]

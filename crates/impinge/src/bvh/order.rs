@@ -121,7 +121,6 @@ impl<const D: usize> Tree<D> {
         self.slots[load.id as usize] = small(slot);
         self.ids[slot] = load.id;
         self.boxes[slot] = load.bounds;
-        self.layers[0].blocks[block].set_lane(lane, &load.bounds);
         self.before[block].set_lane(lane, &load.before);
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
     }
@@ -132,7 +131,6 @@ impl<const D: usize> Tree<D> {
         for slot in self.end..blocks * LANES {
             self.ids[slot] = NONE;
             self.boxes[slot] = Bounds::EMPTY;
-            self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
             self.before[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
         }
         if blocks != self.before.len() {

@@ -20,7 +20,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     scratch: &mut Scratch,
 ) {
     debug_assert!(!sides.second.is_stale, "queries need a refitted tree");
-    let Scratch { tasks, next } = scratch;
+    let Scratch { tasks, next, .. } = scratch;
     tasks.clear();
     for &slot in slots {
         tasks.push(slot, 0);

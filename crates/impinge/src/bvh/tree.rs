@@ -212,10 +212,11 @@ impl<const D: usize> Tree<D> {
         self.touch(block);
     }
 
+    /// Writes one copy of the box; the blocks follow in the next refit. A box one by one is a cache
+    /// line, a lane of a block six, and objects come in no spatial order.
     #[inline]
     fn write(&mut self, slot: usize, bounds: &Bounds<D>) {
         self.boxes[slot] = *bounds;
-        self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, bounds);
         self.touch(slot / LANES);
         self.is_stale = true;
     }
@@ -286,6 +287,14 @@ impl<const D: usize> Tree<D> {
     }
 
     pub(super) fn refit_layers(&mut self) {
+        if self.is_stale {
+            for &block in &self.touched {
+                let block = block as usize;
+                let boxes = self.boxes[block * LANES..].first_chunk();
+                let boxes = boxes.expect("every block has sixteen slots");
+                self.layers[0].blocks[block].set_all(boxes);
+            }
+        }
         let many = self.touched.len() * 4 > self.before.len();
         with_kernel!(self.lanes, kernel => {
             if self.is_restructured || many {
@@ -389,7 +398,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// The half surfaces of all leaf blocks, summed in their order: what a search pays.
-    pub(super) fn leaf_surface(&self) -> f64 {
+    pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 

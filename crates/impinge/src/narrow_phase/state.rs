@@ -2,7 +2,8 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::{
-    ContactManifold, ManifoldRequest, Pair, Proximity, Placement, RawManifold, canonical, materialise,
+    ContactManifold, ManifoldRequest, Pair, Placement, Proximity, RawManifold, canonical,
+    materialise,
 };
 use crate::shape::Shape;
 

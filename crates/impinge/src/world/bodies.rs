@@ -97,10 +97,7 @@ fn aabb_at<N: Space<D>, const D: usize>(
 /// The box grown by what the object wants to know of others, so that two boxes meet whenever the
 /// solids are as near as the sum of both limits; and by a few units in the last place, because the
 /// box, the sum and the distance that it is compared with are rounded.
-fn volume<N: Real, const D: usize>(
-    aabb: &Aabb<N, D>,
-    query: GeometricQueryType<N>,
-) -> Aabb<N, D> {
+fn volume<N: Real, const D: usize>(aabb: &Aabb<N, D>, query: GeometricQueryType<N>) -> Aabb<N, D> {
     let faces = aabb.mins().iter().chain(aabb.maxs().iter());
     let finite = faces.filter(|x| x.is_finite_number());
     let limit = query.query_limit();
@@ -133,7 +130,8 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
         let body = &mut self.bodies[index as usize];
         body.alive = false;
         // An index must have a row before later ones can: the row is written if it never was.
-        body.changes = Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
+        body.changes =
+            Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
     }
 
     pub(crate) fn set_isometry(&mut self, index: u32, isometry: N::Isometry) {

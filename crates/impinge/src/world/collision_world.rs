@@ -11,9 +11,7 @@ use super::{
     WorldBroadPhase, WorldError,
 };
 use crate::math::Space;
-use crate::narrow_phase::{
-    CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType,
-};
+use crate::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType};
 use crate::shape::ShapeHandle;
 
 /// Objects that are told, at each update, who touches whom.

@@ -46,7 +46,10 @@ impl fmt::Display for WorldError {
                 write!(f, "a number of the position of a new object is {value}")
             }
             Self::QueryType { value } => {
-                write!(f, "a number of the query type is {value}: it must be finite and not negative")
+                write!(
+                    f,
+                    "a number of the query type is {value}: it must be finite and not negative"
+                )
             }
             Self::Margin { value } => {
                 write!(f, "the margin is {value}: it must be finite and not negative")

@@ -12,11 +12,8 @@ use crate::math::Space;
 /// the groups of one of the objects are set again.
 pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
     /// The two objects may interact. `co1` is the one whose handle comes first.
-    fn is_pair_valid(
-        &self,
-        co1: &CollisionObject<N, D, T>,
-        co2: &CollisionObject<N, D, T>,
-    ) -> bool;
+    fn is_pair_valid(&self, co1: &CollisionObject<N, D, T>, co2: &CollisionObject<N, D, T>)
+    -> bool;
 }
 
 type Named<N, const D: usize, T> = (String, Box<dyn BroadPhasePairFilter<N, D, T>>);

@@ -72,12 +72,7 @@ impl CollisionGroups {
     /// Member of all groups, whitelists all, blacklists none; no self-collision.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            membership: ALL_GROUPS,
-            whitelist: ALL_GROUPS,
-            blacklist: 0,
-            self_collision: false,
-        }
+        Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0, self_collision: false }
     }
 
     /// Makes the object a member of these groups and no others.
@@ -292,7 +287,15 @@ mod tests {
         let source = groups(&[1], &[2], &[3]);
         let mut target = CollisionGroups::new();
         target.copy_membership(&source);
-        assert_eq!(target, { let mut g = CollisionGroups::new(); g.set_membership(&[1]); g }, "1");
+        assert_eq!(
+            target,
+            {
+                let mut g = CollisionGroups::new();
+                g.set_membership(&[1]);
+                g
+            },
+            "1"
+        );
         target.copy_whitelist(&source);
         target.copy_blacklist(&source);
         assert_eq!(target, source, "all three");

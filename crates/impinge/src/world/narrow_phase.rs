@@ -158,16 +158,16 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     ) -> ContactPairs<'a, N, D> {
         let table = objects.table();
         let pairs = Self::contact_pairs(self, table);
-        Box::new(pairs.map(|(first, second, pair)| {
-            (table.handle(first), table.handle(second), pair)
-        }))
+        Box::new(
+            pairs.map(|(first, second, pair)| (table.handle(first), table.handle(second), pair)),
+        )
     }
 
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
         let table = objects.table();
         let pairs = Self::proximity_pairs(self);
-        Box::new(pairs.map(|(first, second, pair)| {
-            (table.handle(first), table.handle(second), pair)
-        }))
+        Box::new(
+            pairs.map(|(first, second, pair)| (table.handle(first), table.handle(second), pair)),
+        )
     }
 }

@@ -5,9 +5,7 @@ use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
-use crate::narrow_phase::{
-    CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable,
-};
+use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
 /// The objects of a world, by handle.
@@ -107,7 +105,11 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
         }
         let index = u32::try_from(self.slots.len()).map_err(|_| WorldError::Full)?;
-        if index == u32::MAX { Err(WorldError::Full) } else { Ok(CollisionObjectHandle::new(index, 0)) }
+        if index == u32::MAX {
+            Err(WorldError::Full)
+        } else {
+            Ok(CollisionObjectHandle::new(index, 0))
+        }
     }
 
     /// Stores an object under the next handle.
@@ -118,8 +120,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
     ) {
         let Description { position, shape, groups: collision_groups, query_type, data } = new;
-        let row =
-            ObjectRow { handle, isometry: position, shape: shape.clone(), query: query_type };
+        let row = ObjectRow { handle, isometry: position, shape: shape.clone(), query: query_type };
         let body = Body::new(row, collision_groups, proxy);
         let proxy_handle = body.proxy;
         self.bodies.insert(body);

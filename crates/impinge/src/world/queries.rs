@@ -22,40 +22,40 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// meets nothing.
     pub fn interferences_with_ray<'a>(
         &'a self,
-        ray: &'a Ray<N, D>,
-        groups: &'a CollisionGroups,
-    ) -> impl Iterator<Item = (&'a CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        let mut found = Vec::new();
-        self.broad_phase.interferences_with_ray(ray, &mut found);
-        let meets = |body: &Body<N, D>| body.aabb.intersects_ray(ray);
+        ray: &Ray<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = (&'a Object<N, D, T>, RayIntersection<N, D>)> + use<'a, N, D, T> {
+        let (ray, mut found) = (*ray, Vec::new());
+        self.broad_phase.interferences_with_ray(&ray, &mut found);
+        let meets = |body: &Body<N, D>| body.aabb.intersects_ray(&ray);
         self.candidates(found, &meets, groups)
-            .filter_map(move |object| Some((object, cast(self.body(object.handle), ray)?)))
+            .filter_map(move |object| Some((object, cast(self.body(object.handle), &ray)?)))
     }
 
     /// The objects that hold a point, on their surface at least, among those able to interact with
     /// `groups`.
     pub fn interferences_with_point<'a>(
         &'a self,
-        point: &'a Point<N, D>,
-        groups: &'a CollisionGroups,
-    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> {
-        let mut found = Vec::new();
-        self.broad_phase.interferences_with_point(point, &mut found);
+        point: &Point<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = &'a Object<N, D, T>> + use<'a, N, D, T> {
+        let (point, mut found) = (*point, Vec::new());
+        self.broad_phase.interferences_with_point(&point, &mut found);
         self.candidates(found, &|_| true, groups)
-            .filter(move |object| holds(self.body(object.handle), point))
+            .filter(move |object| holds(self.body(object.handle), &point))
     }
 
     /// The objects whose boxes meet or touch a box, among those able to interact with `groups`. The
     /// boxes are those of the shapes where the objects are now, without any margin.
     pub fn interferences_with_aabb<'a>(
         &'a self,
-        aabb: &'a Aabb<N, D>,
-        groups: &'a CollisionGroups,
-    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> {
-        let mut found = Vec::new();
-        self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
+        aabb: &Aabb<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = &'a Object<N, D, T>> + use<'a, N, D, T> {
+        let (aabb, mut found) = (*aabb, Vec::new());
+        self.broad_phase.interferences_with_bounding_volume(&aabb, &mut found);
         self.candidates(found, &|_| true, groups)
-            .filter(move |object| self.body(object.handle).aabb.intersects(aabb))
+            .filter(move |object| self.body(object.handle).aabb.intersects(&aabb))
     }
 
     /// The object that a ray meets first, among those able to interact with `groups`, and where; of

@@ -2,9 +2,7 @@
 
 use super::{CollisionObjects, CollisionWorld, NarrowPhase, WorldBroadPhase};
 use crate::math::Space;
-use crate::narrow_phase::{
-    CollisionObjectHandle, ContactEvent, Events, ProximityEvent,
-};
+use crate::narrow_phase::{CollisionObjectHandle, ContactEvent, Events, ProximityEvent};
 use crate::query::Proximity;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);

@@ -8,17 +8,17 @@ use impinge::bvh::Bounds;
 use impinge::math::{Point, Real, Space, Vector};
 
 /// Numbers from a linear congruential generator.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
-    pub fn below(&mut self, bound: u32) -> u32 {
+    pub(crate) fn below(&mut self, bound: u32) -> u32 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         u32::try_from((self.0 >> 33) % u64::from(bound)).expect("below a u32")
     }
 
     /// True once in `n` times.
-    pub fn one_in(&mut self, n: u32) -> bool {
+    pub(crate) fn one_in(&mut self, n: u32) -> bool {
         self.below(n) == 0
     }
 }
@@ -32,7 +32,7 @@ struct Object<N: Real, const D: usize> {
 }
 
 /// All pairs, all the time; decisions of the filter are kept as long as the overlap lasts.
-pub struct Model<N: Real, const D: usize> {
+pub(crate) struct Model<N: Real, const D: usize> {
     margin: N,
     objects: BTreeMap<u32, Object<N, D>>,
     /// Overlapping pairs by uid, and whether the filter allowed them.
@@ -45,14 +45,14 @@ pub struct Model<N: Real, const D: usize> {
 
 /// What was reached by a run, so that a test can assert that it tests something.
 #[derive(Debug, Default)]
-pub struct Reached {
-    pub started: usize,
-    pub stopped: usize,
-    pub refused: usize,
-    pub most_pairs: usize,
-    pub removed_pairs: usize,
-    pub query_hits: usize,
-    pub query_misses: usize,
+pub(crate) struct Reached {
+    pub(crate) started: usize,
+    pub(crate) stopped: usize,
+    pub(crate) refused: usize,
+    pub(crate) most_pairs: usize,
+    pub(crate) removed_pairs: usize,
+    pub(crate) query_hits: usize,
+    pub(crate) query_misses: usize,
 }
 
 fn allows(rule: u32, a: u32, b: u32) -> bool {
@@ -129,14 +129,14 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
 
 /// The kind of scene of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Plan {
-    pub seed: u64,
-    pub objects: u32,
-    pub updates: u32,
+pub(crate) struct Plan {
+    pub(crate) seed: u64,
+    pub(crate) objects: u32,
+    pub(crate) updates: u32,
     /// Cells of the world along each axis.
-    pub size: u32,
+    pub(crate) size: u32,
     /// Quarters of a cell.
-    pub margin: u32,
+    pub(crate) margin: u32,
 }
 
 /// The two broad phases side by side.
@@ -356,8 +356,8 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         let held = self.expected(|exact| exact.contains_point(&origin));
         assert_eq!(translate(points), held, "points");
         self.compare_order(&ray, &hit);
-        self.reached.query_hits += hit.len();
-        self.reached.query_misses += self.model.objects.len() - hit.len();
+        self.reached.query_hits += usize::from(!hit.is_empty());
+        self.reached.query_misses += usize::from(hit.is_empty());
     }
 
     /// All hits come in order of entry; a limit given back cuts the rest off.
@@ -420,7 +420,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
 }
 
 /// Runs the plan, comparing after each call; what was reached.
-pub fn run<N: Space<D>, const D: usize>(plan: Plan) -> Reached {
+pub(crate) fn run<N: Space<D>, const D: usize>(plan: Plan) -> Reached {
     let mut run = Run::<N, D>::new(plan);
     (0..plan.objects).for_each(|_| run.create());
     (0..plan.updates).for_each(|step| run.step(step));

@@ -1,1 +1,146 @@
-//! placeholder
+//! The same bits with every instruction set and any number of threads, and large scenes against
+//! all pairs.
+
+use super::PairFinder;
+use super::finder::Home;
+use crate::bounding_volume::Aabb;
+use crate::bvh::Lanes;
+use crate::math::{Point, Real, Vector};
+use crate::pairs::pack;
+
+/// Numbers from a linear congruential generator, below `bound`.
+fn next(state: &mut u64, bound: u32) -> u32 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
+}
+
+/// A box of about one unit with quarters as coordinates.
+fn random_box<N: Real, const D: usize>(state: &mut u64, side: u32) -> Aabb<N, D> {
+    let lo = Vector::<N, D>::from_fn(|_, _| N::lit(f64::from(next(state, 4 * side)) / 4.0));
+    let size = Vector::<N, D>::from_fn(|_, _| N::lit(f64::from(next(state, 6)) / 4.0));
+    Aabb::new(Point::from(lo), Point::from(lo + size))
+}
+
+/// What a scene did: its events, the pairs in the order of the table, and what was reached.
+#[derive(Debug, PartialEq)]
+struct Outcome {
+    events: Vec<(usize, u32, u32, bool)>,
+    pairs: Vec<(u32, u32)>,
+    most_still: usize,
+}
+
+/// Many move, then few, then again many; some come and go.
+fn play<N: Real, const D: usize>(lanes: Lanes, count: u32, side: u32) -> Outcome {
+    let mut finder = PairFinder::<N, D>::with_lanes(N::lit(0.125), lanes).expect("a margin");
+    let (mut state, mut events, mut most_still) = (count.into(), Vec::new(), 0);
+    for id in 0..count {
+        finder.insert(id, random_box(&mut state, side));
+    }
+    for step in 0..90 {
+        let movers = if (10..70).contains(&step) { count / 60 } else { count * 2 / 3 };
+        for _ in 0..movers {
+            let id = next(&mut state, count);
+            let shift = Vector::<N, D>::from_fn(|_, _| {
+                N::lit((f64::from(next(&mut state, 9)) - 4.0) / 16.0)
+            });
+            let old = *finder.exact(id);
+            finder.set(id, Aabb::new(old.mins() + shift, old.maxs() + shift));
+        }
+        for _ in 0..3 {
+            let id = next(&mut state, count);
+            finder.remove(id);
+            finder.insert(id, random_box(&mut state, side));
+        }
+        if step == 75 {
+            finder.ask_all_again();
+        }
+        finder.update(&mut |a, b| (a ^ b) % 16 != 3, &mut |a, b, started| {
+            events.push((step, a, b, started));
+        });
+        most_still = most_still.max(finder.still.len());
+    }
+    finder.validate().expect("sound");
+    compare_with_all_pairs(&finder);
+    Outcome { events, pairs: finder.pairs().to_vec(), most_still }
+}
+
+fn compare_with_all_pairs<N: Real, const D: usize>(finder: &PairFinder<N, D>) {
+    let mut expected = Vec::new();
+    for a in 0..finder.loose.len() {
+        for b in a + 1..finder.loose.len() {
+            if (a ^ b) % 16 != 3 && finder.loose[a].overlaps(&finder.loose[b]) {
+                let id = |index: usize| u32::try_from(index).expect("small");
+                expected.push(pack(id(a), id(b)));
+            }
+        }
+    }
+    let mut pairs: Vec<u64> = finder.pairs().iter().map(|&(a, b)| pack(a, b)).collect();
+    pairs.sort_unstable();
+    assert_eq!(pairs, expected, "all pairs");
+    assert!(finder.homes.iter().all(|&home| home != Home::Nowhere), "all take part");
+}
+
+/// Asserts that the scene reached what it is for.
+fn check_reached(outcome: &Outcome, count: usize) {
+    assert!(outcome.most_still > count / 8, "objects came to rest: {}", outcome.most_still);
+    assert!(outcome.events.len() > 4 * count, "{} events", outcome.events.len());
+    assert!(outcome.pairs.len() > count / 2, "{} pairs", outcome.pairs.len());
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_events() {
+    let expected = play::<f32, 3>(Lanes::scalar(), 2500, 17);
+    check_reached(&expected, 2500);
+    let plane = play::<f64, 2>(Lanes::scalar(), 1200, 45);
+    check_reached(&plane, 1200);
+    for lanes in Lanes::available() {
+        assert_eq!(play::<f32, 3>(lanes, 2500, 17), expected, "{lanes:?}");
+        assert_eq!(play::<f64, 2>(lanes, 1200, 45), plane, "{lanes:?}");
+    }
+}
+
+/// More than 4096 objects: four layers.
+#[test]
+fn a_deep_tree() {
+    check_reached(&play::<f32, 2>(Lanes::detect(), 5000, 90), 5000);
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn any_number_of_threads_gives_the_same_events() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("a pool").install(|| play::<f32, 3>(Lanes::detect(), 6000, 22))
+    };
+    let expected = run(1);
+    check_reached(&expected, 6000);
+    for threads in [2, 4] {
+        assert!(run(threads) == expected, "{threads} threads");
+    }
+}
+
+/// The order of slots is renewed over a few steps after it has been spoilt.
+#[test]
+fn renewal_keeps_the_tree_good() {
+    let mut finder = PairFinder::<f32, 3>::try_new(0.05).expect("a margin");
+    let mut state = 3;
+    for id in 0..3000 {
+        finder.insert(id, random_box(&mut state, 20));
+    }
+    let update = |finder: &mut PairFinder<f32, 3>| {
+        finder.update(&mut |_, _| true, &mut |_, _, _| ());
+    };
+    update(&mut finder);
+    let fresh = finder.moving.leaf_surface();
+    for id in 0..3000 {
+        // Everything changes places: the order is as bad as can be.
+        finder.set(id, random_box(&mut state, 20));
+    }
+    update(&mut finder);
+    let spoilt = finder.moving.leaf_surface();
+    assert!(spoilt > 3.0 * fresh, "{spoilt} against {fresh}");
+    (0..30).for_each(|_| update(&mut finder));
+    let renewed = finder.moving.leaf_surface();
+    assert!(renewed < 1.1 * fresh, "{renewed} against {fresh}");
+    finder.validate().expect("sound");
+}

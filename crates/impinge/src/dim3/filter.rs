@@ -1,0 +1,45 @@
+//! Pair filters under their short name.
+
+use super::world::CollisionObject;
+use crate::math::Real;
+
+/// Says which pairs shall exist at all; see [`crate::world::BroadPhasePairFilter`].
+///
+/// Closures of two references to objects are filters too.
+///
+/// ```
+/// use impinge::dim3::world::{BroadPhasePairFilter, CollisionObject, CollisionWorld};
+///
+/// struct SameParity;
+///
+/// impl<T> BroadPhasePairFilter<f32, T> for SameParity {
+///     fn is_pair_valid(&self, a: &CollisionObject<f32, T>, b: &CollisionObject<f32, T>) -> bool {
+///         a.handle().uid() % 2 == b.handle().uid() % 2
+///     }
+/// }
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// world.register_broad_phase_pair_filter("parity", SameParity);
+/// ```
+pub trait BroadPhasePairFilter<N: Real, T>: Send + Sync {
+    /// The two objects may interact. `co1` is the one whose handle comes first.
+    fn is_pair_valid(&self, co1: &CollisionObject<N, T>, co2: &CollisionObject<N, T>) -> bool;
+}
+
+impl<N: Real, T, F> crate::world::BroadPhasePairFilter<N, 3, T> for F
+where
+    F: BroadPhasePairFilter<N, T>,
+{
+    fn is_pair_valid(&self, co1: &CollisionObject<N, T>, co2: &CollisionObject<N, T>) -> bool {
+        BroadPhasePairFilter::is_pair_valid(self, co1, co2)
+    }
+}
+
+impl<N: Real, T, F> BroadPhasePairFilter<N, T> for F
+where
+    F: Fn(&CollisionObject<N, T>, &CollisionObject<N, T>) -> bool + Send + Sync,
+{
+    fn is_pair_valid(&self, co1: &CollisionObject<N, T>, co2: &CollisionObject<N, T>) -> bool {
+        self(co1, co2)
+    }
+}

@@ -1,0 +1,170 @@
+//! Space: every name of the library with its dimension filled in.
+//!
+//! A type here is the generic one of the same name at the crate's top with `D` = 3:
+//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module tree is the
+//! one of the user guide.
+//!
+//! ```
+//! use impinge::dim3::math::{Isometry, Vector};
+//! use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle};
+//! use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+//!
+//! let mut world = CollisionWorld::new(0.02_f32);
+//! let groups = CollisionGroups::new();
+//! let contacts = GeometricQueryType::Contacts(0.0, 0.0);
+//! let ball = ShapeHandle::new(Ball::new(0.5));
+//! let floor = ShapeHandle::new(Cuboid::new(Vector::new(10.0, 1.0, 10.0)));
+//! let floor = world.add(Isometry::identity(), floor, groups, contacts, "floor");
+//! let ball = world.add(Isometry::translation(0.0, 4.0, 0.0), ball, groups, contacts, "ball");
+//! world.update();
+//! assert!(world.contact_events().is_empty(), "they are apart");
+//!
+//! world.set_position(ball, Isometry::translation(0.0, 1.5, 0.0));
+//! world.update();
+//! assert_eq!(world.contact_events().len(), 1, "they touch");
+//! let (_, other, manifold) = world.contact_manifolds().next().expect("they touch");
+//! assert_eq!(*other.data(), "ball");
+//! let contact = manifold.deepest_contact().expect("a manifold has contacts").contact;
+//! assert_eq!(contact.normal.y, 1.0, "from the floor, which was added first, to the ball");
+//! # assert!(world.contains(floor));
+//! ```
+
+mod filter;
+
+/// Simple volumes that enclose shapes.
+pub mod bounding_volume {
+    pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
+
+    /// An axis-aligned box of space.
+    pub type Aabb<N> = crate::bounding_volume::Aabb<N, 3>;
+    /// A ball that encloses something.
+    pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 3>;
+}
+
+/// Which objects may touch: pairs whose bounding volumes overlap.
+pub mod broad_phase {
+    pub use super::filter::BroadPhasePairFilter;
+    pub use crate::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
+}
+
+/// Exact answers for the pairs that the broad phase proposes.
+pub mod narrow_phase {
+    pub use crate::narrow_phase::{
+        CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
+        IdAllocator, PairProximityDetector, ProximityDetector, ProximityDispatcher, ProximityPair,
+    };
+    pub use crate::world::NarrowPhase;
+
+    /// The narrow phase of a new world: contacts and proximities.
+    pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 3>;
+    /// Chooses the library's own contact algorithm for every two solids.
+    pub type DefaultContactDispatcher = crate::narrow_phase::DefaultContactDispatcher<3>;
+    /// Chooses the library's own proximity algorithm for every two solids.
+    pub type DefaultProximityDispatcher = crate::narrow_phase::DefaultProximityDispatcher<3>;
+    /// The contacts of any two built-in solids.
+    pub type PairManifoldGenerator<N> = crate::narrow_phase::PairManifoldGenerator<N, 3>;
+    /// A contact algorithm in a box.
+    pub type ContactAlgorithm<N> = crate::narrow_phase::ContactAlgorithm<N, 3>;
+    /// A proximity algorithm in a box.
+    pub type ProximityAlgorithm<N> = crate::narrow_phase::ProximityAlgorithm<N, 3>;
+    /// The contacts of a pair of objects.
+    pub type ContactPair<'a, N> = crate::narrow_phase::ContactPair<'a, N, 3>;
+    /// The poses, shapes and query types that a narrow phase reads.
+    pub type ObjectTable<N> = crate::narrow_phase::ObjectTable<N, 3>;
+}
+
+/// What changed between two updates.
+pub mod events {
+    pub use crate::narrow_phase::{ContactEvent, Events, ProximityEvent};
+    pub use crate::query::Proximity;
+}
+
+/// Objects that are told, at each update, who touches whom.
+pub mod world {
+    pub use super::filter::BroadPhasePairFilter;
+    pub use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+    pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
+
+    /// A world of space.
+    pub type CollisionWorld<N, T> = crate::world::CollisionWorld<N, 3, T>;
+    /// An object of a world.
+    pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 3, T>;
+    /// The objects of a world.
+    pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 3, T>;
+}
+
+/// Questions about one solid or two.
+pub mod query {
+    pub use crate::query::{
+        ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
+        time_of_impact,
+    };
+
+    /// A half-line.
+    pub type Ray<N> = crate::query::Ray<N, 3>;
+    /// Where and when a ray meets a solid.
+    pub type RayIntersection<N> = crate::query::RayIntersection<N, 3>;
+    /// The point of a solid that is nearest to a given one.
+    pub type PointProjection<N> = crate::query::PointProjection<N, 3>;
+    /// The points of two solids that are nearest to each other.
+    pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
+    /// Where two solids touch.
+    pub type Contact<N> = crate::query::Contact<N, 3>;
+    /// How a contact moves with its solids.
+    pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
+    /// What a solid looks like near a contact.
+    pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 3>;
+    /// A contact, how it moves, and its name.
+    pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
+    /// Points that delimit a flat area of contact.
+    pub type ContactManifold<N> = crate::query::ContactManifold<N, 3>;
+}
+
+/// The solids.
+pub mod shape {
+    pub use crate::shape::{
+        Ball, Cone, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+    };
+
+    /// A box.
+    pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
+    /// The points near a segment.
+    pub type Capsule<N> = crate::shape::Capsule<N, 3>;
+    /// A half-space.
+    pub type Plane<N> = crate::shape::Plane<N, 3>;
+    /// A straight line between two points.
+    pub type Segment<N> = crate::shape::Segment<N, 3>;
+    /// A filled triangle.
+    pub type Triangle<N> = crate::shape::Triangle<N, 3>;
+    /// A vertex, an edge or a face, as points.
+    pub type Feature<N> = crate::shape::Feature<N, 3>;
+    /// How queries see a shape.
+    pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
+    /// A shape shared by many objects.
+    pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
+}
+
+/// Numbers, vectors and poses.
+pub mod math {
+    use crate::math::na;
+    pub use crate::math::{Pose, Real, Unit};
+
+    /// The dimension of space.
+    pub const DIM: usize = 3;
+    /// A point.
+    pub type Point<N> = na::Point3<N>;
+    /// A vector.
+    pub type Vector<N> = na::Vector3<N>;
+    /// Where a solid is: a rotation, then a translation.
+    pub type Isometry<N> = na::Isometry3<N>;
+    /// A translation.
+    pub type Translation<N> = na::Translation3<N>;
+    /// A rotation.
+    pub type Rotation<N> = na::UnitQuaternion<N>;
+    /// A rotation as its axis times its angle in radians.
+    pub type Orientation<N> = na::Vector3<N>;
+    /// A square matrix.
+    pub type Matrix<N> = na::Matrix3<N>;
+}
+
+pub use crate::math::na;
