@@ -151,7 +151,7 @@ fn bad_numbers<N: Scene<D>, const D: usize>() {
     let wish = request::<N>(0.05, 0.05);
     for_all_pairs::<N, D>(2, 1.0, |pair| {
         let (good, mut raw) = (fact(pair), RawManifold::default());
-        for bad in [N::INFINITY, -N::INFINITY, N::INFINITY - N::INFINITY] {
+        for bad in [N::INFINITY, -N::INFINITY, N::lit(f64::NAN)] {
             let mut separation = good;
             separation.distance = bad;
             N::build(pair, &separation, &wish, &mut raw);

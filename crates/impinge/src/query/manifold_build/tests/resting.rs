@@ -1,6 +1,7 @@
 //! Solids at rest on each other: how many points delimit the area, counted by hand.
 
 use super::scene::{Scene, fact, manifold, request};
+use crate::convex::Separation;
 use crate::math::{Point, Unit, Vector};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Shape};
@@ -203,4 +204,21 @@ fn the_fact_is_the_one_assumed() {
     let separation = fact(&pair);
     assert_eq!(separation.distance, 0.5, "half a unit above the half-plane");
     assert_eq!(separation.normal, Vector::<f64, 2>::new(0.0, -1.0), "down to the half-plane");
+}
+
+#[test]
+fn half_spaces_back_to_back_touch_in_one_point() {
+    let plane = Plane::new(Unit::new_normalize(Vector::<f64, 3>::new(0.0, 1.0, 0.0)));
+    let pose12 = f64::pose(Vector::<f64, 3>::new(0.0, -0.5, 0.0), [0.0, 0.0, std::f64::consts::PI]);
+    let pair = Pair { first: plane.geometry().0, second: plane.geometry().0, pose12 };
+    let (normal, point1) = (Vector::<f64, 3>::new(0.0, 1.0, 0.0), Point::<f64, 3>::origin());
+    let mut separation =
+        Separation { distance: -0.5, normal, point1, point2: point1 - normal * 0.5 };
+    let mut raw = RawManifold::default();
+    f64::build(&pair, &separation, &request(0.0, 0.0), &mut raw);
+    assert_eq!(raw.points.len(), 1, "{raw:?}");
+    assert_eq!(raw.points[0].distance, -0.5, "a finite depth");
+    separation.distance = -f64::INFINITY;
+    f64::build(&pair, &separation, &request(0.0, 0.0), &mut raw);
+    assert!(raw.points.is_empty(), "no contact where the overlap has no bound");
 }
