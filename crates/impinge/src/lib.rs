@@ -8,3 +8,4 @@ pub mod query;
 pub mod shape;
 #[doc(hidden)]
 pub mod tables;
+pub mod transformation;
