@@ -117,18 +117,33 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     }
 
     /// The ends of the stretch that two nearly parallel segments share: each is an end of one of
-    /// them and the place beside it on the other.
+    /// them and the place beside it on the other. Half-way between the two is where they meet once
+    /// turned: the points are off their segments by half the lever arm times the sine at most.
     fn common_stretch(&self, out: &mut Candidates<N, D>) {
         for corner in &self.first.corners {
             if let Some(on) = self.beside(corner, self.second) {
-                self.push_corner_of_first(corner, on, out);
+                let under = self.second.under(&corner.point, self.frame);
+                self.push_halfway(&corner.point, &under, [corner.id, on], out);
             }
         }
         for corner in &self.second.corners {
             if let Some(on) = self.beside(corner, self.first) {
-                self.push_corner_of_second(corner, on, out);
+                let under = self.first.under(&corner.point, self.frame);
+                self.push_halfway(&under, &corner.point, [on, corner.id], out);
             }
         }
+    }
+
+    fn push_halfway(
+        &self,
+        core1: &Point<N, D>,
+        core2: &Point<N, D>,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let (gap, normal) = (core2 - core1, self.frame.normal());
+        let half = (gap - normal * normal.dot(&gap)) * N::HALF;
+        self.push(&(core1 + half), &(core2 - half), features, out);
     }
 
     /// The part of a segment beside a corner of the other; `None` beyond the ends.
