@@ -54,6 +54,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         }
     }
 
+    /// A corner of the first facet above the part `on` of the second.
     fn push_corner_of_first(
         &self,
         corner: &Corner<N, D>,
@@ -64,6 +65,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         self.push(&corner.point, &under, [corner.id, on], out);
     }
 
+    /// A corner of the second facet above the part `on` of the first.
     fn push_corner_of_second(
         &self,
         corner: &Corner<N, D>,
@@ -101,6 +103,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         let from = other.inside(line, &facet.corners[side].flat);
         let to = other.inside(line, &facet.corners[facet.next(side)].flat);
         let tolerance = self.frame.tolerance;
+        // A side that ends on the line crosses nothing: its corner lies on the other facet or outside.
         let leaves = from > tolerance && to < -tolerance;
         let enters = from < -tolerance && to > tolerance;
         (leaves || enters).then(|| from / (from - to))
@@ -134,6 +137,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         }
     }
 
+    /// Adds a pair of points that do not face each other exactly, each moved by half the gap.
     fn push_halfway(
         &self,
         core1: &Point<N, D>,
@@ -160,7 +164,8 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         Some(end.map_or(segment.id, |end: usize| segment.corners[end].id))
     }
 
-    /// Adds the pair of surface points above two points of the cores, once.
+    /// Adds the pair of surface points above two points of the cores, once: corners that coincide in
+    /// both facets are found from both. Different points may share a name, on round rims.
     fn push(
         &self,
         core1: &Point<N, D>,

@@ -228,7 +228,7 @@ fn prism() -> ConvexHull<f32> {
     let places = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
     let points: Vec<Point<f32, 3>> = places
         .flat_map(|angle| {
-            let (sine, cosine) = angle.sin_cos();
+            let (sine, cosine) = angle.sine_cosine();
             [0.0, 1.0].map(|y| Point::from(Vector::<f64, 3>::new(cosine, y, sine).map(f32::lit)))
         })
         .collect();
