@@ -1,7 +1,7 @@
 //! Convex hulls in space.
 
-use super::hull_faces::{faces, redundant};
-use super::quickhull::Surface;
+use super::hull_faces::{faces, normal, redundant};
+use super::quickhull::{Facet, Surface};
 use super::span::{Scaled, first_four};
 use crate::math::{Point, Real};
 use crate::shape::{ConvexHull, ShapeError};
@@ -47,55 +47,61 @@ const ROUNDS: usize = 8;
 /// assert_eq!(convex_hull3(&cube).map(|hull| hull.faces.len()), Ok(6));
 /// ```
 pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull, ShapeError> {
-    let scaled = Scaled::of(points, 4)?;
-    let all: Vec<usize> = (0..points.len()).collect();
-    let mut step = Step::of(&scaled, all)?;
+    hull_of(&Scaled::of(points, 4)?)
+}
+
+/// Takes redundant vertices out until there are none or nothing would be left.
+fn hull_of(scaled: &Scaled<3>) -> Result<IndexedHull, ShapeError> {
+    let mut grown = Grown::of(scaled, (0..scaled.points.len()).collect())?;
     for _ in 0..ROUNDS {
-        let Some(Ok(next)) = step.without_redundant(&scaled) else { break };
-        step = next;
+        let needed = grown.needed();
+        if needed.len() < 4 || needed.len() == grown.vertex_count {
+            break;
+        }
+        let Ok(next) = Grown::of(scaled, needed) else { break };
+        grown = next;
     }
-    Ok(step.indexed())
+    Ok(grown.indexed())
 }
 
-/// A hull of some of the points, once it is found.
-struct Step {
-    /// The points that it was made of.
+/// The hull of some of the points, as triangles.
+struct Grown {
+    /// The points that it was made of, by their indices.
     named: Vec<usize>,
-    faces: Vec<Vec<u32>>,
-    /// Which of them are vertices and not redundant.
-    needed: Vec<usize>,
-    has_redundant: bool,
+    /// Their positions.
+    points: Scaled<3>,
+    facets: Vec<Facet>,
+    vertex_count: usize,
 }
 
-impl Step {
+impl Grown {
     fn of(scaled: &Scaled<3>, named: Vec<usize>) -> Result<Self, ShapeError> {
         let points = named.iter().map(|&index| scaled.points[index]).collect();
-        let sub = Scaled { points, unit: scaled.unit };
+        let points = Scaled { points, unit: scaled.unit };
         let index_of = |index: usize| u32::try_from(index).expect("a hull of at most 2³² points");
-        let first = first_four(&sub)?.map(index_of);
-        let numbers: Vec<u32> = (0..named.len()).map(index_of).collect();
-        let surface = Surface::grown(&sub.points, &numbers, first, 2.0 * sub.unit);
-        let surface = surface.ok_or(ShapeError::Degenerate { dimension: 2 })?;
-        let redundant = redundant(&surface, &sub.points, sub.flat());
-        let faces = faces(&surface, &sub.points, sub.flat());
-        let mut needed: Vec<u32> = surface.facets.iter().flat_map(|facet| facet.corners).collect();
-        needed.sort_unstable();
-        needed.dedup();
-        needed.retain(|vertex| redundant.binary_search(vertex).is_err());
-        let needed = needed.into_iter().map(|vertex| named[vertex as usize]).collect();
-        Ok(Self { named, faces, needed, has_redundant: !redundant.is_empty() })
+        let first = first_four(&points)?.map(index_of);
+        let facets = Surface::grown(&points.points, first, 2.0 * scaled.unit);
+        let facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
+        // A closed surface of triangles has half as many vertices as faces, and two more.
+        let vertex_count = facets.len() / 2 + 2;
+        Ok(Self { named, points, facets, vertex_count })
     }
 
-    /// The hull of the needed vertices alone, unless that is this one.
-    fn without_redundant(&self, scaled: &Scaled<3>) -> Option<Result<Self, ShapeError>> {
-        let is_worthwhile = self.has_redundant && self.needed.len() >= 4;
-        is_worthwhile.then(|| Self::of(scaled, self.needed.clone()))
+    /// The vertices that are not redundant.
+    fn needed(&self) -> Vec<usize> {
+        let mut needed: Vec<u32> = self.facets.iter().flat_map(|facet| facet.corners).collect();
+        needed.sort_unstable();
+        needed.dedup();
+        let redundant = redundant(&self.facets, &self.points);
+        needed.retain(|vertex| redundant.binary_search(vertex).is_err());
+        needed.into_iter().map(|vertex| self.named[vertex as usize]).collect()
     }
 
     fn indexed(self) -> IndexedHull {
         let name =
-            |face: &Vec<u32>| face.iter().map(|&vertex| self.named[vertex as usize]).collect();
-        let faces: Vec<Vec<usize>> = self.faces.iter().map(name).collect();
+            |face: Vec<u32>| face.iter().map(|&vertex| self.named[vertex as usize]).collect();
+        let faces: Vec<Vec<usize>> =
+            faces(&self.facets, &self.points).into_iter().map(name).collect();
         let mut vertices = faces.concat();
         vertices.sort_unstable();
         vertices.dedup();
@@ -109,12 +115,17 @@ impl<N: Real> ConvexHull<N> {
     /// # Errors
     /// For fewer than four points, a coordinate that is not finite, and points that span no volume.
     pub fn try_from_points(points: &[Point<N, 3>]) -> Result<Self, ShapeError> {
-        let IndexedHull { vertices, faces } = convex_hull3(points)?;
-        let renamed =
-            |index: usize| vertices.binary_search(&index).expect("a face has vertices only");
-        let faces: Vec<Vec<usize>> =
-            faces.into_iter().map(|face| face.into_iter().map(renamed).collect()).collect();
+        let flat = ShapeError::Degenerate { dimension: 2 };
+        let scaled = Scaled::of(points, 4)?;
+        let IndexedHull { vertices, faces } = hull_of(&scaled)?;
+        let renamed = |index: &usize| vertices.binary_search(index).ok();
+        let mut loops = Vec::with_capacity(faces.len());
+        for face in &faces {
+            let normal = normal(&scaled.points, face).ok_or(flat)?;
+            let ring: Option<Vec<usize>> = face.iter().map(renamed).collect();
+            loops.push((normal.map(N::lit), ring.ok_or(flat)?));
+        }
         let corners = vertices.iter().map(|&index| points[index]).collect();
-        Self::from_closed_faces(corners, &faces).ok_or(ShapeError::Degenerate { dimension: 2 })
+        Self::from_closed_faces(corners, &loops).ok_or(flat)
     }
 }

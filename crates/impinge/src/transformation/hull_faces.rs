@@ -1,8 +1,9 @@
 //! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
 //! polygon.
 
-use super::quickhull::Surface;
-use super::span::{direction, distance_from_segment, precedes};
+use super::exact::area_vector;
+use super::quickhull::Facet;
+use super::span::{Scaled, direction, distance_from_segment, precedes};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -13,12 +14,13 @@ fn at(index: u32) -> usize {
 
 /// The vertices next to each vertex: pairs (vertex, neighbor), sorted, and whether the surface turns
 /// at the edge between them.
-fn spokes(surface: &Surface<'_>, flat: f64) -> Vec<(u32, u32, bool)> {
-    let mut spokes = Vec::with_capacity(3 * surface.facets.len());
-    for (index, facet) in (0_u32..).zip(&surface.facets) {
+fn spokes(facets: &[Facet], points: &Scaled<3>) -> Vec<(u32, u32, bool)> {
+    let mut spokes = Vec::with_capacity(3 * facets.len());
+    for facet in facets {
         for side in 0..3 {
             let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]];
-            spokes.push((from, to, !is_flat(surface, [index, facet.neighbors[side]], flat)));
+            let beyond = &facets[at(facet.neighbors[side])];
+            spokes.push((from, to, !is_flat(facet, beyond, points)));
         }
     }
     spokes.sort_unstable();
@@ -26,17 +28,18 @@ fn spokes(surface: &Surface<'_>, flat: f64) -> Vec<(u32, u32, bool)> {
 }
 
 /// The smaller of two neighbors lies in the plane of the larger.
-fn is_flat(surface: &Surface<'_>, [facet1, facet2]: [u32; 2], flat: f64) -> bool {
-    let is_first_larger = surface.doubled_area(facet1) >= surface.doubled_area(facet2);
+fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
+    let is_first_larger = facet1.doubled_area() >= facet2.doubled_area();
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
-    let corners = surface.facets[at(small)].corners;
-    corners.iter().all(|&corner| surface.height(large, corner).abs() <= flat)
+    let mut far = small.corners.iter().filter(|&corner| !large.corners.contains(corner));
+    far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
 }
 
 /// Vertices, no two next to each other, without which the hull stays the same within `flat`: they
 /// lie on the segment between two neighbors or in the plane of all of them.
-pub(super) fn redundant(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<u32> {
-    let spokes = spokes(surface, flat);
+pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
+    let points = &scaled.points;
+    let spokes = spokes(facets, scaled);
     let mut is_kept = vec![false; points.len()];
     let mut redundant = Vec::new();
     for ring in spokes.chunk_by(|a, b| a.0 == b.0) {
@@ -44,8 +47,8 @@ pub(super) fn redundant(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<
         // At a true corner three edges meet at least, or slivers hide some of them.
         let turns = ring.iter().filter(|spoke| spoke.2).count();
         let is_candidate = turns <= 2 && ring.len() <= 64 && !is_kept[at(vertex)];
-        let neighbors: Vec<P3> = ring.iter().map(|spoke| points[at(spoke.1)]).collect();
-        if is_candidate && is_inside(&points[at(vertex)], &neighbors, flat) {
+        let neighbors = || ring.iter().map(|spoke| points[at(spoke.1)]).collect::<Vec<P3>>();
+        if is_candidate && is_inside(&points[at(vertex)], &neighbors(), scaled.flat()) {
             redundant.push(vertex);
             ring.iter().for_each(|spoke| is_kept[at(spoke.1)] = true);
         }
@@ -76,11 +79,12 @@ fn widest_normal<'a>(
 /// of coordinates; triangles within `flat` of one plane are one face.
 ///
 /// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
-pub(super) fn faces(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<Vec<u32>> {
-    let mut faces = Merger::new(surface, points, flat).merged();
+pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Vec<u32>> {
+    let points = &scaled.points;
+    let mut faces = Merger::new(facets, scaled).merged();
     straighten(&mut faces, points.len());
     if !is_closed(&faces) {
-        faces = surface.facets.iter().map(|facet| facet.corners.to_vec()).collect();
+        faces = facets.iter().map(|facet| facet.corners.to_vec()).collect();
     }
     for face in &mut faces {
         let first = (1..face.len()).fold(0, |first, candidate| {
@@ -100,7 +104,7 @@ struct Corner {
 }
 
 struct Merger<'a> {
-    surface: &'a Surface<'a>,
+    facets: &'a [Facet],
     points: &'a [P3],
     flat: f64,
     /// Which facets are part of a face.
@@ -110,15 +114,20 @@ struct Merger<'a> {
 }
 
 impl<'a> Merger<'a> {
-    fn new(surface: &'a Surface<'a>, points: &'a [P3], flat: f64) -> Self {
-        let is_taken = vec![false; surface.facets.len()];
-        Self { surface, points, flat, is_taken, in_face_of: vec![0; points.len()] }
+    fn new(facets: &'a [Facet], scaled: &'a Scaled<3>) -> Self {
+        Self {
+            facets,
+            points: &scaled.points,
+            flat: scaled.flat(),
+            is_taken: vec![false; facets.len()],
+            in_face_of: vec![0; scaled.points.len()],
+        }
     }
 
     /// Grows a face from each facet that is in none yet, the largest first.
     fn merged(mut self) -> Vec<Vec<u32>> {
-        let mut seeds: Vec<u32> = (0..).take(self.surface.facets.len()).collect();
-        let area = |facet: u32| self.surface.doubled_area(facet);
+        let mut seeds: Vec<u32> = (0..).take(self.facets.len()).collect();
+        let area = |facet: u32| self.facets[at(facet)].doubled_area();
         seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
         let mut faces = Vec::new();
         for seed in seeds {
@@ -130,7 +139,7 @@ impl<'a> Merger<'a> {
     }
 
     fn grow(&mut self, seed: u32) -> Vec<u32> {
-        let facet = &self.surface.facets[at(seed)];
+        let facet = &self.facets[at(seed)];
         self.is_taken[at(seed)] = true;
         let mut ring = Vec::with_capacity(4);
         for side in 0..3 {
@@ -155,14 +164,14 @@ impl<'a> Merger<'a> {
     /// convex.
     fn take_beyond(&mut self, seed: u32, ring: &mut Vec<Corner>, position: usize) -> bool {
         let (from, beyond) = (ring[position].vertex, ring[position].beyond);
-        let facet = &self.surface.facets[at(beyond)];
+        let facet = &self.facets[at(beyond)];
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
             return false;
         };
         // Seen from there the side runs backwards, to `from`; then come the far corner and back.
         let far = facet.corners[(shared + 1) % 3];
         let is_free = !self.is_taken[at(beyond)] && self.in_face_of[at(far)] != seed + 1;
-        let is_level = || self.surface.height(seed, far).abs() <= self.flat;
+        let is_level = || self.facets[at(seed)].height(self.points, far).abs() <= self.flat;
         if !(is_free && is_level() && self.stays_convex(seed, ring, position, far)) {
             return false;
         }
@@ -180,7 +189,7 @@ impl<'a> Merger<'a> {
         let count = ring.len();
         let vertex = |step: usize| ring[(position + step) % count].vertex;
         let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
-        let normal = self.surface.normal(seed);
+        let normal = self.facets[at(seed)].normal(self.points);
         let turns_left = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| self.points[at(corner)]);
             // How far b lies outside the line from a to c, times its length.
@@ -209,6 +218,15 @@ fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
             users.iter().for_each(|&user| faces[user].retain(|&corner| corner != vertex));
         }
     }
+}
+
+/// The outward unit normal of a polygon, by the areas of its shadows (Newell); `None` for no area.
+pub(super) fn normal(points: &[P3], ring: &[usize]) -> Option<Vector<f64, 3>> {
+    let base = &points[*ring.first()?];
+    let triangles =
+        ring.windows(2).map(|side| area_vector(base, &points[side[0]], &points[side[1]]));
+    let sum = triangles.fold(Vector::<f64, 3>::zeros(), |sum, area| sum + area);
+    direction(&sum).map(|(normal, _)| normal)
 }
 
 /// Each side of a face is, backwards, the side of one other face.

@@ -7,14 +7,14 @@ use super::points::P3;
 
 /// What was measured, in rounding units of the points: `EPSILON · max |coordinate|`.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// How far a given point lies in front of a face, at most.
-    pub outside: f64,
+    pub(crate) outside: f64,
     /// How far a vertex of a face lies out of its plane, at most.
-    pub bent: f64,
+    pub(crate) bent: f64,
 }
 
-pub fn cast<N: Real>(points: &[P3]) -> Vec<Point<N, 3>> {
+pub(crate) fn cast<N: Real>(points: &[P3]) -> Vec<Point<N, 3>> {
     points.iter().map(|p| Point::from(p.coords.map(N::lit))).collect()
 }
 
@@ -23,14 +23,56 @@ fn normalized<N: Real>(points: &[Point<N, 3>]) -> (Vec<P3>, f64) {
     let exact: Vec<P3> = points.iter().map(|p| Point::from(p.coords.map(Real::as_f64))).collect();
     let size =
         exact.iter().flat_map(|p| p.iter().copied()).fold(0.0, |size: f64, x| size.max(x.abs()));
-    (exact.iter().map(|p| p / size).collect(), N::EPSILON.as_f64())
+    // A power of two near the size: dividing by it keeps the points what they are.
+    let scale = size.max(f64::MIN_POSITIVE).log2().floor().min(1023.0).exp2();
+    (exact.iter().map(|p| p / scale).collect(), N::EPSILON.as_f64() * (size / scale))
 }
 
-/// The normal of a loop, by Newell's sum around its own first point.
+/// A sum of two doubles: twice the digits (Dekker, "A Floating-Point Technique", 1971).
+#[derive(Clone, Copy)]
+struct Double(f64, f64);
+
+impl Double {
+    fn sum(a: f64, b: f64) -> Self {
+        let sum = a + b;
+        let tail = sum - a;
+        Self(sum, (a - (sum - tail)) + (b - tail))
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let Self(sum, error) = Self::sum(self.0, other.0);
+        Self::sum(sum, error + self.1 + other.1)
+    }
+
+    fn times(self, other: Self) -> Self {
+        let halves = |x: f64| {
+            let high = f64::from_bits(x.to_bits() & 0xffff_ffff_f800_0000);
+            (high, x - high)
+        };
+        let ((ah, al), (bh, bl)) = (halves(self.0), halves(other.0));
+        let product = self.0 * other.0;
+        let error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+        Self::sum(product, error + self.0 * other.1 + self.1 * other.0)
+    }
+
+    fn minus(self, other: Self) -> Self {
+        self.plus(Self(-other.0, -other.1))
+    }
+}
+
+/// The normal of a loop, by Newell's sum around its own first point, in doubled precision.
 fn normal(points: &[P3], ring: &[usize]) -> Vector<f64, 3> {
     let base = points[ring[0]];
-    let fan = ring.windows(2).map(|pair| (points[pair[0]] - base).cross(&(points[pair[1]] - base)));
-    fan.sum::<Vector<f64, 3>>().normalize()
+    let offset = |v: usize| [0, 1, 2].map(|axis| Double::sum(points[v][axis], -base[axis]));
+    let mut sum = [Double(0.0, 0.0); 3];
+    for pair in ring.windows(2) {
+        let (u, v) = (offset(pair[0]), offset(pair[1]));
+        for (axis, component) in sum.iter_mut().enumerate() {
+            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+            *component = component.plus(u[i].times(v[j]).minus(u[j].times(v[i])));
+        }
+    }
+    Vector::<f64, 3>::from(sum.map(|x| x.0)).normalize()
 }
 
 fn sides(hull: &IndexedHull) -> Vec<(usize, usize)> {
@@ -58,7 +100,7 @@ fn topology(hull: &IndexedHull) {
 }
 
 /// Checks a hull; heights are compared with every given point if there are not too many.
-pub fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull) -> Measured {
+pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull) -> Measured {
     topology(hull);
     let (exact, unit) = normalized(points);
     let mut measured = Measured { outside: 0.0, bent: 0.0 };
@@ -78,7 +120,7 @@ pub fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull) -> Measured {
 }
 
 /// The hull of points given as `f64`, in one scalar, checked against the documented tolerance.
-pub fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull {
+pub(crate) fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull {
     let points = cast::<N>(points);
     let hull = convex_hull3(&points).unwrap_or_else(|error| panic!("{name}: {error}"));
     let measured = check(&points, &hull);
