@@ -100,3 +100,60 @@ impl<N: Real> Polytope<N, 3> {
         if is_sphere { Ok(()) } else { Err("the surface is not that of one solid") }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::math::{Point, Vector};
+    use crate::shape::Polytope;
+
+    fn loops() -> Vec<(Vector<f64, 3>, Vec<usize>)> {
+        let slant = Vector::<f64, 3>::repeat(1.0).normalize();
+        vec![
+            (-Vector::<f64, 3>::x(), vec![0, 3, 2]),
+            (-Vector::<f64, 3>::y(), vec![0, 1, 3]),
+            (-Vector::<f64, 3>::z(), vec![0, 2, 1]),
+            (slant, vec![1, 2, 3]),
+        ]
+    }
+
+    fn corners() -> Vec<Point<f64, 3>> {
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(Point::from)
+            .to_vec()
+    }
+
+    #[test]
+    fn damage_is_seen() {
+        let solid = Polytope::<f64, 3>::from_closed_faces(corners(), &loops()).expect("closed");
+        assert_eq!(solid.validate(), Ok(()), "a tetrahedron");
+        let mut dented = solid.clone();
+        dented.vertices[3] = Point::<f64, 3>::new(0.1, 0.1, 0.1);
+        assert!(dented.validate().is_err(), "a vertex moved inside");
+        let mut long = solid.clone();
+        long.faces[1].normal *= 2.0;
+        assert_eq!(long.validate(), Err("a normal is not unit"), "a long normal");
+        let mut crossed = solid.clone();
+        crossed.edges[0].faces.swap(0, 1);
+        assert_eq!(
+            crossed.validate(),
+            Err("a face runs along an edge that is not its own"),
+            "an edge with its faces swapped"
+        );
+        let mut polygon = Polytope::<f64, 2>::from_corners(
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Point::from).to_vec(),
+        );
+        assert_eq!(polygon.validate(), Ok(()), "a triangle");
+        polygon.vertices.swap(0, 1);
+        assert!(polygon.validate().is_err(), "turned over");
+    }
+
+    #[test]
+    fn open_surfaces_are_refused() {
+        let mut turned = loops();
+        turned[0].1.reverse();
+        let refused = Polytope::<f64, 3>::from_closed_faces(corners(), &turned);
+        assert_eq!(refused, None, "a face turned over");
+        let refused = Polytope::<f64, 3>::from_closed_faces(corners(), &loops()[..3]);
+        assert_eq!(refused, None, "a face is missing");
+    }
+}

@@ -16,16 +16,16 @@ pub struct IndexedHull {
     pub faces: Vec<Vec<usize>>,
 }
 
-/// How often vertices that add nothing are taken out. Each time no two neighbors go, so this is
-/// enough for a row of 2⁸ points on an edge; what is left then are flat angles, not wrong ones.
-const ROUNDS: usize = 8;
+/// How often vertices that add nothing are taken out. Each time no two neighbors go, and the solid
+/// shrinks by the tolerance at most; what is left then are flat angles, not wrong ones.
+const ROUNDS: usize = 4;
 
 /// The convex hull of some points.
 ///
 /// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that stick out of
 /// all faces by less than 2 u are left out, triangles within 4 u of a plane are merged into one
 /// polygon, vertices within 4 u of the segment between two neighbors or of the plane of all their
-/// neighbors are taken out. So every point given is in front of no face by more than 32 u, and
+/// neighbors are taken out. So every point given is in front of no face by more than 20 u, and
 /// usually by no more than 4 u; every vertex is one of the points, bit by bit; of points that
 /// coincide one is named. Which faces a point sees is decided exactly, so no input leads astray.
 ///
