@@ -27,13 +27,14 @@ impl<N: Real> ConvexHull<N> {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The solid with these corners and faces, each an outward unit normal and three corners at
-    /// least; `None` unless the faces close its surface.
+    /// The solid with these corners and faces, given by outward unit normals and loops of three
+    /// corners at least; `None` unless the faces close its surface.
     pub(crate) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
-        faces: &[(Vector<N, 3>, Vec<usize>)],
+        normals: &[Vector<N, 3>],
+        faces: &[Vec<usize>],
     ) -> Option<Self> {
-        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
+        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, normals, faces)? })
     }
 
     /// The solid as vertices, edges, faces and what touches what.

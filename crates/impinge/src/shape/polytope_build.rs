@@ -73,15 +73,16 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The solid with these corners and faces, each an outward unit normal and three corners at
-    /// least; `None` unless each side of a face is, backwards, a side of one other.
+    /// The solid with these corners and faces, given by outward unit normals and loops of three
+    /// corners at least; `None` unless each side of a face is, backwards, a side of one other.
     pub(super) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
-        faces: &[(Vector<N, 3>, Vec<usize>)],
+        normals: &[Vector<N, 3>],
+        faces: &[Vec<usize>],
     ) -> Option<Self> {
         let center = Scaled::of(&corners).center();
         let mut hull = Self::from_vertices(corners, center);
-        for (normal, face) in faces {
+        for (normal, face) in normals.iter().zip(faces) {
             let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();
             hull.push_face(*normal, &ring);
         }

@@ -106,14 +106,14 @@ mod tests {
     use crate::math::{Point, Vector};
     use crate::shape::Polytope;
 
-    fn loops() -> Vec<(Vector<f64, 3>, Vec<usize>)> {
+    const LOOPS: [[usize; 3]; 4] = [[0, 3, 2], [0, 1, 3], [0, 2, 1], [1, 2, 3]];
+
+    fn tetrahedron(loops: &[[usize; 3]]) -> Option<Polytope<f64, 3>> {
+        let loops: Vec<_> = loops.iter().map(|ring| ring.to_vec()).collect();
+        let axis = Vector::<f64, 3>::ith;
         let slant = Vector::<f64, 3>::repeat(1.0).normalize();
-        vec![
-            (-Vector::<f64, 3>::x(), vec![0, 3, 2]),
-            (-Vector::<f64, 3>::y(), vec![0, 1, 3]),
-            (-Vector::<f64, 3>::z(), vec![0, 2, 1]),
-            (slant, vec![1, 2, 3]),
-        ]
+        let normals = [-axis(0, 1.0), -axis(1, 1.0), -axis(2, 1.0), slant];
+        Polytope::<f64, 3>::from_closed_faces(corners(), &normals, &loops)
     }
 
     fn corners() -> Vec<Point<f64, 3>> {
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn damage_is_seen() {
-        let solid = Polytope::<f64, 3>::from_closed_faces(corners(), &loops()).expect("closed");
+        let solid = tetrahedron(&LOOPS).expect("closed");
         assert_eq!(solid.validate(), Ok(()), "a tetrahedron");
         let mut dented = solid.clone();
         dented.vertices[3] = Point::<f64, 3>::new(0.1, 0.1, 0.1);
@@ -149,11 +149,9 @@ mod tests {
 
     #[test]
     fn open_surfaces_are_refused() {
-        let mut turned = loops();
-        turned[0].1.reverse();
-        let refused = Polytope::<f64, 3>::from_closed_faces(corners(), &turned);
-        assert_eq!(refused, None, "a face turned over");
-        let refused = Polytope::<f64, 3>::from_closed_faces(corners(), &loops()[..3]);
-        assert_eq!(refused, None, "a face is missing");
+        let mut turned = LOOPS;
+        turned[0].reverse();
+        assert_eq!(tetrahedron(&turned), None, "a face turned over");
+        assert_eq!(tetrahedron(&LOOPS[..3]), None, "a face is missing");
     }
 }

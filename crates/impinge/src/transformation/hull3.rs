@@ -1,32 +1,37 @@
 //! Convex hulls in space.
 
-use super::hull_faces::{faces, normal, redundant};
+use super::hull_faces::{Face, faces, redundant};
 use super::quickhull::{Facet, Surface};
 use super::span::{Scaled, first_four};
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
 
 /// A convex hull, in terms of the points it was made of.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct IndexedHull {
+#[derive(Clone, Debug, PartialEq)]
+pub struct IndexedHull<N: Real> {
     /// The indices of the points that are vertices, ascending.
     pub vertices: Vec<usize>,
     /// The polygons: for each the indices of its vertices, counter-clockwise seen from outside. Each
     /// side of one is, backwards, a side of exactly one other.
     pub faces: Vec<Vec<usize>>,
+    /// The outward unit normal of each face.
+    pub normals: Vec<Vector<N, 3>>,
 }
 
-/// How often vertices that add nothing are taken out. Each time no two neighbors go, and the solid
-/// shrinks by the tolerance at most; what is left then are flat angles, not wrong ones.
-const ROUNDS: usize = 4;
+/// How often vertices that add nothing are taken out. Each time no two neighbors go; what is left
+/// after the last are flat angles, not wrong ones.
+const ROUNDS: usize = 8;
 
 /// The convex hull of some points.
 ///
 /// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that stick out of
 /// all faces by less than 2 u are left out, triangles within 4 u of a plane are merged into one
 /// polygon, vertices within 4 u of the segment between two neighbors or of the plane of all their
-/// neighbors are taken out. So every point given is in front of no face by more than 20 u, and
-/// usually by no more than 4 u; every vertex is one of the points, bit by bit; of points that
+/// neighbors are taken out. A face has the normal of the largest triangle in it. So every point given is in
+/// front of no face, taken at its highest vertex, by more than 8 u, and usually by no more than 4 u;
+/// where two faces meet at an angle that is itself all rounding, as at the rim of a dish some 100 u
+/// deep, by up to 32 u;
+/// no vertex of a face lies lower than the highest by more than 8 u; every vertex is one of the points, bit by bit; of points that
 /// coincide one is named. Which faces a point sees is decided exactly, so no input leads astray.
 ///
 /// Expected time is O(n log n), with a quickhull. The answer depends on the points and their order
@@ -46,19 +51,19 @@ const ROUNDS: usize = 4;
 ///     .collect();
 /// assert_eq!(convex_hull3(&cube).map(|hull| hull.faces.len()), Ok(6));
 /// ```
-pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull, ShapeError> {
+pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, ShapeError> {
     hull_of(&Scaled::of(points, 4)?)
 }
 
 /// Takes redundant vertices out until there are none or nothing would be left.
-fn hull_of(scaled: &Scaled<3>) -> Result<IndexedHull, ShapeError> {
+fn hull_of<N: Real>(scaled: &Scaled<3>) -> Result<IndexedHull<N>, ShapeError> {
     let mut grown = Grown::of(scaled, (0..scaled.points.len()).collect())?;
     for _ in 0..ROUNDS {
-        let needed = grown.needed();
-        if needed.len() < 4 || needed.len() == grown.vertex_count {
+        let redundant = redundant(&grown.facets, &grown.points);
+        if redundant.is_empty() {
             break;
         }
-        let Ok(next) = Grown::of(scaled, needed) else { break };
+        let Ok(next) = Grown::of(scaled, grown.without(&redundant)) else { break };
         grown = next;
     }
     Ok(grown.indexed())
@@ -71,7 +76,6 @@ struct Grown {
     /// Their positions.
     points: Scaled<3>,
     facets: Vec<Facet>,
-    vertex_count: usize,
 }
 
 impl Grown {
@@ -82,30 +86,29 @@ impl Grown {
         let first = first_four(&points)?.map(index_of);
         let facets = Surface::grown(&points.points, first, 2.0 * scaled.unit);
         let facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
-        // A closed surface of triangles has half as many vertices as faces, and two more.
-        let vertex_count = facets.len() / 2 + 2;
-        Ok(Self { named, points, facets, vertex_count })
+        Ok(Self { named, points, facets })
     }
 
-    /// The vertices that are not redundant.
-    fn needed(&self) -> Vec<usize> {
+    /// The other vertices.
+    fn without(&self, redundant: &[u32]) -> Vec<usize> {
         let mut needed: Vec<u32> = self.facets.iter().flat_map(|facet| facet.corners).collect();
         needed.sort_unstable();
         needed.dedup();
-        let redundant = redundant(&self.facets, &self.points);
         needed.retain(|vertex| redundant.binary_search(vertex).is_err());
         needed.into_iter().map(|vertex| self.named[vertex as usize]).collect()
     }
 
-    fn indexed(self) -> IndexedHull {
-        let name =
-            |face: Vec<u32>| face.iter().map(|&vertex| self.named[vertex as usize]).collect();
-        let faces: Vec<Vec<usize>> =
-            faces(&self.facets, &self.points).into_iter().map(name).collect();
-        let mut vertices = faces.concat();
+    fn indexed<N: Real>(&self) -> IndexedHull<N> {
+        let name = |vertex: &u32| self.named[*vertex as usize];
+        let (mut loops, mut normals) = (Vec::<Vec<usize>>::new(), Vec::new());
+        for Face { normal, ring } in faces(&self.facets, &self.points) {
+            loops.push(ring.iter().map(name).collect());
+            normals.push(normal.map(N::lit));
+        }
+        let mut vertices = loops.concat();
         vertices.sort_unstable();
         vertices.dedup();
-        IndexedHull { vertices, faces }
+        IndexedHull { vertices, faces: loops, normals }
     }
 }
 
@@ -115,17 +118,12 @@ impl<N: Real> ConvexHull<N> {
     /// # Errors
     /// For fewer than four points, a coordinate that is not finite, and points that span no volume.
     pub fn try_from_points(points: &[Point<N, 3>]) -> Result<Self, ShapeError> {
-        let flat = ShapeError::Degenerate { dimension: 2 };
-        let scaled = Scaled::of(points, 4)?;
-        let IndexedHull { vertices, faces } = hull_of(&scaled)?;
-        let renamed = |index: &usize| vertices.binary_search(index).ok();
-        let mut loops = Vec::with_capacity(faces.len());
-        for face in &faces {
-            let normal = normal(&scaled.points, face).ok_or(flat)?;
-            let ring: Option<Vec<usize>> = face.iter().map(renamed).collect();
-            loops.push((normal.map(N::lit), ring.ok_or(flat)?));
-        }
+        let IndexedHull { vertices, faces, normals } = convex_hull3(points)?;
+        let place = |index: &usize| vertices.binary_search(index).ok();
+        let rings: Option<Vec<Vec<usize>>> =
+            faces.iter().map(|face| face.iter().map(place).collect()).collect();
         let corners = vertices.iter().map(|&index| points[index]).collect();
-        Self::from_closed_faces(corners, &loops).ok_or(flat)
+        let solid = rings.and_then(|rings| Self::from_closed_faces(corners, &normals, &rings));
+        solid.ok_or(ShapeError::Degenerate { dimension: 2 })
     }
 }

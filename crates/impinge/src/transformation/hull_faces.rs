@@ -1,7 +1,6 @@
 //! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
 //! polygon.
 
-use super::exact::area_vector;
 use super::quickhull::Facet;
 use super::span::{Scaled, direction, distance_from_segment, precedes};
 use crate::math::{Point, Vector};
@@ -75,23 +74,34 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// The loops of vertices of the faces, counter-clockwise from outside, from the first vertex in order
-/// of coordinates; triangles within `flat` of one plane are one face.
+/// A face of the hull.
+#[derive(Clone, Debug)]
+pub(super) struct Face {
+    /// The outward unit normal of the largest triangle in it: the hull has no point in front of that,
+    /// however much smaller triangles are bent within the tolerance.
+    pub(super) normal: Vector<f64, 3>,
+    /// The vertices, counter-clockwise from outside, from the first in order of coordinates.
+    pub(super) ring: Vec<u32>,
+}
+
+/// The faces: triangles within the tolerance of one plane are one face.
 ///
 /// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
-pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Vec<u32>> {
+pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Face> {
     let points = &scaled.points;
     let mut faces = Merger::new(facets, scaled).merged();
     straighten(&mut faces, points.len());
     if !is_closed(&faces) {
-        faces = facets.iter().map(|facet| facet.corners.to_vec()).collect();
+        let triangle =
+            |facet: &Facet| Face { normal: facet.normal(points), ring: facet.corners.to_vec() };
+        faces = facets.iter().map(triangle).collect();
     }
-    for face in &mut faces {
-        let first = (1..face.len()).fold(0, |first, candidate| {
-            let is_before = precedes(&points[at(face[candidate])], &points[at(face[first])]);
+    for Face { ring, .. } in &mut faces {
+        let first = (1..ring.len()).fold(0, |first, candidate| {
+            let is_before = precedes(&points[at(ring[candidate])], &points[at(ring[first])]);
             if is_before { candidate } else { first }
         });
-        face.rotate_left(first);
+        ring.rotate_left(first);
     }
     faces
 }
@@ -125,14 +135,15 @@ impl<'a> Merger<'a> {
     }
 
     /// Grows a face from each facet that is in none yet, the largest first.
-    fn merged(mut self) -> Vec<Vec<u32>> {
+    fn merged(mut self) -> Vec<Face> {
         let mut seeds: Vec<u32> = (0..).take(self.facets.len()).collect();
         let area = |facet: u32| self.facets[at(facet)].doubled_area();
         seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
         let mut faces = Vec::new();
         for seed in seeds {
             if !self.is_taken[at(seed)] {
-                faces.push(self.grow(seed));
+                let normal = self.facets[at(seed)].normal(self.points);
+                faces.push(Face { normal, ring: self.grow(seed) });
             }
         }
         faces
@@ -202,10 +213,10 @@ impl<'a> Merger<'a> {
 }
 
 /// Drops the vertices that only two faces share: in each of them the sides there form one line.
-fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
+fn straighten(faces: &mut [Face], vertices: usize) {
     let mut uses = vec![(0_u32, [0_usize; 2]); vertices];
     for (index, face) in faces.iter().enumerate() {
-        for &vertex in face {
+        for &vertex in &face.ring {
             let (count, users) = &mut uses[at(vertex)];
             if let Some(user) = users.get_mut(at(*count)) {
                 *user = index;
@@ -214,26 +225,17 @@ fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
         }
     }
     for (vertex, (count, users)) in (0_u32..).zip(uses) {
-        if count == 2 && users.iter().all(|&user| faces[user].len() > 3) {
-            users.iter().for_each(|&user| faces[user].retain(|&corner| corner != vertex));
+        if count == 2 && users.iter().all(|&user| faces[user].ring.len() > 3) {
+            users.iter().for_each(|&user| faces[user].ring.retain(|&corner| corner != vertex));
         }
     }
 }
 
-/// The outward unit normal of a polygon, by the areas of its shadows (Newell); `None` for no area.
-pub(super) fn normal(points: &[P3], ring: &[usize]) -> Option<Vector<f64, 3>> {
-    let base = &points[*ring.first()?];
-    let triangles =
-        ring.windows(2).map(|side| area_vector(base, &points[side[0]], &points[side[1]]));
-    let sum = triangles.fold(Vector::<f64, 3>::zeros(), |sum, area| sum + area);
-    direction(&sum).map(|(normal, _)| normal)
-}
-
 /// Each side of a face is, backwards, the side of one other face.
-fn is_closed(faces: &[Vec<u32>]) -> bool {
-    let sides = |face: &Vec<u32>| {
-        let next = face.iter().cycle().skip(1);
-        face.iter().copied().zip(next.copied()).collect::<Vec<_>>()
+fn is_closed(faces: &[Face]) -> bool {
+    let sides = |Face { ring, .. }: &Face| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().copied().zip(next.copied()).collect::<Vec<_>>()
     };
     let mut forward: Vec<(u32, u32)> = faces.iter().flat_map(sides).collect();
     let mut backward: Vec<(u32, u32)> = forward.iter().map(|&(from, to)| (to, from)).collect();

@@ -255,8 +255,8 @@ impl<'a> Surface<'a> {
         (first..index_of(self.facets.len())).collect()
     }
 
-    /// Looks among the points left outside for those that are above the tolerance over a facet other
-    /// than their own, moves them there and names these facets. The others are dropped.
+    /// Moves each point left outside to the facet that it is highest over, and names those facets
+    /// over which this is above the tolerance. The others stay: the surface may yet turn below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if !self.facets[at(facet)].is_alive {
@@ -264,8 +264,8 @@ impl<'a> Surface<'a> {
             }
             for (point, _) in core::mem::take(&mut self.facets[at(facet)].outside) {
                 let (best, height) = self.highest_above(point, facet);
+                self.facets[at(best)].outside.push((point, height));
                 if height > self.tolerance {
-                    self.facets[at(best)].outside.push((point, height));
                     pending.push(best);
                 }
             }

@@ -4,7 +4,7 @@ use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ShapeError};
 use impinge::transformation::convex_hull3;
 
-use super::checks::{cast, hull_of};
+use super::checks::{cast, hull_of, hull_within};
 use super::points::{Numbers, P3, ball, cube, grid, octahedron, prism, slab, sphere, turned};
 
 fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
@@ -110,8 +110,12 @@ fn noise<N: Real>() {
         let corners = turned(&prism(6), 1.0, 0.0);
         let mut points = Vec::new();
         for _ in 0..400 {
-            let pick = |x: f64| corners[(((x + 1.0) * 6.0).floor() as usize).min(11)].coords;
-            let (a, b) = (pick(numbers.next()), pick(numbers.next()));
+            let mut pick = || {
+                let nearest = numbers.vector();
+                let along = |p: &&P3| nearest.dot(&p.coords);
+                corners.iter().max_by(|p, q| along(p).total_cmp(&along(q))).expect("twelve").coords
+            };
+            let (a, b) = (pick(), pick());
             let t = (numbers.next() * 2.0).clamp(-1.0, 1.0) * 0.5 + 0.5;
             let shake = numbers.vector() * (units * N::EPSILON.as_f64());
             points.push(P3::from(a * t + b * (1.0 - t) + shake));
@@ -143,7 +147,7 @@ fn samples_finer_than_rounding() {
     }
     let cap: Vec<P3> =
         ball(6000).iter().map(|p| P3::new(p.x, p.y, 1e-5 * (p.x * p.x + p.y * p.y))).collect();
-    hull_of::<f32>("shallow dish", &cap);
+    hull_within::<f32>(32.0, "shallow dish", &cap);
     hull_of::<f64>("shallow dish", &cap);
 }
 
