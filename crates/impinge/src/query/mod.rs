@@ -21,7 +21,7 @@ pub use distance::distance;
 pub use kinematic::{ContactKinematic, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
-pub(crate) use manifold_build::{build2, build3};
+pub(crate) use manifold_build::{contacts2, contacts3};
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
