@@ -258,7 +258,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let random = &mut Random(setting.seed ^ 7);
     let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
     // Half of the pairs are sent at each other.
-    if setting.seed % 2 == 0 {
+    if setting.seed.is_multiple_of(2) {
         v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
     }
     let found = impact(pair, &v);

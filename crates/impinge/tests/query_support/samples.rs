@@ -79,7 +79,7 @@ fn common<N: Real, const D: usize>(
 
 pub fn sample2<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<dyn Shape<N, 2>> {
     match kind {
-        ShapeKind::Polytope => polygon(octagon(random, scale)),
+        ShapeKind::Polytope => polygon(&octagon(random, scale)),
         other => common(other, random, scale),
     }
 }
@@ -101,7 +101,7 @@ pub fn sample3<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<d
     match kind {
         ShapeKind::Polytope => {
             let points = (0..12).map(|_| Point::from(random.direction::<N, 3>() * scale));
-            hull(points.collect())
+            hull(&points.collect::<Vec<_>>())
         }
         ShapeKind::Cylinder => Box::new(Cylinder::new(size(random, scale), size(random, scale))),
         ShapeKind::Cone => Box::new(Cone::new(size(random, scale), size(random, scale))),

@@ -16,11 +16,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let ends2 = local2.map(|end| pair.pose12.point(&end));
     let (point1, point2) = nearest_of_segments(&ends1, &ends2);
     let distance = (point2 - point1).norm();
-    if !(distance - rounding1 - rounding2 <= limit) {
-        return None;
-    }
-    let normal = best_normal(&ends1, &ends2, &(point2 - point1));
-    Some(Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2))
+    (distance - rounding1 - rounding2 <= limit).then(|| {
+        let normal = best_normal(&ends1, &ends2, &(point2 - point1));
+        Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2)
+    })
 }
 
 /// The unit vector along which the segments are farthest apart.
