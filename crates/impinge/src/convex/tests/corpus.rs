@@ -66,7 +66,7 @@ where
     ];
     let wrong: Vec<_> = errors
         .iter()
-        .filter(|(name, error)| !(*error <= case.tolerance * slack::<N>(name)))
+        .filter(|(name, error)| error.is_nan() || *error > case.tolerance * slack::<N>(name))
         .collect();
     if wrong.is_empty() {
         return Some(Ok(()));
