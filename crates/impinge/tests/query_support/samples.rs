@@ -40,12 +40,13 @@ pub type Sample<N, const D: usize> = fn(ShapeKind, &mut Random, N) -> Box<dyn Sh
 
 /// A point up to `scale` away from the origin.
 fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> {
-    Point::from(random.vector::<N, D>() * scale)
+    let v = random.vector::<N, D>() * scale;
+    Point::from(v.map(|x| x * N::lit(random.size_or_zero())))
 }
 
 /// A size between a fifth of `scale` and all of it.
 fn size<N: Real>(random: &mut Random, scale: N) -> N {
-    N::lit(random.within(0.2, 1.0)) * scale
+    N::lit(random.within(0.2, 1.0) * random.size_or_zero()) * scale
 }
 
 /// The kinds that both dimensions have.
