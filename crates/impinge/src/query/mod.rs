@@ -6,7 +6,7 @@ mod distance;
 mod kinematic;
 mod manifold;
 mod manifold_build;
-mod pair;
+pub(crate) mod pair;
 pub(crate) mod point;
 mod proximity;
 mod raw_manifold;

@@ -1,6 +1,6 @@
 //! The separating axis test of two boxes in space.
 //!
-//! Gottschalk, Lin and Manocha, "OBBTree" (1996): two boxes are apart iff one of 15 directions says
+//! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions says
 //! so, and if not, the one that says so least badly is the direction of the shortest way out.
 
 use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};

@@ -27,6 +27,8 @@ mod segment_segment;
 mod segments;
 mod table2;
 mod table3;
+#[cfg(test)]
+mod tests;
 mod world;
 
 use crate::convex::Separation;
