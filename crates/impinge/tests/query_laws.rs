@@ -33,6 +33,9 @@ const REGIMES: [Regime; 7] = [
     Regime::Coincident,
 ];
 
+/// How many pairs of each two kinds are tried in each regime.
+const SEEDS: u64 = 12;
+
 /// What the tests vary.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
@@ -176,11 +179,13 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let Some(found) = contact_of(pair) else { return };
     let noise = precision::<N, D>(setting.kinds) * (pair[0].extent() + pair[1].extent());
     // What has sharp tips may pass the other by rounding; of two such solids nothing can be said.
-    let sharp = |kind: &ShapeKind| {
-        matches!(kind, ShapeKind::Segment | ShapeKind::Triangle | ShapeKind::Cone)
+    let sharpness = |kind: &ShapeKind| match kind {
+        ShapeKind::Segment | ShapeKind::Triangle | ShapeKind::Cone => 2,
+        ShapeKind::Polytope => 1,
+        _ => 0,
     };
-    let tips = setting.kinds.iter().filter(|kind| sharp(kind)).count();
-    let slack = if tips == 1 { noise } else { N::ZERO };
+    let sharp: i32 = setting.kinds.iter().map(sharpness).sum();
+    let slack = if sharp > 0 { noise } else { noise / N::lit(4.0) };
     let moved = |side: N| {
         let mut pose = pair[1].pose.clone();
         pose.translation.vector += found.normal.into_inner() * (found.depth + side * noise);
@@ -188,7 +193,7 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     };
     assert!(moved(N::TWO) > N::ZERO, "apart {setting:?}");
     let together = moved(-N::TWO);
-    assert!(tips == 2 || together <= slack, "{together} not together {setting:?}");
+    assert!(sharp > 2 || together <= slack, "{together} not together {setting:?}");
 }
 
 /// A power of two times larger, everything is exactly that much larger.
@@ -299,8 +304,8 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let (mut hits, mut shots) = (0, 0);
     let (mut settings, mut broken) = (0, 0);
     for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
-        for (regime, seed) in REGIMES.iter().flat_map(|r| (0..6).map(move |seed| (*r, seed))) {
-            let ratio = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3][usize::try_from(seed).expect("small")];
+        for (regime, seed) in REGIMES.iter().flat_map(|r| (0..SEEDS).map(move |seed| (*r, seed))) {
+            let ratio = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3][usize::try_from(seed % 6).expect("small")];
             let base =
                 Setting { kinds: [kind1, kind2], regime, seed, ratio, offset: 0.0, scale: 1.0 };
             let mut all = || {

@@ -94,12 +94,13 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
                 return Outcome::Beyond;
             }
             let closed = self.upper - self.best.height <= noise::<N>();
-            if closed || self.simplex.contains(&candidate.vertex) {
-                return Outcome::Apart;
-            }
-            match self.advanced(&nearest) {
+            let known = closed || self.simplex.contains(&candidate.vertex);
+            match if known { None } else { self.advanced(&nearest) } {
                 Some(next) => nearest = next,
-                None => return Outcome::Apart,
+                None => {
+                    self.best.prefer(candidate, N::EPSILON);
+                    return Outcome::Apart;
+                }
             }
         }
         Outcome::Apart

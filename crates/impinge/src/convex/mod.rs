@@ -38,6 +38,7 @@ use difference::{Pair, noise};
 /// How far two rounded solids of the plane are apart, or how deep they overlap.
 ///
 /// See [`separation`].
+#[allow(dead_code, reason = "an entry point for the floors above")]
 pub(crate) fn separation2<N: Real, A, B>(
     a: &A,
     b: &B,
@@ -54,6 +55,7 @@ where
 /// How far two rounded solids of space are apart, or how deep they overlap.
 ///
 /// See [`separation`].
+#[allow(dead_code, reason = "an entry point for the floors above")]
 pub(crate) fn separation3<N: Real, A, B>(
     a: &A,
     b: &B,

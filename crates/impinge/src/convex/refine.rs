@@ -8,7 +8,7 @@ use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
 /// Support points near the place of interest.
-pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 10]>;
+pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
 /// Cap on the number of support points asked for.
 const ROUNDS: usize = 40;
@@ -21,14 +21,16 @@ const KEPT: usize = 8;
 /// take the normal that is best over the bundle, among those of its points, edges and facets; ask
 /// for its support point; add that to the bundle; until the set agrees with the bundle. This is the
 /// cutting-plane method of J. Kelley (1960) on the sphere of normals. Over a set without the origin
-/// it is global; a set that holds the origin needs other means.
+/// it is global; a set that holds the origin needs other means. All points found are added to
+/// `seen`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    bundle: &mut Bundle<N, D>,
+    seen: &mut Bundle<N, D>,
     best: &mut Candidate<N, D>,
 ) {
+    let mut bundle = seen.clone();
     for _ in 0..ROUNDS {
-        let (normal, promise) = most_promising(bundle, &best.normal);
+        let (normal, promise) = most_promising(&bundle, &best.normal);
         let worth_it = promise > best.height + noise::<N>() * N::HALF;
         if !worth_it {
             return;
@@ -38,8 +40,9 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
         if bundle.iter().any(|vertex| vertex.point == candidate.vertex.point) {
             return;
         }
+        seen.push(candidate.vertex);
         bundle.push(candidate.vertex);
-        drop_idle(bundle, &best.normal);
+        drop_idle(&mut bundle, &best.normal);
     }
 }
 

@@ -109,8 +109,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// features: ask again when the motion is not small. A corner stays on the plane or line of the
     /// other solid, two crossing lines give their nearest points, two points or a point and a line
     /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. Poses that are not finite
-    /// give a contact that is not.
+    /// points and the normal at the last update move with their solids. Of a contact on a
+    /// round rim the distance and normal are that good, the place on the rim is of first order only.
+    /// Poses that are not finite give a contact that is not.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -208,12 +209,11 @@ impl<N: Real, const D: usize> NormalRule<N, D> {
     /// is perpendicular to it, or else the edges that are; or else the face that comes nearest.
     fn of(side1: &Side<N, D>, side2: &Side<N, D>, pair: &Pair<'_, N, D>) -> Self {
         let lean = |side: &Side<N, D>| side.lean.unwrap_or(N::TWO);
-        if min(lean(side1), lean(side2)) > least_angle() {
-            if let (Some(edge1), Some(edge2)) = (side1.level_edge, side2.level_edge) {
-                let across = edge1.dot(&pair.pose12.vector(&edge2));
-                if across * across < N::ONE - N::lit(LEAST_SINE_SQUARED) {
-                    return Self::Edges(edge1, edge2);
-                }
+        let has_face = min(lean(side1), lean(side2)) <= least_angle();
+        if let (false, Some(edge1), Some(edge2)) = (has_face, side1.level_edge, side2.level_edge) {
+            let across = edge1.dot(&pair.pose12.vector(&edge2));
+            if across * across < N::ONE - N::lit(LEAST_SINE_SQUARED) {
+                return Self::Edges(edge1, edge2);
             }
         }
         if lean(side2) < lean(side1) { Self::Second } else { Self::First }
@@ -328,11 +328,11 @@ fn crossing<N: Real, const D: usize>(
     let (squared1, squared2) = (along1.norm_squared(), along2.norm_squared());
     let mixed = along1.dot(along2);
     let determinant = squared1 * squared2 - mixed * mixed;
-    if !(determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2) {
-        return (N::ZERO, N::ZERO);
+    if determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2 {
+        let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
+        let a = (gap1 * squared2 - gap2 * mixed) / determinant;
+        let b = (gap1 * mixed - gap2 * squared1) / determinant;
+        return (a, b);
     }
-    let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
-    let a = (gap1 * squared2 - gap2 * mixed) / determinant;
-    let b = (gap1 * mixed - gap2 * squared1) / determinant;
-    (a, b)
+    (N::ZERO, N::ZERO)
 }

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::super::{Simplicial, separation};
 use crate::math::{Point, Pose, Real, Vector, unit};
 use crate::shape::{Ball, Capsule, Cone, Cuboid, Cylinder, Segment, SupportMap, Triangle};
 
@@ -193,4 +194,14 @@ pub(super) fn height<N: Real, const D: usize>(
     let top1 = solids[0].core_support(&n).coords.dot(&n) + solids[0].rounding();
     let lowest2 = pose12.point(&solids[1].core_support(&-pose12.inverse_vector(&n)));
     lowest2.coords.dot(&n) - solids[1].rounding() - top1
+}
+
+/// The signed distance of a point from a solid.
+pub(super) fn outside<const D: usize>(solid: &dyn SupportMap<f64, D>, point: &Point<f64, D>) -> f64
+where
+    f64: Simplicial<D>,
+{
+    let pose = Pose::from_translation(point.coords);
+    let ball = Points { points: vec![Point::origin()], rounding: 0.0 };
+    separation(solid, &ball, &pose, f64::INFINITY).map_or(f64::NAN, |found| found.distance)
 }

@@ -51,6 +51,8 @@ impl<N: Real, const D: usize> Side<N, D> {
         Self { core, geometry, rounding, lean: None, level_edge: None }
     }
 
+    /// The general case: the feature that faces the other solid is asked for once more and the named
+    /// part is looked up in it. A curved face counts as its tangent plane.
     fn of_core(
         kind: Kind<'_, N, D>,
         id: FeatureId,
@@ -88,7 +90,7 @@ fn level_edge<N: Real, const D: usize>(
     level.filter(|side| lean(side) <= super::least_angle())
 }
 
-/// The direction of a side.
+/// The direction of a side of a feature, along its outline; `None` for a side of no length.
 fn along<N: Real, const D: usize>(feature: &Feature<N, D>, index: usize) -> Option<Vector<N, D>> {
     let next = if index + 1 < feature.vertices.len() { index + 1 } else { 0 };
     unit(&(feature.vertices[next] - feature.vertices[index])).map(|(along, _)| along)
@@ -115,6 +117,7 @@ fn line<N: Real, const D: usize>(
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
     let mut named = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
+    // A cap that is round is given as a polygon all of whose sides bear the name of the rim.
     let (Some((index, _)), None) = (named.next(), named.next()) else {
         return NeighborhoodGeometry::Point;
     };

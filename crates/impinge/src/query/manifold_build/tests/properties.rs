@@ -47,8 +47,8 @@ fn points_lie_on_both<N: Scene<D>, const D: usize>(accuracy: f64) {
     for_all_pairs::<N, D>(120, 1.0, |pair| {
         let (separation, raw) = manifold(pair, &wish);
         // The witness is as good as the separation that it comes from.
-        let is_witness = |point: &&RawPoint<N, D>| point.point1 == separation.point1;
-        for point in raw.points.iter().filter(|point| !is_witness(point)) {
+        let is_own = |point: &&RawPoint<N, D>| point.point1 != separation.point1;
+        for point in raw.points.iter().filter(is_own) {
             let point2 = point.point1 + raw.normal * point.distance;
             let off1 = off_surface(pair.first, &point.point1).abs();
             let off2 = off_surface(pair.second, &pair.pose12.inverse_point(&point2)).abs();
@@ -151,7 +151,7 @@ fn bad_numbers<N: Scene<D>, const D: usize>() {
     let wish = request::<N>(0.05, 0.05);
     for_all_pairs::<N, D>(2, 1.0, |pair| {
         let (good, mut raw) = (fact(pair), RawManifold::default());
-        for bad in [N::INFINITY, -N::INFINITY, N::INFINITY - N::INFINITY] {
+        for bad in [N::INFINITY, -N::INFINITY, N::lit(f64::NAN)] {
             let mut separation = good;
             separation.distance = bad;
             N::build(pair, &separation, &wish, &mut raw);

@@ -1,0 +1,126 @@
+//! impinge, in the plane and in space.
+
+use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle, Triangle};
+use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
+
+use crate::contender::{Contender, Reading};
+
+type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
+
+/// A world of impinge.
+pub struct Impinge<const D: usize>
+where
+    f32: Space<D>,
+{
+    world: CollisionWorld<f32, D, usize>,
+    isometry: fn(&Placement<D>) -> Isometry<D>,
+    handles: Vec<CollisionObjectHandle>,
+    moved: Vec<(CollisionObjectHandle, Isometry<D>)>,
+}
+
+/// A world in the plane with the objects of a scene as they are at step 0.
+pub fn plane(scene: &Scene<2>) -> Impinge<2> {
+    Impinge::new(scene, |placement| {
+        let [cosine, sine] = placement.complex().map(|x| x as f32);
+        let rotation = UnitComplex::from_cos_sin_unchecked(cosine, sine);
+        let translation = placement.translation.map(|x| x as f32);
+        Isometry2::from_parts(Translation::from(translation), rotation)
+    })
+}
+
+/// A world in space with the objects of a scene as they are at step 0.
+pub fn space(scene: &Scene<3>) -> Impinge<3> {
+    Impinge::new(scene, |placement| {
+        let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
+        let translation = placement.translation.map(|x| x as f32);
+        Isometry3::from_parts(Translation::from(translation), rotation)
+    })
+}
+
+impl<const D: usize> Impinge<D>
+where
+    f32: Space<D>,
+{
+    fn new(scene: &Scene<D>, isometry: fn(&Placement<D>) -> Isometry<D>) -> Self {
+        let mut world = CollisionWorld::new(scene.margin as f32);
+        let handles = scene.objects.iter().enumerate().map(|(n, object)| {
+            let query = match object.query {
+                SceneQuery::Contacts { linear, angular } => {
+                    GeometricQueryType::Contacts(linear as f32, angular as f32)
+                }
+                SceneQuery::Proximity { margin } => GeometricQueryType::Proximity(margin as f32),
+            };
+            let position = isometry(&scene.placement(n, 0));
+            world.add(position, shape(&object.shape), CollisionGroups::new(), query, n)
+        });
+        let handles = handles.collect();
+        Self { world, isometry, handles, moved: Vec::new() }
+    }
+}
+
+fn shape<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D> {
+    let point = |p: &[f64; D]| Point::<f32, D>::from(p.map(|x| x as f32));
+    let vector = |v: &[f64; D]| Vector::<f32, D>::from(v.map(|x| x as f32));
+    match shape {
+        SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),
+        SceneShape::Cuboid { half_extents } => ShapeHandle::new(Cuboid::new(vector(half_extents))),
+        SceneShape::Plane { normal } => {
+            ShapeHandle::new(Plane::new(Unit::new_normalize(vector(normal))))
+        }
+        SceneShape::Capsule { half_height, radius } => {
+            ShapeHandle::new(Capsule::new(*half_height as f32, *radius as f32))
+        }
+        SceneShape::Segment { ends: [a, b] } => ShapeHandle::new(Segment::new(point(a), point(b))),
+        SceneShape::Triangle { corners: [a, b, c] } => {
+            ShapeHandle::new(Triangle::new(point(a), point(b), point(c)))
+        }
+        other => unimplemented!("{other:?} is in none of the scenes that are compared"),
+    }
+}
+
+impl<const D: usize> Contender<D> for Impinge<D>
+where
+    f32: Space<D>,
+{
+    fn name(&self) -> &'static str {
+        "impinge"
+    }
+
+    fn prepare(&mut self, moved: &[(usize, Placement<D>)]) {
+        self.moved.clear();
+        let poses = moved.iter().map(|(n, at)| (self.handles[*n], (self.isometry)(at)));
+        self.moved.extend(poses);
+    }
+
+    fn step(&mut self) -> Reading {
+        for (handle, isometry) in &self.moved {
+            self.world.set_position(*handle, *isometry);
+        }
+        self.world.update();
+        let mut reading = Reading::default();
+        for (_, _, manifold) in self.world.contact_manifolds() {
+            for tracked in manifold.contacts() {
+                reading.points += 1;
+                reading.depth += f64::from(tracked.contact.depth);
+            }
+        }
+        reading
+    }
+
+    fn touching(&self) -> Vec<(usize, usize)> {
+        let manifolds = self.world.contact_manifolds();
+        let touching = manifolds.filter(|(_, _, manifold)| !manifold.is_empty());
+        let mut pairs: Vec<_> = touching.map(|(a, b, _)| (*a.data(), *b.data())).collect();
+        for pair in &mut pairs {
+            *pair = (pair.0.min(pair.1), pair.0.max(pair.1));
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+}
