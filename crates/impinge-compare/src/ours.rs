@@ -97,11 +97,14 @@ where
         self.moved.extend(poses);
     }
 
-    fn step(&mut self) -> Reading {
+    fn step(&mut self) {
         for (handle, isometry) in &self.moved {
             self.world.set_position(*handle, *isometry);
         }
         self.world.update();
+    }
+
+    fn read(&self) -> Reading {
         let mut reading = Reading::default();
         for (_, _, manifold) in self.world.contact_manifolds() {
             for tracked in manifold.contacts() {

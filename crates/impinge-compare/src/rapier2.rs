@@ -81,7 +81,7 @@ impl Contender<2> for Rapier {
         self.moved.extend(moved.iter().map(|(n, placement)| (self.handles[*n], pose(placement))));
     }
 
-    fn step(&mut self) -> Reading {
+    fn step(&mut self) {
         for (handle, pose) in &self.moved {
             self.colliders[*handle].set_position(*pose);
         }
@@ -95,6 +95,9 @@ impl Contender<2> for Rapier {
             &(),
             &(),
         );
+    }
+
+    fn read(&self) -> Reading {
         let mut reading = Reading::default();
         let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
         for point in manifolds.flat_map(|manifold| &manifold.points) {
