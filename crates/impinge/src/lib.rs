@@ -14,4 +14,5 @@ pub mod query;
 pub mod shape;
 #[doc(hidden)]
 pub mod tables;
+pub mod transformation;
 pub mod world;

@@ -79,10 +79,15 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     }
 }
 
+/// The handle and data of an object that is known to be there.
+fn proxy_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &(ProxyHandle, T) {
+    let proxy = proxies[id as usize].as_ref();
+    proxy.expect("the finder knows only objects that are there")
+}
+
 /// The data of an object that is known to be there.
 fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
-    let proxy = proxies[id as usize].as_ref();
-    &proxy.expect("the finder knows only objects that are there").1
+    &proxy_of(proxies, id).1
 }
 
 /// The number that the finder knows the object by.
@@ -105,10 +110,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// The pairs as of the last update, less those removed since, each with the smaller handle
     /// first; in no particular order.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
-        let handle = |id: u32| {
-            let proxy = self.proxies[id as usize].as_ref();
-            proxy.expect("the finder knows only objects that are there").0
-        };
+        let handle = |id: u32| proxy_of(&self.proxies, id).0;
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
     }
 

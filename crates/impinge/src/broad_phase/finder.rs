@@ -183,8 +183,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 
     /// Takes an object out at once, and its pairs with it.
     pub fn remove(&mut self, id: u32) {
-        while let Some((partner, _)) = self.pairs.partners(id).last() {
-            self.pairs.remove(id, partner);
+        while let Some(pair) = self.pairs.any_pair_of(id) {
+            self.pairs.remove_at(pair);
         }
         self.leave_home(id);
         let index = id as usize;
@@ -192,8 +192,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if at != NONE {
             self.waiting[at as usize].id = NONE;
         }
-        self.again.retain(|&other| other != id);
-        // Not empty only if a filter panicked.
+        // Not empty only if a filter panicked. The list `again` may keep the id: an object that
+        // takes the number over is new, and all its pairs are asked about in any case.
         self.changes.retain(|&other| other != id);
         self.marks[index] = 0;
     }

@@ -2,7 +2,7 @@
 
 use super::PairFinder;
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::{Bounds, Frontier};
+use crate::bvh::{Bounds, Frontier, Keys};
 use crate::math::{Point, Real};
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
@@ -45,8 +45,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
                 frontier.push_object(time, id);
             }
         }
-        let measure = |block: &_| self.lanes.times_of_block(block, ray);
-        frontier.search(&[&self.moving, &self.still], max_time, measure, entry, visit);
+        let times = |block: &_| self.lanes.times_of_block(block, ray);
+        let keys = Keys { block: times, object: entry };
+        frontier.search(&[&self.moving, &self.still], max_time, &keys, visit);
     }
 
     fn accepted_in(&self, query: &Bounds<D>, accept: impl Fn(u32) -> bool) -> Vec<u32> {

@@ -134,7 +134,7 @@ impl Joiner {
             let tasks = &self.tasks;
             let run = |range: core::ops::Range<usize>, out: &mut TaskList, _: &mut Scratch| {
                 with_kernel!(sides.first.lanes, kernel => {
-                    expand(kernel, sides, layer, tasks, range, out);
+                    expand(kernel, sides, layer, tasks.part(range), out);
                 });
             };
             let chunks = Chunks { count: tasks.len(), size: UPPER_CHUNK };
@@ -144,7 +144,7 @@ impl Joiner {
         let tasks = &self.tasks;
         let run = |range: core::ops::Range<usize>, out: &mut TaskList, scratch: &mut Scratch| {
             with_kernel!(sides.first.lanes, kernel => {
-                join_leaves(kernel, sides, tasks, range, out, scratch);
+                join_leaves(kernel, sides, tasks.part(range), out, scratch);
             });
         };
         let chunks = Chunks { count: tasks.len(), size: LEAF_CHUNK };
@@ -213,16 +213,14 @@ fn expand<K: Kernel, const D: usize>(
     kernel: K,
     sides: Sides<'_, D>,
     layer: usize,
-    tasks: &TaskList,
-    range: core::ops::Range<usize>,
+    (first, second): (&[u32], &[u32]),
     out: &mut TaskList,
 ) {
     let (layer_a, layer_b) = (&sides.first.layers[layer], &sides.second.layers[layer]);
     let (blocks_a, changed_a) = (&layer_a.blocks[..], &layer_a.changed[..]);
     let (blocks_b, changed_b) = (&layer_b.blocks[..], &layer_b.changed[..]);
     let (bounds_b, children) = (&layer_b.bounds[..], &sides.first.layers[layer - 1].bounds[..]);
-    let (first, second) = tasks.parts();
-    for (&a, &b) in first[range.clone()].iter().zip(&second[range]) {
+    for (&a, &b) in first.iter().zip(second) {
         let block_b = &blocks_b[b as usize];
         let changed_a = u32::from(changed_a[a as usize]);
         let changed_b = u32::from(changed_b[b as usize]);
@@ -248,8 +246,7 @@ fn expand<K: Kernel, const D: usize>(
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
     sides: Sides<'_, D>,
-    tasks: &TaskList,
-    range: core::ops::Range<usize>,
+    (first, second): (&[u32], &[u32]),
     out: &mut TaskList,
     scratch: &mut Scratch,
 ) {
@@ -257,10 +254,9 @@ fn join_leaves<K: Kernel, const D: usize>(
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
     let (blocks_b, changed_b) = (&leaves_b.blocks[..], &leaves_b.changed[..]);
     let (bounds_b, boxes) = (&leaves_b.bounds[..], &sides.first.boxes[..]);
-    let (first, second) = tasks.parts();
     let Scratch { tasks: lanes, met, .. } = scratch;
     lanes.clear();
-    for (&a, &b) in first[range.clone()].iter().zip(&second[range]) {
+    for (&a, &b) in first.iter().zip(second) {
         let mut mask = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
         if changed_b[b as usize] == 0 {
             mask &= u32::from(changed_a[a as usize]);

@@ -97,6 +97,13 @@ impl TaskList {
         (&self.first[..self.len], &self.second[..self.len])
     }
 
+    /// Some of the pairs, as their two arrays.
+    #[inline]
+    pub(super) fn part(&self, range: core::ops::Range<usize>) -> (&[u32], &[u32]) {
+        let (first, second) = self.parts();
+        (&first[range.clone()], &second[range])
+    }
+
     /// Makes room for sixteen more.
     #[inline]
     fn reserve(&mut self) {

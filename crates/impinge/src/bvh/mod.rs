@@ -37,7 +37,7 @@ pub use block::{Block, LANES};
 pub use bounds::Bounds;
 pub use join::Joiner;
 pub use kernel::Lanes;
-pub use ordered::Frontier;
+pub use ordered::{Frontier, Keys};
 pub use tree::{NONE, Tree};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.

@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 
 use super::kernel::with_kernel;
 use super::tree::small;
-use super::{Block, LANES, Lanes, NONE, Tree};
+use super::{Block, LANES, Lanes, Tree};
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, max, min};
 
@@ -23,6 +23,16 @@ const EXPECTED: usize = 64;
 enum Entry {
     Block { tree: u8, layer: u8, block: u32 },
     Object { id: u32 },
+}
+
+/// The keys of a search: zero or more.
+#[derive(Clone, Copy, Debug)]
+pub struct Keys<B, O> {
+    /// Gives the keys of the lanes of a block, none above the key of anything that it encloses,
+    /// and the mask of the lanes that count.
+    pub block: B,
+    /// Gives the key of an object, `None` to pass it over.
+    pub object: O,
 }
 
 /// A queue of what a search has still to look at.
@@ -52,20 +62,16 @@ impl Frontier {
 
     /// Hands out objects in ascending order of (key, id) until the key exceeds `limit`.
     ///
-    /// * `measure` gives the keys of the lanes of a block and the mask of those that count; keys
-    ///   must be zero or more and not above the key of anything enclosed;
-    /// * `key_of` gives the key of an object that its lane's key led to, `None` to pass it over;
-    /// * `found` gets the object and its key and returns the new limit.
+    /// `found` gets the object and its key and returns the new limit.
     pub fn search<N: Real, const D: usize>(
         mut self,
         trees: &[&Tree<D>],
         mut limit: N,
-        measure: impl Fn(&Block<D>) -> (u32, [N; LANES]),
-        key_of: impl Fn(u32) -> Option<N>,
+        keys: &Keys<impl Fn(&Block<D>) -> (u32, [N; LANES]), impl Fn(u32) -> Option<N>>,
         mut found: impl FnMut(u32, N) -> N,
     ) {
         for (tree, index) in trees.iter().zip(0..) {
-            let layer = u8::try_from(tree.layers.len() - 1).expect("at most eight layers");
+            let layer = tree.top_layer();
             if !tree.is_empty() {
                 self.push(N::ZERO, Entry::Block { tree: index, layer, block: 0 });
             }
@@ -79,12 +85,12 @@ impl Frontier {
             match entry {
                 Entry::Object { id } => {
                     // The key comes back exactly: it was computed by the same expression.
-                    let Some(key) = key_of(id) else { continue };
+                    let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }
                 Entry::Block { tree, layer, block } => {
                     let place = (tree, layer, block);
-                    self.open(trees[usize::from(tree)], place, &measure, &key_of);
+                    self.open(trees[usize::from(tree)], place, keys);
                 }
             }
         }
@@ -94,10 +100,10 @@ impl Frontier {
         &mut self,
         tree: &Tree<D>,
         (index, layer, block): (u8, u8, u32),
-        measure: &impl Fn(&Block<D>) -> (u32, [N; LANES]),
-        key_of: &impl Fn(u32) -> Option<N>,
+        keys: &Keys<impl Fn(&Block<D>) -> (u32, [N; LANES]), impl Fn(u32) -> Option<N>>,
     ) {
-        let (mut mask, keys) = measure(&tree.layers[usize::from(layer)].blocks[block as usize]);
+        let (mut mask, lane_keys) =
+            (keys.block)(&tree.layers[usize::from(layer)].blocks[block as usize]);
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
@@ -105,12 +111,12 @@ impl Frontier {
             if layer > 0 {
                 if tree.is_block(layer - 1, child) {
                     let entry = Entry::Block { tree: index, layer: layer - 1, block: child };
-                    self.push(keys[lane as usize], entry);
+                    self.push(lane_keys[lane as usize], entry);
                 }
-            } else if let Some(id) = tree.ids.get(child as usize).filter(|&&id| id != NONE) {
-                if let Some(key) = key_of(*id) {
-                    self.push(key, Entry::Object { id: *id });
-                }
+            } else if let Some(id) = tree.id_in(child)
+                && let Some(key) = (keys.object)(id)
+            {
+                self.push(key, Entry::Object { id });
             }
         }
     }
@@ -176,14 +182,14 @@ fn distance_of_block<N: Real, const D: usize>(
     point: &Point<N, D>,
 ) -> (u32, [N; LANES]) {
     let (mut mask, mut distances) = (0, [N::ZERO; LANES]);
-    for lane in 0..LANES {
+    for (lane, distance) in distances.iter_mut().enumerate() {
         let mut squared = N::ZERO;
         for axis in 0..D {
             let below = max(N::lit(f64::from(block.lo[axis][lane])) - point[axis], N::ZERO);
             let above = max(point[axis] - N::lit(f64::from(block.hi[axis][lane])), N::ZERO);
             squared += (below + above) * (below + above);
         }
-        distances[lane] = squared.sqrt();
+        *distance = squared.sqrt();
         mask |= u32::from(block.lo[0][lane] <= block.hi[0][lane]) << lane;
     }
     (mask, distances)

@@ -10,6 +10,8 @@ use super::{LANES, NONE, Tree};
 
 /// Growth of the leaf surface per object that starts a renewal.
 const WORN: f64 = 1.2;
+/// One call in so many looks whether the order is worn.
+const LOOK_EVERY: u32 = 4;
 /// A part of the snapshot this small is sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
 /// The least number of items that a step handles, so that small trees renew in few steps.
@@ -29,11 +31,13 @@ pub(super) struct Schedule<const D: usize> {
     /// The centres being sorted, and the parts of them still to be.
     snapshot: Vec<Item<D>>,
     parts: Vec<(usize, usize)>,
+    /// Calls without a renewal; wraps.
+    calls: u32,
 }
 
 impl<const D: usize> Default for Schedule<D> {
     fn default() -> Self {
-        Self { base: None, ordered: 0, fresh: 0, snapshot: Vec::new(), parts: Vec::new() }
+        Self { base: None, ordered: 0, fresh: 0, snapshot: Vec::new(), parts: Vec::new(), calls: 0 }
     }
 }
 
@@ -79,20 +83,22 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// A renewal is under way or due, so that a step without changes still has work.
-    #[must_use]
-    pub fn needs_maintenance(&self) -> bool {
-        !self.schedule.snapshot.is_empty() || self.schedule.base.is_none() || self.is_spoilt()
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
+    /// Looks at the surface in some calls only: the sum over all blocks is what an otherwise idle
+    /// step would spend its time on.
     fn start_if_worn(&mut self) {
-        let surface = self.leaf_surface() / self.live as f64;
-        let base = *self.schedule.base.get_or_insert(surface);
-        if surface > WORN * base || self.is_spoilt() {
+        self.schedule.calls = self.schedule.calls.wrapping_add(1);
+        let looks = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        if self.is_spoilt() || (looks && self.is_worn()) {
             self.schedule.snapshot = self.items_from(0);
             self.schedule.parts = vec![(0, self.live)];
         }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
+    fn is_worn(&mut self) -> bool {
+        let surface = self.leaf_surface() / self.live as f64;
+        let base = *self.schedule.base.get_or_insert(surface);
+        surface > WORN * base
     }
 
     /// Too many objects came or went since the last renewal.

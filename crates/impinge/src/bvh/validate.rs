@@ -53,7 +53,7 @@ impl<const D: usize> Tree<D> {
                 return Err(format!("free slot {slot} is not empty"));
             }
             let is_upright = stored.lo.iter().zip(&stored.hi).all(|(lo, hi)| lo <= hi);
-            if !is_free && !(stored.is_finite() && is_upright) {
+            if !(is_free || stored.is_finite() && is_upright) {
                 return Err(format!("the box in slot {slot} is no bounded box: {stored:?}"));
             }
             let is_changed = self.layers[0].changed[block] >> lane & 1 == 1;

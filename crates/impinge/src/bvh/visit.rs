@@ -21,8 +21,7 @@ impl<const D: usize> Tree<D> {
             return;
         }
         let (mut stack, mut depth) = ([(0_u8, 0_u32); STACK], 1);
-        let top = self.layers.len() - 1;
-        stack[0] = (u8::try_from(top).expect("2^32 objects make eight layers"), 0);
+        stack[0] = (self.top_layer(), 0);
         while depth > 0 {
             depth -= 1;
             let (layer, block) = stack[depth];
@@ -33,11 +32,23 @@ impl<const D: usize> Tree<D> {
                 if layer > 0 {
                     stack[depth] = (layer - 1, child);
                     depth += usize::from(self.is_block(layer - 1, child));
-                } else if self.ids[child as usize] != NONE {
-                    leaf(self.ids[child as usize]);
+                } else if let Some(id) = self.id_in(child) {
+                    leaf(id);
                 }
             }
         }
+    }
+
+    /// The highest layer, that of one block.
+    pub(super) fn top_layer(&self) -> u8 {
+        u8::try_from(self.layers.len() - 1).expect("2^32 objects make eight layers")
+    }
+
+    /// The object in the slot, if there is one.
+    #[inline]
+    pub(super) fn id_in(&self, slot: u32) -> Option<u32> {
+        let id = self.ids[slot as usize];
+        (id != NONE).then_some(id)
     }
 
     /// The layer has such a block: upper lanes beyond the last one have not.

@@ -33,4 +33,11 @@ impl<N: Real, const D: usize> Candidate<N, D> {
         }
         better
     }
+
+    /// Takes over `other` if it proves as much but for `slack`.
+    pub(super) fn prefer(&mut self, other: Self, slack: N) {
+        if other.height >= self.height - slack {
+            *self = other;
+        }
+    }
 }

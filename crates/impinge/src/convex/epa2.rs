@@ -9,9 +9,9 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::Candidate;
+use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
-use super::refine::{Bundle, refine};
 use super::simplex::Simplex;
 use super::witness::locate;
 use crate::math::{Real, Vector, cross2, perp, unit};
@@ -100,14 +100,12 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Se
 /// Where the polygon lies nearest to the origin, once it has grown to the difference there.
 fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separation<N, 2> {
     let mut best = Candidate::along(difference, -ring[0].outward);
-    let (mut place, mut closed) = (0, false);
+    let mut closed = false;
     for _ in 0..ROUNDS {
         let index = nearest_side(ring);
         let side = ring[index];
         let candidate = Candidate::along(difference, -side.outward);
-        if best.improve(&candidate) {
-            place = index;
-        }
+        best.improve(&candidate);
         closed = -best.height - side.offset <= tolerance();
         if closed {
             break;
@@ -121,16 +119,9 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
         let next = ring[(index + 1) % ring.len()].start;
         ring[index] = Side::new(side.start, &candidate.vertex);
         ring.insert(index + 1, Side::new(candidate.vertex, &next));
-        if place > index {
-            place += 1;
-        }
     }
     if !closed {
-        let around = [place + ring.len() - 1, place, place + 1, place + 2];
-        let mut bundle: Bundle<N, 2> =
-            around.iter().map(|index| ring[index % ring.len()].start).collect();
-        bundle.push(best.vertex);
-        refine(difference, &mut bundle, &mut best, N::lit(0.9));
+        climb(difference, &mut best);
     }
     let mut vertices: SmallVec<[Vertex<N, 2>; 16]> = ring.iter().map(|side| side.start).collect();
     vertices.push(best.vertex);

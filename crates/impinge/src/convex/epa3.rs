@@ -10,10 +10,10 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::Candidate;
+use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
-use super::refine::{Bundle, refine};
 use super::simplex::Simplex;
 use super::witness::locate;
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
@@ -91,14 +91,12 @@ fn flat<N: Real>(
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = Candidate::along(difference, -hull.face(first).outward);
-    let (mut corners, mut closed) = (hull.face(first).corners, false);
+    let mut closed = false;
     for _ in 0..ROUNDS {
         let Some(index) = hull.nearest() else { break };
         let face = *hull.face(index);
         let candidate = Candidate::along(difference, -face.outward);
-        if best.improve(&candidate) {
-            corners = face.corners;
-        }
+        best.improve(&candidate);
         closed = -best.height - face.offset <= tolerance();
         if closed {
             break;
@@ -111,13 +109,25 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
         }
     }
     if !closed {
-        let mut bundle: Bundle<N, 3> = corners.iter().map(|&corner| *hull.vertex(corner)).collect();
-        bundle.push(best.vertex);
-        refine(difference, &mut bundle, &mut best, N::lit(0.9));
-        hull.keep(&bundle);
+        polish(difference, hull, &mut best);
     }
     hull.keep(&[best.vertex]);
     locate(&best, hull.vertices())
+}
+
+/// Goes on from the best normal and from that of the nearest face, at the cap.
+fn polish<N: Real>(
+    difference: &dyn Difference<N, 3>,
+    hull: &mut Hull<N>,
+    best: &mut Candidate<N, 3>,
+) {
+    let nearest = hull.nearest().map(|index| -hull.face(index).outward);
+    climb(difference, best);
+    if let Some(normal) = nearest {
+        let mut other = Candidate::along(difference, normal);
+        climb(difference, &mut other);
+        best.improve(&other);
+    }
 }
 
 /// What is left to say when no face of the hull has a normal.

@@ -58,6 +58,16 @@ where
     }
 }
 
+/// The normal of the nearest point of a difference that lies well away from the origin.
+pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
+    difference: &impl Difference<N, D>,
+    start: &Vector<N, D>,
+) -> Vector<N, D> {
+    let mut search = Search::new(Candidate::along(difference, *start));
+    search.run(difference, N::INFINITY);
+    search.best.normal
+}
+
 impl<N: Simplicial<D>, const D: usize> Search<N, D> {
     fn new(first: Candidate<N, D>) -> Self {
         Self {
@@ -84,12 +94,13 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
                 return Outcome::Beyond;
             }
             let closed = self.upper - self.best.height <= noise::<N>();
-            if closed || self.simplex.contains(&candidate.vertex) {
-                return Outcome::Apart;
-            }
-            match self.advanced(&nearest) {
+            let known = closed || self.simplex.contains(&candidate.vertex);
+            match if known { None } else { self.advanced(&nearest) } {
                 Some(next) => nearest = next,
-                None => return Outcome::Apart,
+                None => {
+                    self.best.prefer(candidate, N::EPSILON);
+                    return Outcome::Apart;
+                }
             }
         }
         Outcome::Apart
@@ -123,7 +134,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
         bundle.extend([self.best.vertex, self.spare]);
-        refine(difference, &mut bundle, &mut self.best, -N::ONE);
+        refine(difference, &mut bundle, &mut self.best);
         let apart = locate(&self.best, &bundle);
         if !self.open() {
             return apart;

@@ -1,6 +1,6 @@
 //! A polytope of triangles that grows, for `epa3`.
 //!
-//! There are no links between faces: to add a point, all faces that it sees are taken away, and the
+//! There are no links between faces: to add a point, the faces around that it sees are taken away, and the
 //! sides that only one of them had are joined to the point. So the orientation of new faces follows
 //! from that of old ones, never from a sign that rounding could turn, and the surface stays closed
 //! whatever the arithmetic thinks is visible.
@@ -18,7 +18,12 @@ pub(super) struct Face<N: Real> {
     pub(super) outward: Vector<N, 3>,
     /// How far the face lies beyond the origin; infinite if it is too thin to have a normal.
     pub(super) offset: N,
+    /// Not taken away by the growth that is under way.
+    present: bool,
 }
+
+/// The sides of a hole in the surface, each running as in the face that is gone.
+type Outline = SmallVec<[[u16; 2]; 24]>;
 
 pub(super) struct Hull<N: Real> {
     vertices: SmallVec<[Vertex<N, 3>; 32]>,
@@ -83,20 +88,49 @@ impl<N: Real> Hull<N> {
     pub(super) fn extend(&mut self, from: usize, vertex: Vertex<N, 3>) {
         let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
         self.vertices.push(vertex);
-        let mut outline: SmallVec<[[u16; 2]; 24]> = SmallVec::new();
-        // Backwards: the face that fills a gap has been looked at, and `from` keeps its place.
-        for index in (0..self.faces.len()).rev() {
-            let face = &self.faces[index];
-            let beyond = face.outward.dot(&vertex.point) - face.offset;
-            if index == from || beyond > noise() {
-                let [a, b, c] = self.faces.swap_remove(index).corners;
-                for side in [[a, b], [b, c], [c, a]] {
-                    toggle(&mut outline, side);
-                }
-            }
+        let mut visible = self.visible(from, &vertex);
+        let mut outline = Outline::new();
+        self.uncover(from, &mut outline);
+        // Only what is connected to `from` goes: a face elsewhere that rounding makes visible would
+        // tear a second hole.
+        while let Some(next) = visible.iter().position(|&face| self.adjoins(face, &outline)) {
+            self.uncover(visible.swap_remove(next), &mut outline);
         }
+        self.faces.retain(|face| face.present);
         for [a, b] in outline {
             self.add_face([a, b, apex]);
+        }
+    }
+
+    /// The faces other than `from` that a point lies beyond; those too thin to tell count.
+    fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> SmallVec<[usize; 16]> {
+        let mut visible = SmallVec::new();
+        for (index, face) in self.faces.iter().enumerate() {
+            let beyond = face.outward.dot(&vertex.point) - face.offset > noise();
+            if index != from && (beyond || face.offset == N::INFINITY) {
+                visible.push(index);
+            }
+        }
+        visible
+    }
+
+    /// Whether a face shares a side with the hole.
+    fn adjoins(&self, face: usize, outline: &Outline) -> bool {
+        let [a, b, c] = self.faces[face].corners;
+        outline.iter().any(|side| [[b, a], [c, b], [a, c]].contains(side))
+    }
+
+    /// Takes a face away: its sides become the hole's, or cancel against them.
+    fn uncover(&mut self, face: usize, outline: &mut Outline) {
+        self.faces[face].present = false;
+        let [a, b, c] = self.faces[face].corners;
+        for [start, end] in [[a, b], [b, c], [c, a]] {
+            match outline.iter().position(|&side| side == [end, start]) {
+                Some(index) => {
+                    outline.swap_remove(index);
+                }
+                None => outline.push([start, end]),
+            }
         }
     }
 
@@ -107,19 +141,16 @@ impl<N: Real> Hull<N> {
         let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
         let sound = normal.norm_squared() > noise::<N>() * noise() * longest;
         let face = match unit(&normal) {
-            Some((outward, _)) if sound => Face { corners, outward, offset: outward.dot(&a) },
-            _ => Face { corners, outward: Vector::<N, 3>::zeros(), offset: N::INFINITY },
+            Some((outward, _)) if sound => {
+                Face { corners, outward, offset: outward.dot(&a), present: true }
+            }
+            _ => Face {
+                corners,
+                outward: Vector::<N, 3>::zeros(),
+                offset: N::INFINITY,
+                present: true,
+            },
         };
         self.faces.push(face);
-    }
-}
-
-/// Adds a side of a removed face to the outline, or cancels it against the face on its other side.
-fn toggle(outline: &mut SmallVec<[[u16; 2]; 24]>, [a, b]: [u16; 2]) {
-    match outline.iter().position(|&side| side == [b, a]) {
-        Some(index) => {
-            outline.swap_remove(index);
-        }
-        None => outline.push([a, b]),
     }
 }

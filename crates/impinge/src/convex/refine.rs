@@ -8,29 +8,29 @@ use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
 /// Support points near the place of interest.
-pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 10]>;
+pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
 /// Cap on the number of support points asked for.
 const ROUNDS: usize = 40;
 /// As many points are kept; the one that matters least makes room.
 const KEPT: usize = 8;
 
-/// Raises the height of `best` as far as a local search can.
+/// Raises the height of `best` as far as it goes, for a difference without the origin.
 ///
 /// The height of a normal over a few support points is at least its height over the whole set. So:
 /// take the normal that is best over the bundle, among those of its points, edges and facets; ask
 /// for its support point; add that to the bundle; until the set agrees with the bundle. This is the
 /// cutting-plane method of J. Kelley (1960) on the sphere of normals. Over a set without the origin
-/// it is global. Around a normal of an overlap, `cone` keeps it local: the least cosine between a
-/// normal tried and the best one.
+/// it is global; a set that holds the origin needs other means. All points found are added to
+/// `seen`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    bundle: &mut Bundle<N, D>,
+    seen: &mut Bundle<N, D>,
     best: &mut Candidate<N, D>,
-    cone: N,
 ) {
+    let mut bundle = seen.clone();
     for _ in 0..ROUNDS {
-        let (normal, promise) = most_promising(bundle, &best.normal, cone);
+        let (normal, promise) = most_promising(&bundle, &best.normal);
         let worth_it = promise > best.height + noise::<N>() * N::HALF;
         if !worth_it {
             return;
@@ -40,8 +40,9 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
         if bundle.iter().any(|vertex| vertex.point == candidate.vertex.point) {
             return;
         }
+        seen.push(candidate.vertex);
         bundle.push(candidate.vertex);
-        drop_idle(bundle, &best.normal);
+        drop_idle(&mut bundle, &best.normal);
     }
 }
 
@@ -49,15 +50,11 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
 fn most_promising<N: Simplicial<D>, const D: usize>(
     bundle: &Bundle<N, D>,
     around: &Vector<N, D>,
-    cone: N,
 ) -> (Vector<N, D>, N) {
     let points: SmallVec<[Vector<N, D>; 10]> = bundle.iter().map(|vertex| vertex.point).collect();
     let (mut best, mut promise) = (*around, -N::MAX);
     let mut consider = |direction: &Vector<N, D>| {
         let Some((normal, _)) = unit(direction) else { return };
-        if normal.dot(around) < cone {
-            return;
-        }
         let height = points.iter().fold(N::MAX, |low, point| min(normal.dot(point), low));
         if height > promise {
             (best, promise) = (normal, height);

@@ -133,8 +133,8 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
     /// Drops the points without weight.
     pub(super) fn keep(&mut self, weights: &[N; 4]) {
         let mut kept = 0;
-        for index in 0..self.len {
-            if weights[index] > N::ZERO {
+        for (index, &weight) in weights.iter().enumerate().take(self.len) {
+            if weight > N::ZERO {
                 self.vertices[kept] = self.vertices[index];
                 self.points[kept] = self.points[index];
                 kept += 1;

@@ -4,7 +4,7 @@ use super::Separation;
 use super::candidate::Candidate;
 use super::difference::{Vertex, noise};
 use super::simplex::{Simplex, Simplicial};
-use crate::math::{Point, Vector};
+use crate::math::{Point, Real, Vector};
 
 /// Cap on the number of corners tried.
 const ROUNDS: usize = 32;
@@ -37,6 +37,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
 ) -> (Vector<N, D>, Vector<N, D>) {
     let mut simplex = Simplex::new(moved(nearest_to(target, vertices), target));
     let mut nearest = N::nearest(simplex.points());
+    let mut best = Mix::of(&simplex, &nearest.weights);
     for _ in 0..ROUNDS {
         let away = nearest.squared > noise::<N>() * noise();
         if nearest.enclosed || !away {
@@ -44,25 +45,61 @@ fn mix<N: Simplicial<D>, const D: usize>(
         }
         let Some(next) = lowest_along(&nearest.point, vertices) else { break };
         let next = moved(next, target);
-        let lower = nearest.point.dot(&next.point) < nearest.squared;
-        let mut grown = simplex;
-        grown.keep(&nearest.weights);
-        if !lower || grown.contains(&next) {
+        simplex.keep(&nearest.weights);
+        if simplex.contains(&next) {
             break;
         }
-        grown.push(next);
-        let found = N::nearest(grown.points());
-        if found.squared >= nearest.squared {
+        simplex.push(next);
+        nearest = N::nearest(simplex.points());
+        // Judged by what the weights make, not by what they should: slivers give poor weights.
+        let mut found = Mix::of(&simplex, &nearest.weights);
+        if nearest.enclosed && found.miss > noise::<N>() * noise() {
+            found = Mix::of_facets(&simplex, found);
+        }
+        if found.miss >= best.miss {
             break;
         }
-        (simplex, nearest) = (grown, found);
+        best = found;
     }
-    let mut mixed = (Vector::<N, D>::zeros(), Vector::<N, D>::zeros());
-    for (vertex, &weight) in simplex.vertices().iter().zip(&nearest.weights) {
-        mixed.0 += vertex.on1 * weight;
-        mixed.1 += vertex.on2 * weight;
+    (best.on1, best.on2)
+}
+
+/// Points of the cores, mixed by weights.
+struct Mix<N: Real, const D: usize> {
+    on1: Vector<N, D>,
+    on2: Vector<N, D>,
+    /// The square of the distance of their difference from the target.
+    miss: N,
+}
+
+impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
+    /// The vertices of the simplex are seen from the target.
+    fn of(simplex: &Simplex<N, D>, weights: &[N; 4]) -> Self {
+        let zero = Vector::<N, D>::zeros();
+        let (mut on1, mut on2, mut missed) = (zero, zero, zero);
+        for (vertex, &weight) in simplex.vertices().iter().zip(weights) {
+            on1 += vertex.on1 * weight;
+            on2 += vertex.on2 * weight;
+            missed += vertex.point * weight;
+        }
+        Self { on1, on2, miss: missed.norm_squared() }
     }
-    mixed
+
+    /// The best over the facets of a simplex that holds the target, or `best`: one so flat that its
+    /// volume is mostly rounding errors has poor weights, but its facets come as near.
+    fn of_facets(simplex: &Simplex<N, D>, mut best: Self) -> Self {
+        for dropped in 0..=D {
+            let mut kept = [N::ONE; 4];
+            kept[dropped] = N::ZERO;
+            let mut facet = *simplex;
+            facet.keep(&kept);
+            let found = Self::of(&facet, &N::nearest(facet.points()).weights);
+            if found.miss < best.miss {
+                best = found;
+            }
+        }
+        best
+    }
 }
 
 /// The vertex as seen from `target`.

@@ -1,7 +1,11 @@
-//! Runs of links, one per object, in a shared pool of cache lines.
+//! The links of each object: a cache line of its own, and a run of further lines if it has many.
 
 /// Links in one line.
 const PER_LINE: usize = 8;
+/// Links in the line that every object has, beside what describes the rest.
+const INLINE: usize = PER_LINE - 1;
+/// The class of a run that is not there.
+const NO_RUN: u32 = 31;
 
 /// One end of a pair, as the object at the other end sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,41 +16,64 @@ pub(super) struct Link {
     pub(super) pair: u32,
 }
 
-/// Eight links in a cache line of their own.
+/// The first links of an object, and where the others are.
+///
+/// Most objects have few partners: for them everything is in this one line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Head {
+    links: [Link; INLINE],
+    /// The first line of the run, `2^class` lines long.
+    start: u32,
+    /// The class of the run in the lowest five bits, [`NO_RUN`] while there is none; above them the
+    /// number of links.
+    count_and_class: u32,
+}
+
+impl Head {
+    const EMPTY: Self =
+        Self { links: [Link { partner: 0, pair: 0 }; INLINE], start: 0, count_and_class: NO_RUN };
+
+    const fn count(&self) -> u32 {
+        self.count_and_class >> 5
+    }
+
+    const fn class(&self) -> u32 {
+        self.count_and_class & 31
+    }
+
+    fn set_count(&mut self, count: u32) {
+        assert!(count < 1 << 27, "an object has fewer than 2^27 partners");
+        self.count_and_class = count << 5 | self.class();
+    }
+
+    fn set_run(&mut self, start: u32, class: u32) {
+        self.start = start;
+        self.count_and_class = self.count_and_class & !31 | class;
+    }
+
+    /// How many links fit.
+    const fn capacity(&self) -> usize {
+        if self.class() == NO_RUN { INLINE } else { INLINE + (PER_LINE << self.class()) }
+    }
+}
+
+/// Eight links in a cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 struct Line {
     links: [Link; PER_LINE],
 }
 
-/// Where the links of one object stand: `2^class` lines from `start`, `len` links in use.
-///
-/// `class` is [`Run::NONE`] while the object has no lines yet.
-#[derive(Clone, Copy, Debug)]
-struct Run {
-    start: u32,
-    len: u32,
-    class: u8,
-}
-
-impl Run {
-    const NONE: u8 = u8::MAX;
-    const EMPTY: Self = Self { start: 0, len: 0, class: Self::NONE };
-
-    /// How many links fit.
-    fn capacity(self) -> usize {
-        if self.class == Self::NONE { 0 } else { PER_LINE << self.class }
-    }
-}
-
-/// The runs of all objects.
+/// The links of all objects.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
+    /// By object.
+    heads: Vec<Head>,
+    /// The runs.
     pool: Vec<Line>,
     /// Starts of abandoned runs, by class.
     free: Vec<Vec<u32>>,
-    /// By object.
-    runs: Vec<Run>,
 }
 
 /// A position or count as the `u32` it is stored as.
@@ -58,73 +85,90 @@ impl Lines {
     /// Makes room for the object.
     pub(super) fn reach(&mut self, object: u32) {
         let needed = object as usize + 1;
-        if self.runs.len() < needed {
-            self.runs.resize(needed, Run::EMPTY);
+        if self.heads.len() < needed {
+            self.heads.resize(needed, Head::EMPTY);
         }
     }
 
     /// One more than the largest object number seen.
     pub(super) fn objects(&self) -> usize {
-        self.runs.len()
+        self.heads.len()
     }
 
     /// How many links the object has; 0 for one never seen.
     #[inline]
     pub(super) fn count(&self, object: u32) -> usize {
-        self.runs.get(object as usize).map_or(0, |run| run.len as usize)
+        self.heads.get(object as usize).map_or(0, |head| head.count() as usize)
     }
 
-    /// The links of the object, in their order in memory.
+    /// The links of the object, by place.
     pub(super) fn links(&self, object: u32) -> impl Iterator<Item = Link> + '_ {
-        let run = self.runs.get(object as usize).copied().unwrap_or(Run::EMPTY);
-        let lines = (run.len as usize).div_ceil(PER_LINE);
-        let start = run.start as usize;
-        let all = self.pool[start..start + lines].iter().flat_map(|line| line.links);
-        all.take(run.len as usize)
+        let head = self.heads.get(object as usize).unwrap_or(&Head::EMPTY);
+        let count = head.count() as usize;
+        let start = head.start as usize;
+        let lines = start..start + count.saturating_sub(INLINE).div_ceil(PER_LINE);
+        let rest = self.pool[lines].iter().flat_map(|line| &line.links);
+        head.links.iter().chain(rest).take(count).copied()
     }
 
     /// The link at `place` among the links of the object.
     #[inline]
     pub(super) fn link(&self, object: u32, place: u32) -> Link {
-        let start = self.runs[object as usize].start as usize;
-        self.pool[start + place as usize / PER_LINE].links[place as usize % PER_LINE]
+        let head = &self.heads[object as usize];
+        if let Some(link) = head.links.get(place as usize) {
+            return *link;
+        }
+        let beyond = place as usize - INLINE;
+        self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
     /// The link at `place` among the links of the object, to write.
     #[inline]
     pub(super) fn link_mut(&mut self, object: u32, place: u32) -> &mut Link {
-        let start = self.runs[object as usize].start as usize;
-        &mut self.pool[start + place as usize / PER_LINE].links[place as usize % PER_LINE]
+        let head = &mut self.heads[object as usize];
+        let place = place as usize;
+        if place < INLINE {
+            return &mut head.links[place];
+        }
+        let beyond = place - INLINE;
+        &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
     /// Adds a link and says at which place.
     #[inline]
     pub(super) fn push(&mut self, object: u32, link: Link) -> u32 {
-        let run = self.runs[object as usize];
-        if run.len as usize == run.capacity() {
+        let head = &mut self.heads[object as usize];
+        let count = head.count();
+        if count as usize == head.capacity() {
             self.enlarge(object);
         }
-        self.runs[object as usize].len = run.len + 1;
-        *self.link_mut(object, run.len) = link;
-        run.len
+        self.heads[object as usize].set_count(count + 1);
+        *self.link_mut(object, count) = link;
+        count
     }
 
-    /// Moves the run of the object to one of twice the size.
+    /// Gives the object a run, or moves its run to one of twice the size.
     fn enlarge(&mut self, object: u32) {
-        let old = self.runs[object as usize];
-        let class = if old.class == Run::NONE { 0 } else { old.class + 1 };
-        let start = self.take_run(class);
-        if old.class != Run::NONE {
-            let from = old.start as usize;
-            self.pool.copy_within(from..from + (1 << old.class), start as usize);
-            self.free[usize::from(old.class)].push(old.start);
+        let (old_start, old_class) = self.run(object);
+        if old_class == NO_RUN {
+            let start = self.take_run(0);
+            return self.heads[object as usize].set_run(start, 0);
         }
-        self.runs[object as usize] = Run { start, len: old.len, class };
+        let start = self.take_run(old_class + 1);
+        let from = old_start as usize;
+        self.pool.copy_within(from..from + (1 << old_class), start as usize);
+        self.free[old_class as usize].push(old_start);
+        self.heads[object as usize].set_run(start, old_class + 1);
+    }
+
+    fn run(&self, object: u32) -> (u32, u32) {
+        let head = &self.heads[object as usize];
+        (head.start, head.class())
     }
 
     /// A run of `2^class` lines: an abandoned one or new lines at the end of the pool.
-    fn take_run(&mut self, class: u8) -> u32 {
-        let class = usize::from(class);
+    fn take_run(&mut self, class: u32) -> u32 {
+        let class = class as usize;
         if self.free.len() <= class {
             self.free.resize(class + 1, Vec::new());
         }
@@ -137,36 +181,37 @@ impl Lines {
 
     /// Takes the link at `place` out; the object's last link moves there and is returned, unless
     /// it was the one taken.
+    #[inline]
     pub(super) fn swap_remove(&mut self, object: u32, place: u32) -> Option<Link> {
-        let last = self.runs[object as usize].len - 1;
+        let last = self.heads[object as usize].count() - 1;
         let moved = self.link(object, last);
         *self.link_mut(object, place) = moved;
-        self.runs[object as usize].len = last;
-        if last == 0 {
+        self.heads[object as usize].set_count(last);
+        if last as usize == INLINE {
             self.release(object);
         }
         (place != last).then_some(moved)
     }
 
-    /// Gives the run of an object without links back to the pool.
+    /// Gives the run of an object back to the pool.
     fn release(&mut self, object: u32) {
-        let run = self.runs[object as usize];
-        self.free[usize::from(run.class)].push(run.start);
-        self.runs[object as usize] = Run::EMPTY;
+        let (start, class) = self.run(object);
+        self.free[class as usize].push(start);
+        self.heads[object as usize].set_run(0, NO_RUN);
     }
 
     /// Forgets every link and keeps the memory.
     pub(super) fn clear(&mut self) {
+        self.heads.clear();
         self.pool.clear();
         self.free.clear();
-        self.runs.clear();
     }
 
-    /// Checks that no two runs share a line and none leaves the pool.
+    /// Checks that no two runs share a line, none leaves the pool, and none is overfull.
     pub(super) fn validate(&self) -> Result<(), String> {
         let mut used = vec![false; self.pool.len()];
-        let live = self.runs.iter().filter(|run| run.class != Run::NONE);
-        let live = live.map(|run| (run.start, usize::from(run.class)));
+        let live = self.heads.iter().filter(|head| head.class() != NO_RUN);
+        let live = live.map(|head| (head.start, head.class() as usize));
         let free = self.free.iter().enumerate();
         let free = free.flat_map(|(class, starts)| starts.iter().map(move |&start| (start, class)));
         for (start, class) in live.chain(free) {
@@ -177,7 +222,7 @@ impl Lines {
                 }
             }
         }
-        let fits = |run: &Run| run.len as usize <= run.capacity();
-        self.runs.iter().all(fits).then_some(()).ok_or("a run is overfull".to_owned())
+        let fits = |head: &Head| head.count() as usize <= head.capacity();
+        self.heads.iter().all(fits).then_some(()).ok_or("a run is overfull".to_owned())
     }
 }

@@ -5,8 +5,9 @@
 //! * the pairs themselves are one dense array of `(smaller, larger)`; a removal moves the last pair
 //!   into the gap. A caller that keeps payload arrays in step with it does the same with
 //!   `swap_remove` at the index that [`Removed`] names;
-//! * each object has one run of 64-byte lines of eight links `(partner, pair index)`, in a pool that
-//!   all objects share. A run that is full moves to one of twice the size;
+//! * each object has one line of 64 bytes with its first seven links `(partner, pair index)`; what
+//!   is beyond that stands in a run of such lines, in a pool that all objects share. A run that is
+//!   full moves to one of twice the size;
 //! * each pair remembers where its two links stand, so that an end with ten thousand partners is
 //!   never searched: only the end with fewer partners is.
 //!

@@ -84,6 +84,14 @@ impl PairTable {
         self.lines.links(a).map(|link| (link.partner, link.pair as usize))
     }
 
+    /// Where one of the pairs of `a` stands in [`Self::pairs`], in constant time: taking that pair
+    /// out until there is none takes an object out.
+    #[must_use]
+    pub fn any_pair_of(&self, a: u32) -> Option<usize> {
+        let last = self.lines.count(a).checked_sub(1)?;
+        Some(self.lines.link(a, small(last)).pair as usize)
+    }
+
     /// Where the pair stands in [`Self::pairs`], in either order of its ends.
     #[must_use]
     pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
@@ -266,6 +274,13 @@ mod tests {
         }
         table.validate().expect("sound");
         assert_eq!((table.len(), table.count(0)), (100_000, 100_000), "half are left");
+        let mut taken = 0;
+        while let Some(index) = table.any_pair_of(0) {
+            table.remove_at(index);
+            taken += 1;
+        }
+        assert_eq!((taken, table.len()), (100_000, 0), "an object taken out");
+        table.insert(3, 4);
         table.clear();
         table.validate().expect("sound");
         assert!(table.is_empty(), "cleared");

@@ -7,7 +7,7 @@ mod tests;
 use self::side::Side;
 use super::{Contact, Pair, RawPoint};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, unit};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, min, unit};
 use crate::shape::FeatureId;
 
 /// What the core of a solid looks like near a contact, in its local frame.
@@ -22,14 +22,17 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
 }
 
 /// Where the normal of a moved contact comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum NormalRule {
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum NormalRule<N: Real, const D: usize> {
     /// It turns with the first solid, a face of which defines it.
     First,
     /// It turns with the second solid.
     Second,
     /// The points and lines themselves: it is perpendicular to the lines.
     Geometry,
+    /// It is perpendicular to an edge of either solid, each given in its own frame: those whose
+    /// crossing gives the manifold its normal.
+    Edges(Vector<N, D>, Vector<N, D>),
 }
 
 /// What it takes to predict a contact for new poses of its two solids.
@@ -51,7 +54,7 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     pub(crate) normal1: Vector<N, D>,
     /// The same normal in the frame of the second.
     pub(crate) normal2: Vector<N, D>,
-    rule: NormalRule,
+    rule: NormalRule<N, D>,
 }
 
 /// Two points of the cores, in the frame of the first solid.
@@ -82,8 +85,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             rule: NormalRule::Geometry,
         };
         if !kinematic.reproduces(&pair.pose12) {
-            let second = side2.alignment > side1.alignment;
-            kinematic.rule = if second { NormalRule::Second } else { NormalRule::First };
+            kinematic.rule = NormalRule::of(&side1, &side2, pair);
         }
         kinematic
     }
@@ -107,8 +109,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// features: ask again when the motion is not small. A corner stays on the plane or line of the
     /// other solid, two crossing lines give their nearest points, two points or a point and a line
     /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. Poses that are not finite
-    /// give a contact that is not.
+    /// points and the normal at the last update move with their solids. Of a contact on a
+    /// round rim the distance and normal are that good, the place on the rim is of first order only.
+    /// Poses that are not finite give a contact that is not.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -141,6 +144,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             rule: match self.rule {
                 NormalRule::First => NormalRule::Second,
                 NormalRule::Second => NormalRule::First,
+                NormalRule::Edges(edge1, edge2) => NormalRule::Edges(edge2, edge1),
                 NormalRule::Geometry => NormalRule::Geometry,
             },
         }
@@ -168,7 +172,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             return false;
         }
         let difference = self.predicted(pose12).normal - self.normal1;
-        difference.norm() <= N::lit(4096.0) * N::EPSILON
+        difference.norm() <= least_angle()
     }
 
     fn normal(
@@ -180,12 +184,39 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         match self.rule {
             NormalRule::First => self.normal1,
             NormalRule::Second => pose12.vector(&self.normal2),
+            NormalRule::Edges(edge1, edge2) => {
+                let edge2 = NeighborhoodGeometry::Line(pose12.vector(&edge2));
+                let lines = Lines::along(NeighborhoodGeometry::Line(edge1), edge2);
+                lines.upright(&self.normal1)
+            }
             NormalRule::Geometry => {
                 let lines = Lines::along(self.geometry1, geometry2);
                 let size = self.local1.coords.norm() + point2.coords.norm();
                 lines.connection(&(point2 - self.local1), &self.normal1, size)
             }
         }
+    }
+}
+
+/// Unit vectors that differ by no more than this differ by rounding: a normal comes from a query,
+/// which loses more than one operation does.
+fn least_angle<N: Real>() -> N {
+    N::lit(256.0) * N::EPSILON
+}
+
+impl<N: Real, const D: usize> NormalRule<N, D> {
+    /// The rule where the contact's own geometry does not give the manifold's normal: the face that
+    /// is perpendicular to it, or else the edges that are; or else the face that comes nearest.
+    fn of(side1: &Side<N, D>, side2: &Side<N, D>, pair: &Pair<'_, N, D>) -> Self {
+        let lean = |side: &Side<N, D>| side.lean.unwrap_or(N::TWO);
+        let has_face = min(lean(side1), lean(side2)) <= least_angle();
+        if let (false, Some(edge1), Some(edge2)) = (has_face, side1.level_edge, side2.level_edge) {
+            let across = edge1.dot(&pair.pose12.vector(&edge2));
+            if across * across < N::ONE - N::lit(LEAST_SINE_SQUARED) {
+                return Self::Edges(edge1, edge2);
+            }
+        }
+        if lean(side2) < lean(side1) { Self::Second } else { Self::First }
     }
 }
 
@@ -233,10 +264,15 @@ impl<N: Real, const D: usize> Lines<N, D> {
         once - self.second * self.second.dot(&once)
     }
 
+    /// A unit vector made perpendicular to the lines.
+    fn upright(&self, usual: &Vector<N, D>) -> Vector<N, D> {
+        unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright)
+    }
+
     /// The unit vector of the shortest connection, on the side of `usual`; `usual` itself, made
     /// perpendicular, where the connection vanishes or two lines leave no choice of direction.
     fn connection(&self, gap: &Vector<N, D>, usual: &Vector<N, D>, size: N) -> Vector<N, D> {
-        let upright = unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright);
+        let upright = self.upright(usual);
         if self.are_two {
             return upright;
         }
@@ -292,11 +328,11 @@ fn crossing<N: Real, const D: usize>(
     let (squared1, squared2) = (along1.norm_squared(), along2.norm_squared());
     let mixed = along1.dot(along2);
     let determinant = squared1 * squared2 - mixed * mixed;
-    if !(determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2) {
-        return (N::ZERO, N::ZERO);
+    if determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2 {
+        let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
+        let a = (gap1 * squared2 - gap2 * mixed) / determinant;
+        let b = (gap1 * mixed - gap2 * squared1) / determinant;
+        return (a, b);
     }
-    let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
-    let a = (gap1 * squared2 - gap2 * mixed) / determinant;
-    let b = (gap1 * mixed - gap2 * squared1) / determinant;
-    (a, b)
+    (N::ZERO, N::ZERO)
 }

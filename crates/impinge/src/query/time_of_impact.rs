@@ -52,6 +52,9 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
 ) -> Option<N> {
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
     let (start, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    if !start.pose12.is_finite() {
+        return None;
+    }
     let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
     let velocity = first.placed.pose.inverse_vector(&(second.velocity - first.velocity));
     let tolerance = N::lit(8.0) * N::EPSILON * size(&start);

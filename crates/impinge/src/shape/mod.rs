@@ -7,8 +7,11 @@
 //! with flat faces.
 
 mod ball;
+mod bounds;
 mod capsule;
 mod cone;
+mod convex_hull;
+mod convex_polygon;
 mod cuboid;
 mod cylinder;
 mod error;
@@ -19,6 +22,9 @@ mod geometry;
 mod handle;
 mod plane;
 mod polytope;
+mod polytope_build;
+mod polytope_check;
+mod polytope_feature;
 mod round;
 mod segment;
 mod support_map;
@@ -27,8 +33,11 @@ mod triangle;
 mod triangle_feature;
 
 pub use ball::Ball;
+pub use bounds::{aabb, bounding_sphere};
 pub use capsule::Capsule;
 pub use cone::Cone;
+pub use convex_hull::ConvexHull;
+pub use convex_polygon::ConvexPolygon;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use error::ShapeError;

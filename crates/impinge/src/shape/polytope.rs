@@ -1,6 +1,6 @@
 //! The common core of convex polygons and convex hulls: vertices, faces, edges and who meets whom.
 
-use super::SupportMap;
+use super::{FeatureId, SupportMap};
 use crate::math::{Point, Real, Vector, max};
 
 /// A convex solid with flat faces, in any dimension.
@@ -8,6 +8,9 @@ use crate::math::{Point, Real, Vector, max};
 /// In the plane the faces are the sides: face `i` leads from vertex `i` to vertex `i + 1`,
 /// counter-clockwise, and there are no edges. In space the faces are polygons, counter-clockwise
 /// seen from outside, and each edge lies between two faces.
+///
+/// Features are named by their place in [`Self::vertices`], [`Self::edges`] and [`Self::faces`].
+/// Finding a support point takes time in proportion to the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(super) vertices: Vec<Point<N, D>>,
@@ -18,6 +21,10 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) loop_sides: Vec<u32>,
     /// Empty in the plane.
     pub(super) edges: Vec<PolytopeEdge>,
+    /// The edges (in the plane: the faces) at all vertices, one vertex after the other.
+    pub(super) fans: Vec<u32>,
+    /// Where the fan of each vertex starts, and at last where the last one ends.
+    pub(super) fan_starts: Vec<u32>,
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
 }
@@ -67,26 +74,66 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         let first = face.first as usize;
         &self.loops[first..first + face.len as usize]
     }
-}
 
-impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
-    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
-        let mut best = self.vertices[0];
-        let mut height = best.coords.dot(direction);
-        for vertex in &self.vertices[1..] {
+    /// The sides around a face: edges, in the plane the face itself.
+    pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
+        let first = face.first as usize;
+        &self.loop_sides[first..first + face.len as usize]
+    }
+
+    /// The edges (in the plane: the faces) that end at a vertex.
+    pub(super) fn fan(&self, vertex: usize) -> &[u32] {
+        &self.fans[self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize]
+    }
+
+    /// An edge (in the plane: a face) with its ends and what lies beside it; a side of the plane lies
+    /// beside itself.
+    pub(super) fn side(&self, index: u32) -> PolytopeEdge {
+        match self.edges.get(index as usize) {
+            Some(edge) => *edge,
+            None => {
+                let ends = self.face_vertices(&self.faces[index as usize]);
+                PolytopeEdge { vertices: [ends[0], ends[1]], faces: [index; 2] }
+            }
+        }
+    }
+
+    /// The name of an edge (in the plane: of a face).
+    pub(super) fn side_id(index: u32) -> FeatureId {
+        FeatureId::flat::<D>(1, index)
+    }
+
+    /// The index of a vertex farthest along a direction: the first of equals.
+    pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
+        let (mut best, mut height) = (0, self.vertices[0].coords.dot(direction));
+        for (index, vertex) in self.vertices.iter().enumerate().skip(1) {
             let candidate = vertex.coords.dot(direction);
             if candidate > height {
-                (best, height) = (*vertex, max(candidate, height));
+                (best, height) = (index, candidate);
             }
         }
         best
     }
 
-    fn center(&self) -> Point<N, D> {
-        self.center
+    /// The largest distance of a vertex from the origin.
+    pub(super) fn reach_of(vertices: &[Point<N, D>]) -> N {
+        vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, vertex.coords.norm()))
     }
 
-    fn reach(&self) -> N {
-        self.reach
+    /// For each vertex the edges (in the plane: the faces) that end at it.
+    pub(super) fn collect_fans(&mut self) {
+        let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
+        let sides = (0_u32..).take(count);
+        let mut ends: Vec<(u32, u32)> =
+            sides.flat_map(|side| self.side(side).vertices.map(|vertex| (vertex, side))).collect();
+        ends.sort_unstable();
+        self.fans = ends.iter().map(|&(_, side)| side).collect();
+        let start = |vertex: u32| ends.partition_point(|&(owner, _)| owner < vertex);
+        self.fan_starts = (0_u32..).take(self.vertices.len() + 1).map(start).map(count32).collect();
     }
+}
+
+/// A count of vertices, edges or faces as it is stored.
+pub(super) fn count32(count: usize) -> u32 {
+    u32::try_from(count).expect("a solid has fewer than 2³² parts")
 }

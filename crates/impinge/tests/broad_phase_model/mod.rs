@@ -43,6 +43,9 @@ pub(crate) struct Model<N: Real, const D: usize> {
     rule: u32,
 }
 
+/// Two uids, and whether the pair started.
+type Event = (u32, u32, bool);
+
 /// What was reached by a run, so that a test can assert that it tests something.
 #[derive(Debug, Default)]
 pub(crate) struct Reached {
@@ -56,7 +59,7 @@ pub(crate) struct Reached {
 }
 
 fn allows(rule: u32, a: u32, b: u32) -> bool {
-    (a * 7 + b * 13 + rule) % 5 != 0
+    !(a * 7 + b * 13 + rule).is_multiple_of(5)
 }
 
 fn outwards<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Bounds<D> {
@@ -81,7 +84,7 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
     }
 
     /// The events that an update must report and the questions that it must ask.
-    fn update(&mut self) -> (Vec<(u32, u32, bool)>, Vec<(u32, u32)>) {
+    fn update(&mut self) -> (Vec<Event>, Vec<(u32, u32)>) {
         self.apply_waiting();
         let (mut events, mut asked, mut decided) = (Vec::new(), Vec::new(), BTreeMap::new());
         let known: Vec<(u32, Bounds<D>)> =

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::super::{Simplicial, separation};
 use crate::math::{Point, Pose, Real, Vector, unit};
 use crate::shape::{Ball, Capsule, Cone, Cuboid, Cylinder, Segment, SupportMap, Triangle};
 
@@ -49,6 +50,22 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundCuboid<N, D> {
     }
 }
 
+/// A solid that is symmetric around y, with another axis in its place.
+struct Along<N: Real> {
+    axis: usize,
+    solid: Solid<N, 3>,
+}
+
+impl<N: Real> SupportMap<N, 3> for Along<N> {
+    fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
+        let mut direction = *direction;
+        direction.swap_rows(1, self.axis);
+        let mut point = self.solid.core_support(&direction);
+        point.coords.swap_rows(1, self.axis);
+        point
+    }
+}
+
 /// Shapes that exist in one dimension only.
 pub(super) trait Own<const D: usize>: Real {
     fn own(shape: &Value) -> Option<Solid<Self, D>>;
@@ -70,7 +87,7 @@ impl<N: Real> Own<2> for N {
         };
         let length = cos.hypot(sin);
         let [cos, sin] = [cos / length, sin / length].map(N::lit);
-        let mut placed = Pose::from_translation(vector(translation(pose)));
+        let mut placed = Pose::<N, 2>::from_translation(vector(translation(pose)));
         placed.rotation.set_column(0, &Vector::<N, 2>::new(cos, sin));
         placed.rotation.set_column(1, &Vector::<N, 2>::new(-sin, cos));
         placed
@@ -81,13 +98,15 @@ impl<N: Real> Own<3> for N {
     fn own(shape: &Value) -> Option<Solid<N, 3>> {
         let height = || scalar::<N>(&shape["half_height"]);
         let radius = || scalar::<N>(first(shape, ["r", "radius"]));
-        let axis_is_y = shape.get("axis").is_none_or(|axis| axis == "y");
-        match shape["type"].as_str()? {
-            "cylinder_y" | "cylinder" if axis_is_y => {
-                Some(Box::new(Cylinder::new(height(), radius())))
-            }
-            "cone_y" | "cone" if axis_is_y => Some(Box::new(Cone::new(height(), radius()))),
-            _ => None,
+        let solid: Solid<N, 3> = match shape["type"].as_str()? {
+            "cylinder_y" | "cylinder" => Box::new(Cylinder::new(height(), radius())),
+            "cone_y" | "cone" => Box::new(Cone::new(height(), radius())),
+            _ => return None,
+        };
+        match shape.get("axis").and_then(Value::as_str) {
+            Some("x") => Some(Box::new(Along { axis: 0, solid })),
+            Some("z") => Some(Box::new(Along { axis: 2, solid })),
+            _ => Some(solid),
         }
     }
 
@@ -100,13 +119,13 @@ impl<N: Real> Own<3> for N {
             .collect();
         let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         let (axis, w) = (Vector::<f64, 3>::new(q[0], q[1], q[2]) / length, q[3] / length);
-        let mut placed = Pose::from_translation(vector(translation(pose)));
+        let mut placed = Pose::<N, 3>::from_translation(vector(translation(pose)));
         for column in 0..3 {
             let mut e = Vector::<f64, 3>::zeros();
             e[column] = 1.0;
             let twice = axis.cross(&e) * 2.0;
-            let turned = e + twice * w + axis.cross(&twice);
-            placed.rotation.set_column(column, &turned.map(N::lit));
+            let turned: Vector<f64, 3> = e + twice * w + axis.cross(&twice);
+            placed.rotation.set_column(column, &turned.map(|x| N::lit(x)));
         }
         placed
     }
@@ -175,4 +194,14 @@ pub(super) fn height<N: Real, const D: usize>(
     let top1 = solids[0].core_support(&n).coords.dot(&n) + solids[0].rounding();
     let lowest2 = pose12.point(&solids[1].core_support(&-pose12.inverse_vector(&n)));
     lowest2.coords.dot(&n) - solids[1].rounding() - top1
+}
+
+/// The signed distance of a point from a solid.
+pub(super) fn outside<const D: usize>(solid: &dyn SupportMap<f64, D>, point: &Point<f64, D>) -> f64
+where
+    f64: Simplicial<D>,
+{
+    let pose = Pose::from_translation(point.coords);
+    let ball = Points { points: vec![Point::origin()], rounding: 0.0 };
+    separation(solid, &ball, &pose, f64::INFINITY).map_or(f64::NAN, |found| found.distance)
 }

@@ -12,9 +12,11 @@ pub(super) struct Side<N: Real, const D: usize> {
     pub(super) core: Point<N, D>,
     pub(super) geometry: NeighborhoodGeometry<N, D>,
     pub(super) rounding: N,
-    /// The cosine between the contact's normal and that of the flat face that faces the other solid:
-    /// the solid with the larger one defines the normal. Zero for curved faces, −1 for none.
-    pub(super) alignment: N,
+    /// How much the flat face that faces the other solid leans: the length of the difference of its
+    /// normal and the contact's. `None` without such a face.
+    pub(super) lean: Option<N>,
+    /// An edge of what faces the other solid that is perpendicular to the contact's normal.
+    pub(super) level_edge: Option<Vector<N, D>>,
 }
 
 impl<N: Real, const D: usize> Side<N, D> {
@@ -26,19 +28,72 @@ impl<N: Real, const D: usize> Side<N, D> {
         outward: &Vector<N, D>,
         surface: &Point<N, D>,
     ) -> Self {
-        let (geometry, rounding, alignment) = match kind {
+        let (geometry, rounding) = match kind {
             Kind::Plane(plane) => {
                 let normal = plane.normal().into_inner();
-                (NeighborhoodGeometry::Plane(normal), N::ZERO, normal.dot(outward))
+                let lean = Some((normal - outward).norm());
+                let geometry = NeighborhoodGeometry::Plane(normal);
+                return Self {
+                    core: *surface,
+                    geometry,
+                    rounding: N::ZERO,
+                    lean,
+                    level_edge: None,
+                };
             }
-            Kind::Ball(ball) => (NeighborhoodGeometry::Point, ball.radius(), -N::ONE),
+            Kind::Ball(ball) => (NeighborhoodGeometry::Point, ball.radius()),
             Kind::Cylinder(cylinder, _) if is_lying(cylinder, outward) => {
-                (on_axis(id), cylinder.radius(), -N::ONE)
+                (on_axis(id), cylinder.radius())
             }
-            other => of_core(other, id, outward),
+            other => return Self::of_core(other, id, outward, surface),
         };
-        Self { core: surface - outward * rounding, geometry, rounding, alignment }
+        let core = surface - outward * rounding;
+        Self { core, geometry, rounding, lean: None, level_edge: None }
     }
+
+    /// The general case: the feature that faces the other solid is asked for once more and the named
+    /// part is looked up in it. A curved face counts as its tangent plane.
+    fn of_core(
+        kind: Kind<'_, N, D>,
+        id: FeatureId,
+        outward: &Vector<N, D>,
+        surface: &Point<N, D>,
+    ) -> Self {
+        let map: &dyn SupportMap<N, D> =
+            Geometry(kind).as_support_map().expect("only half-spaces are no support maps");
+        let mut feature = Feature::default();
+        map.core_feature(outward, &mut feature);
+        let geometry = match id {
+            FeatureId::Vertex(_) => NeighborhoodGeometry::Point,
+            FeatureId::Edge(_) => line(&feature, id),
+            FeatureId::Face(_) => NeighborhoodGeometry::Plane(feature.normal.unwrap_or(*outward)),
+        };
+        let rounding = map.rounding();
+        Self {
+            core: surface - outward * rounding,
+            geometry,
+            rounding,
+            lean: feature.normal.map(|normal| (normal - outward).norm()),
+            level_edge: level_edge(&feature, outward),
+        }
+    }
+}
+
+/// The side of a feature that is most nearly perpendicular to a direction, if it is up to rounding.
+fn level_edge<N: Real, const D: usize>(
+    feature: &Feature<N, D>,
+    outward: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
+    let lean = |side: &Vector<N, D>| side.dot(outward).abs();
+    let level = sides.reduce(|best, side| if lean(&side) < lean(&best) { side } else { best });
+    level.filter(|side| lean(side) <= super::least_angle())
+}
+
+/// The direction of a side of a feature, along its outline; `None` for a side of no length.
+fn along<N: Real, const D: usize>(feature: &Feature<N, D>, index: usize) -> Option<Vector<N, D>> {
+    let next = if index + 1 < feature.vertices.len() { index + 1 } else { 0 };
+    unit(&(feature.vertices[next] - feature.vertices[index])).map(|(along, _)| along)
 }
 
 /// A cylinder of some radius, touched from the side.
@@ -56,37 +111,15 @@ fn on_axis<N: Real, const D: usize>(id: FeatureId) -> NeighborhoodGeometry<N, D>
     }
 }
 
-/// Geometry, rounding and alignment of a named part of a core.
-fn of_core<N: Real, const D: usize>(
-    kind: Kind<'_, N, D>,
-    id: FeatureId,
-    outward: &Vector<N, D>,
-) -> (NeighborhoodGeometry<N, D>, N, N) {
-    let map: &dyn SupportMap<N, D> =
-        Geometry(kind).as_support_map().expect("only half-spaces are no support maps");
-    let mut feature = Feature::default();
-    map.core_feature(outward, &mut feature);
-    let geometry = match id {
-        FeatureId::Vertex(_) => NeighborhoodGeometry::Point,
-        FeatureId::Edge(_) => line(&feature, id),
-        FeatureId::Face(_) => NeighborhoodGeometry::Plane(feature.normal.unwrap_or(*outward)),
-    };
-    let is_curved = matches!(id, FeatureId::Face(_)) && feature.normal.is_none();
-    let none = if is_curved { N::ZERO } else { -N::ONE };
-    let alignment = feature.normal.map_or(none, |normal| normal.dot(outward));
-    (geometry, map.rounding(), alignment)
-}
-
 /// The line of a side of a feature; a point for a rim, which is no straight edge.
 fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
     let mut named = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
+    // A cap that is round is given as a polygon all of whose sides bear the name of the rim.
     let (Some((index, _)), None) = (named.next(), named.next()) else {
         return NeighborhoodGeometry::Point;
     };
-    let next = if index + 1 < feature.vertices.len() { index + 1 } else { 0 };
-    let side = feature.vertices[next] - feature.vertices[index];
-    unit(&side).map_or(NeighborhoodGeometry::Point, |(along, _)| NeighborhoodGeometry::Line(along))
+    along(feature, index).map_or(NeighborhoodGeometry::Point, NeighborhoodGeometry::Line)
 }

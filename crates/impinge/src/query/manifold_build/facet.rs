@@ -79,6 +79,9 @@ impl<N: Real, const D: usize> Facet<N, D> {
         }
     }
 
+    /// A polygon of no area is a segment, one that leans too much its nearest corner. Else its sides
+    /// get inward normals, by the sign of the area: the outline of the second solid runs clockwise
+    /// when seen along the normal.
     fn settle_polygon(&mut self, outward: &Vector<N, D>, tolerance: N) {
         let (area, longest) = self.area_and_longest_side();
         let length = self.side(longest).norm();
@@ -98,6 +101,9 @@ impl<N: Real, const D: usize> Facet<N, D> {
             .collect();
     }
 
+    /// A segment that leans too much is its nearest end. The cosine is that of the angle between the
+    /// segment and the plane of contact. In the plane this is every side of a polygon: it has an
+    /// outward normal of its own, but its two ends say as much.
     fn settle_segment(&mut self, outward: &Vector<N, D>) {
         self.normal = None;
         let flat = self.side(0);
@@ -123,6 +129,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
         self.corners = SmallVec::from_slice(&[low, high]);
     }
 
+    /// Leaves the corner nearest to the other solid.
     fn keep_farthest(&mut self, outward: &Vector<N, D>) {
         let at = |corner: &Corner<N, D>| corner.point.coords.dot(outward);
         let first = self.corners[0];
@@ -153,6 +160,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
         self.corners.len() < 2
     }
 
+    /// Two corners: one side, which is looked at from both hands.
     pub(super) fn is_segment(&self) -> bool {
         self.corners.len() == 2
     }
@@ -162,6 +170,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
         self.inward.len()
     }
 
+    /// The index of the corner after a corner.
     pub(super) fn next(&self, index: usize) -> usize {
         if index + 1 < self.corners.len() { index + 1 } else { 0 }
     }
@@ -186,6 +195,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
             if inside < -tolerance || self.is_segment() && inside > tolerance {
                 return None;
             }
+            // Of two touched sides either will do: where they meet, both answer with the corner.
             if inside <= tolerance {
                 touched = self.on_side(side, flat, tolerance).or(touched);
             }
@@ -274,6 +284,8 @@ impl Which {
     }
 }
 
+/// The corners of a feature, taken to the frame of the first solid. Where a feature names fewer sides
+/// than it has corners, as segments do, the rest bear its own name.
 fn corners<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     pose: &Pose<N, D>,

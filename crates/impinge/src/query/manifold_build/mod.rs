@@ -2,14 +2,13 @@
 //!
 //! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
 //! with the part of their core that faces the other; seen along the normal these are points, segments
-//! and convex polygons of the plane ([`facet`]), and the corners of what they have in common
+//! and convex polygons of the plane (module [`mod@facet`]), and the corners of what they have in common
 //! ([`overlap`]) are the candidates. [`half_space`] is the case of a face without end. The witness is
 //! always represented, so the smallest distance of a manifold is that of the separation exactly.
 //! At last [`reduce`] chooses a few candidates and [`names`] numbers them.
 //!
-//! Clipping along the normal instead of against the side planes of a reference face is the idea of
-//! contact patches as intersections of support sets (Tracy, Howell, Manchester, "Differentiable
-//! collision detection", 2022, use the same view).
+//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
+//! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
 mod facet;
 mod frame;

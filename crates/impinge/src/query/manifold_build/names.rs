@@ -16,6 +16,7 @@ pub(super) fn inherit<N: Real, const D: usize>(
     for point in old {
         let features = [point.feature1, point.feature2];
         let arm = |c: &Candidate<N, D>| (c.point1 - point.point1).norm_squared();
+        // Each old number goes to one heir only, so no two points of a manifold share one.
         let heirs = candidates.iter_mut().filter(|c| c.kept_id.is_none() && c.features == features);
         let heir = heirs.reduce(|best, c| if arm(c) < arm(best) { c } else { best });
         if let Some(heir) = heir {

@@ -54,6 +54,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         }
     }
 
+    /// A corner of the first facet above the part `on` of the second.
     fn push_corner_of_first(
         &self,
         corner: &Corner<N, D>,
@@ -64,6 +65,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         self.push(&corner.point, &under, [corner.id, on], out);
     }
 
+    /// A corner of the second facet above the part `on` of the first.
     fn push_corner_of_second(
         &self,
         corner: &Corner<N, D>,
@@ -101,6 +103,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         let from = other.inside(line, &facet.corners[side].flat);
         let to = other.inside(line, &facet.corners[facet.next(side)].flat);
         let tolerance = self.frame.tolerance;
+        // A side that ends on the line crosses nothing: its corner lies on the other facet or outside.
         let leaves = from > tolerance && to < -tolerance;
         let enters = from < -tolerance && to > tolerance;
         (leaves || enters).then(|| from / (from - to))
@@ -117,18 +120,34 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     }
 
     /// The ends of the stretch that two nearly parallel segments share: each is an end of one of
-    /// them and the place beside it on the other.
+    /// them and the place beside it on the other. Half-way between the two is where they meet once
+    /// turned: the points are off their segments by half the lever arm times the sine at most.
     fn common_stretch(&self, out: &mut Candidates<N, D>) {
         for corner in &self.first.corners {
             if let Some(on) = self.beside(corner, self.second) {
-                self.push_corner_of_first(corner, on, out);
+                let under = self.second.under(&corner.point, self.frame);
+                self.push_halfway(&corner.point, &under, [corner.id, on], out);
             }
         }
         for corner in &self.second.corners {
             if let Some(on) = self.beside(corner, self.first) {
-                self.push_corner_of_second(corner, on, out);
+                let under = self.first.under(&corner.point, self.frame);
+                self.push_halfway(&under, &corner.point, [on, corner.id], out);
             }
         }
+    }
+
+    /// Adds a pair of points that do not face each other exactly, each moved by half the gap.
+    fn push_halfway(
+        &self,
+        core1: &Point<N, D>,
+        core2: &Point<N, D>,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let (gap, normal) = (core2 - core1, self.frame.normal());
+        let half = (gap - normal * normal.dot(&gap)) * N::HALF;
+        self.push(&(core1 + half), &(core2 - half), features, out);
     }
 
     /// The part of a segment beside a corner of the other; `None` beyond the ends.
@@ -145,7 +164,8 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         Some(end.map_or(segment.id, |end: usize| segment.corners[end].id))
     }
 
-    /// Adds the pair of surface points above two points of the cores, once.
+    /// Adds the pair of surface points above two points of the cores, once: corners that coincide in
+    /// both facets are found from both. Different points may share a name, on round rims.
     fn push(
         &self,
         core1: &Point<N, D>,

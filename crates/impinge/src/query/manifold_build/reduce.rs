@@ -22,6 +22,8 @@ pub(super) fn chosen<N: Real, const D: usize>(
     limit: usize,
     tolerance: N,
 ) -> SmallVec<[usize; 8]> {
+    // From a point to a segment to a triangle and on: each addition keeps the outline convex enough
+    // for the area that a further point adds to be that beyond one side.
     let mut outline = Outline { candidates, corners: SmallVec::from_slice(&[deepest]) };
     if candidates.len() <= limit {
         return (0..candidates.len()).collect();

@@ -2,7 +2,7 @@
 
 use super::SurfacePoint;
 use crate::convex::{Simplicial, separation};
-use crate::math::{Point, Pose, Real};
+use crate::math::{Point, Pose};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
 /// The separation of the solid and a point: a ball of no radius.
@@ -19,6 +19,9 @@ pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     };
     let mut feature = Feature::default();
     map.core_feature(&found.normal, &mut feature);
+    // From the point itself along the normal: on a round surface this is off by the square of the
+    // error of the normal, a mix of support points by the error.
+    let nearest = point - found.normal * found.distance;
     let is_inside = found.distance <= N::ZERO;
-    SurfacePoint { point: found.point1, feature: feature.id, is_inside }
+    SurfacePoint { point: nearest, feature: feature.id, is_inside }
 }

@@ -22,6 +22,11 @@ impl<N: Real, const D: usize> Roots<N, D> {
     pub(super) fn places(&self) -> [Vector<N, D>; 2] {
         [self.middle - self.half_chord, self.middle + self.half_chord]
     }
+
+    /// The line keeps one distance, and it is `radius`.
+    pub(super) fn runs_at(&self, radius: N) -> bool {
+        self.leave == N::INFINITY && self.middle.norm() == radius
+    }
 }
 
 /// When `origin + t · dir` is within `radius` of zero; `None` if never. `dir` may be zero: then it is

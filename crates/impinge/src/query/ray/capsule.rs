@@ -53,7 +53,7 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     let feature = FeatureId::Edge(0);
     let enter = Crossing::new(enter, enter_normal, feature);
     let leave = Crossing::new(leave, leave_normal, feature);
-    let span = Span { enter, leave, thin: false };
+    let span = Span { enter, leave, thin: found.runs_at(capsule.radius()) };
     in_order(&span).then_some(span)
 }
 

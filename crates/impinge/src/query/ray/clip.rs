@@ -31,6 +31,8 @@ pub(super) fn clipped<N: Real, const D: usize>(
             if below < N::ZERO {
                 return None;
             }
+            // A line in the plane of a face is on the boundary all along.
+            span.thin |= below == N::ZERO;
             continue;
         }
         let crossing = Crossing::new(below / rise, normal, feature);

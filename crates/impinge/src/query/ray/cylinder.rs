@@ -30,7 +30,7 @@ fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
             Crossing::new(t, normal, FeatureId::Face(2))
         },
     );
-    Some(Span { enter, leave, thin: false })
+    Some(Span { enter, leave, thin: found.runs_at(radius) })
 }
 
 /// The half-space under a flat end: `sign · y ≤ half_height`.

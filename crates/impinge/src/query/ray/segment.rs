@@ -33,7 +33,8 @@ pub(super) fn span<N: Real, const D: usize>(
     let rounding = N::lit(8.0) * N::EPSILON * max(a.norm(), b.norm());
     let seen = [Point::from(across_a), Point::from(across_b)];
     let (nearest, fraction) = nearest_on_segment([&seen[0], &seen[1]], &Point::origin());
-    if !(nearest.coords.norm() <= rounding) {
+    let hits = nearest.coords.norm() <= rounding;
+    if !hits {
         return None;
     }
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());

@@ -19,7 +19,7 @@ pub(crate) struct Crossing<N: Real, const D: usize> {
 pub(crate) struct Span<N: Real, const D: usize> {
     pub(super) enter: Crossing<N, D>,
     pub(super) leave: Crossing<N, D>,
-    /// The set has no inside: a hollow query is the same as a solid one.
+    /// The line is on the boundary all along: a hollow query is the same as a solid one.
     pub(super) thin: bool,
 }
 

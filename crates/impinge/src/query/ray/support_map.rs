@@ -22,7 +22,7 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     // Somewhat larger than the reach, which is only right up to rounding.
     let radius = (map.reach() + map.rounding()) * N::lit(1.0625);
     let around = roots(&ray.origin.coords, &ray.dir, radius)?;
-    if !(around.leave >= N::ZERO) {
+    if around.leave < N::ZERO {
         return None;
     }
     let [first, last] = around.places();

@@ -40,7 +40,9 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Optio
     };
     let enter = crossings(true).reduce(|x, y| if y.t < x.t { y } else { x })?;
     let leave = crossings(false).reduce(|x, y| if y.t > x.t { y } else { x })?;
-    Some(in_order(enter, leave))
+    let sides = [[a, b], [b, c], [c, a]];
+    let thin = sides.iter().any(|ends| ends.iter().all(|&side| side == N::ZERO));
+    Some(Span { thin, ..in_order(enter, leave) })
 }
 
 fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> Corner<N> {

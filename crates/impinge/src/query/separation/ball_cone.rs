@@ -1,7 +1,7 @@
 //! Ball against cone: a triangle in the half-plane of the axis and the centre.
 
 use super::ball_cylinder::HalfPlane;
-use super::projection::{Projection, center_in_second};
+use super::projection::{Projection, center_in_second, noise};
 use super::segments::nearest_on_segment;
 use super::wrong_kinds;
 use crate::convex::Separation;
@@ -68,7 +68,8 @@ fn project<N: Real>(cone: &Cone<N>, center: &Point<N, 3>) -> Projection<N, 3> {
         let point = section.nearest(&p);
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
         // Close by, the offset is mostly rounding: the flat sides may know better.
-        let certain = offset.x >= N::ZERO && section.height(&offset, &p) >= flat;
+        let noise = noise(section.rim.norm() + p.norm());
+        let certain = offset.x >= N::ZERO && section.height(&offset, &p) + noise >= flat;
         let outward = if certain { offset } else { outward };
         return plane.projection(distance, &outward, &point);
     }

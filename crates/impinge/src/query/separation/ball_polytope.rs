@@ -1,6 +1,6 @@
 //! Ball against convex hull in space.
 
-use super::projection::{Projection, center_in_second};
+use super::projection::{Projection, center_in_second, noise};
 use super::segments::nearest_on_segment;
 use super::wrong_kinds;
 use crate::convex::Separation;
@@ -57,7 +57,8 @@ fn project_from_outside<N: Real>(
     let Some((outward, distance)) = unit(&(center - best.1)) else { return *flat };
     // The offset is mostly rounding where the point is close: a face may know better.
     let certain = outward.dot(&(center - hull.core_support(&outward)));
-    let outward = if certain < flat.distance { flat.outward } else { outward };
+    let reach = hull.reach() + center.coords.norm();
+    let outward = if certain + noise(reach) < flat.distance { flat.outward } else { outward };
     Projection { distance, outward, point: best.1 }
 }
 

@@ -1,7 +1,7 @@
 //! Ball against triangle in space, where a triangle has no thickness.
 
 use super::ball_segment;
-use super::projection::{Projection, center_in_second};
+use super::projection::{Projection, center_in_second, noise};
 use super::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross, max, unit};
@@ -33,7 +33,8 @@ fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Project
     let mut seen = project_on_sides(corners, center);
     // Close to a side the offset is mostly rounding: the triangle's own normal may be better.
     if let Some(normal) = normal
-        && height(&normal, corners, center) > height(&seen.outward, corners, center)
+        && height(&normal, corners, center)
+            > height(&seen.outward, corners, center) + noise(reach(corners, center))
     {
         seen.outward = normal;
     }
@@ -64,6 +65,11 @@ fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], across: &Vector<N, 3>, p: &Poi
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
         cross(&(to - from), &(p - from)).dot(across) >= N::ZERO
     })
+}
+
+/// A length that no corner and not `p` exceeds in distance from the origin.
+fn reach<N: Real>(corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
+    corners.iter().fold(p.coords.norm(), |most, corner| max(corner.coords.norm(), most))
 }
 
 /// How far `p` is above the highest corner along `direction`.

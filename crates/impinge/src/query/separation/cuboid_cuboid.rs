@@ -6,7 +6,7 @@ use super::cuboid_axes::{AxisKind, BoxAxis, Boxes};
 use super::segments::nearest_of_segments;
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, min};
+use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::query::Pair;
 use crate::shape::Kind;
 
@@ -26,7 +26,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         return None;
     }
     let found = along(&boxes, &best);
-    let attained = best.gap <= N::ZERO || (found.point2 - found.point1).norm() <= best.gap + noise;
+    let beside = found.point2 - found.point1 - best.normal * best.gap;
+    let attained = best.gap <= N::ZERO || beside.norm() <= noise;
     if attained {
         return (found.distance <= limit).then_some(found);
     }
@@ -94,9 +95,10 @@ impl<N: Real> Reference<N> {
         self.sign() * point[self.axis] - self.half[self.axis]
     }
 
-    /// The point of the face below a point.
+    /// The point of the face nearest to a point.
     fn onto(&self, point: &Point<N, 3>) -> Point<N, 3> {
-        let mut below = *point;
+        let clamped = point.coords.zip_map(&self.half, |x, h| max(min(x, h), -h));
+        let mut below = Point::from(clamped);
         below[self.axis] = self.sign() * self.half[self.axis];
         below
     }
@@ -112,7 +114,7 @@ impl<N: Real> Reference<N> {
             polygon = clipped(&polygon, axis, -N::ONE, self.half[axis]);
         }
         if polygon.is_empty() {
-            // Only rounding takes the lowest corner out of the face that it is above.
+            // No point is above this face: boxes that are apart, or rounding.
             polygon.extend(facing.iter().map(|corner| pose.point(corner)));
         }
         let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));

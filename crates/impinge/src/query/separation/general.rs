@@ -2,7 +2,7 @@
 
 use super::wrong_kinds;
 use crate::convex::{Separation, separation2, separation3};
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, max};
 use crate::query::Pair;
 use crate::shape::{Geometry, SupportMap};
 
@@ -18,7 +18,8 @@ fn maps<'a, N: Real, const D: usize>(
 }
 
 /// A limit that nothing within `limit` exceeds by rounding: the general algorithm may give up on a
-/// bound that is off by rounding, and the exact comparison is made with the final distance.
+/// bound that is off by rounding, and the exact comparison is made with the final distance. Zero or
+/// more: of solids that overlap, bounds may be off by more than the depth found in the end.
 fn loosened<N: Real, const D: usize>(
     map1: &dyn SupportMap<N, D>,
     map2: &dyn SupportMap<N, D>,
@@ -26,7 +27,9 @@ fn loosened<N: Real, const D: usize>(
     limit: N,
 ) -> N {
     let sizes = map1.reach() + map1.rounding() + map2.reach() + map2.rounding();
-    limit + N::lit(64.0) * N::EPSILON * (sizes + pose12.translation.norm() + limit.abs())
+    // Of curved solids the general algorithm is content with 2⁻⁴⁰ of the size.
+    let relative = max(N::lit(64.0) * N::EPSILON, N::lit(4.0e-12));
+    max(limit, N::ZERO) + relative * (sizes + pose12.translation.norm() + limit.abs())
 }
 
 /// The separation of any two convex solids of the plane.

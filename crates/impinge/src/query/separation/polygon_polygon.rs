@@ -100,16 +100,14 @@ fn apart<N: Real>(
     let (near1, near2) = (outline1.support(&best.normal), outline2.support(&-best.normal));
     let mut points =
         nearest_points(outline1, outline2, &around(near1, outline1), &around(near2, outline2));
-    let mut direct = direct_axis(outline1, outline2, &points, best);
+    let mut direct = direct_axis(outline1, outline2, &points, best, noise);
     // Rounding may have hidden the best axis behind another one that is nearly parallel.
     if (points.1 - points.0).norm() - direct.gap > N::lit(4.0) * noise {
         let all = |outline: &Outline<N>| (0..outline.vertices.len()).collect::<Vec<_>>();
         points = nearest_points(outline1, outline2, &all(outline1), &all(outline2));
-        direct = direct_axis(outline1, outline2, &points, best);
+        direct = direct_axis(outline1, outline2, &points, best, noise);
     }
-    let distance =
-        if direct.normal == best.normal { best.gap } else { (points.1 - points.0).norm() };
-    Separation { distance, normal: direct.normal, point1: points.0, point2: points.1 }
+    Separation { distance: direct.gap, normal: direct.normal, point1: points.0, point2: points.1 }
 }
 
 /// The two sides that meet at a vertex.
@@ -139,17 +137,27 @@ fn nearest_points<N: Real>(
     best
 }
 
-/// The direction between two nearest points, unless they are so close that it is mostly rounding
-/// and `best` leaves a larger gap.
+/// The direction between two nearest points.
+///
+/// Or the best axis: where the points lie one above the other along it, because it is free of the
+/// rounding of the points; and where the points are so close that the direction between them is
+/// mostly rounding and leaves a smaller gap.
 fn direct_axis<N: Real>(
     outline1: &Outline<N>,
     outline2: &Outline<N>,
     points: &(Point<N, 2>, Point<N, 2>),
     best: &Axis<N>,
+    noise: N,
 ) -> Axis<N> {
-    let between = unit(&(points.1 - points.0));
-    let direct = between.map(|(along, _)| axis(outline1, outline2, along));
-    direct.filter(|direct| direct.gap >= best.gap).unwrap_or(*best)
+    let between = points.1 - points.0;
+    let beside = (between - best.normal * best.gap).norm();
+    let direct = unit(&between)
+        .filter(|_| beside > noise)
+        .map(|(normal, length)| (length, axis(outline1, outline2, normal)));
+    match direct {
+        Some((gap, direct)) if direct.gap + noise >= best.gap => Axis { gap, ..direct },
+        _ => *best,
+    }
 }
 
 #[cfg(test)]

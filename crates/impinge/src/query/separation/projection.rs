@@ -31,6 +31,11 @@ impl<N: Real, const D: usize> Projection<N, D> {
     }
 }
 
+/// What arithmetic cannot resolve about points that far from the origin.
+pub(super) fn noise<N: Real>(reach: N) -> N {
+    N::lit(8.0) * N::EPSILON * reach
+}
+
 /// The centre of a ball at the origin of the first frame, in the frame of the second solid.
 pub(super) fn center_in_second<N: Real, const D: usize>(pose12: &Pose<N, D>) -> Point<N, D> {
     pose12.inverse_point(&Point::origin())

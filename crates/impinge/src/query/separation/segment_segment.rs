@@ -1,9 +1,9 @@
 //! Segments and capsules among themselves, in space.
 
-use super::projection::{first_axis, made_perpendicular, perpendicular_to};
+use super::projection::{first_axis, made_perpendicular, noise, perpendicular_to};
 use super::segments::{core, gap_along, nearest_of_segments};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, cross, unit};
+use crate::math::{Point, Real, Vector, cross, max, unit};
 use crate::query::Pair;
 
 /// The separation of two segments or capsules in space.
@@ -27,7 +27,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 ///
 /// Right is the direction between the nearest points. Where these are close that is mostly
 /// rounding, and a direction made from the segments themselves separates better: each candidate is
-/// judged by the gap that it really leaves, the first of equals is taken.
+/// judged by the gap that it really leaves, the first of equals (up to rounding) is taken.
 fn best_normal<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
@@ -38,6 +38,7 @@ fn best_normal<N: Real>(
         [Some(axis1), Some(axis2)] => unit(&cross(&axis1, &axis2)).map(|(across, _)| across),
         _ => None,
     };
+    let reach = ends1.iter().chain(ends2).fold(N::ZERO, |most, p| max(p.coords.norm(), most));
     let mut best: Option<(N, Vector<N, 3>)> = None;
     let candidates = [
         unit(offset).map(|(along, _)| along),
@@ -52,7 +53,7 @@ fn best_normal<N: Real>(
     ];
     for normal in candidates.into_iter().flatten() {
         let gap = gap_along(&normal, ends1, ends2);
-        if best.is_none_or(|(widest, _)| gap > widest) {
+        if best.is_none_or(|(widest, _)| gap > widest + noise(reach)) {
             best = Some((gap, normal));
         }
     }

@@ -7,7 +7,7 @@ use crate::shape::Shape;
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
-/// Computed in the canonical order and in the frame of that order's first solid, then taken to the
+/// Also `None` if a pose is not finite. Computed in the canonical order and in the frame of that order's first solid, then taken to the
 /// world: swapping the arguments swaps the points and turns the normal round, bit for bit.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
@@ -15,6 +15,9 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<Separation<N, D>> {
     let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    if !pair.pose12.is_finite() {
+        return None;
+    }
     let first = if swapped { &placed2.pose } else { &placed1.pose };
     let found = super::separation(&pair, limit)?;
     let (normal, point1, point2) =

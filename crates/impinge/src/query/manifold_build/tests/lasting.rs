@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::scene::{Scene, fact, request};
+use super::scene::{Random, Scene, fact, request};
 use crate::math::{Pose, Unit, Vector};
 use crate::query::{Pair, RawManifold};
 use crate::shape::{Cuboid, FeatureId, Plane, Shape};
@@ -24,7 +24,7 @@ fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usi
         let time = f64::from(step) * 1e-3;
         let mut place = Vector::<N, D>::zeros();
         place[0] = N::lit(0.3 * time);
-        place[1] = N::lit(0.499 + 1e-4 * (37.0 * time).sin() - top * 0.0);
+        place[1] = N::lit(0.499 + 1e-4 * (37.0 * time).sin());
         let wobble = 1e-4 * (91.0 * time).sin();
         let pose1 = N::pose(place, [wobble, 0.3 * time * f64::from(D == 3), wobble]);
         let mut below = Vector::<N, D>::zeros();
@@ -70,4 +70,53 @@ fn a_box_sliding_over_an_edge_is_renamed_with_its_features() {
     assert!(on_box::<f32, 2>(0.6) <= 3, "one corner leaves, one point on the edge comes");
     assert!(on_box::<f32, 3>(0.6) <= 20, "{} numbers", on_box::<f32, 3>(0.6));
     assert!(on_box::<f64, 3>(0.45) <= 40, "{} numbers", on_box::<f64, 3>(0.45));
+}
+
+/// Equal boxes one on the other, shifted along one side so that two pairs of sides fall together:
+/// rounding-level noise on every step changes no name.
+fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
+    let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
+    let (mut raw, mut random) = (RawManifold::default(), Random(11));
+    let noise = 2.0 * N::EPSILON.as_f64();
+    for step in 0..300 {
+        let mut place = random.vector::<N, D>(noise);
+        place[0] += N::lit(shift);
+        place[1] += N::lit(0.999);
+        let turn = [(); 3].map(|()| random.between(-noise, noise));
+        let pair = Pair {
+            first: solid.geometry().0,
+            second: solid.geometry().0,
+            pose12: N::pose(place, turn),
+        };
+        N::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
+        assert_eq!(raw.points.len(), 1 << (D - 1), "step {step}, {shift}: {raw:?}");
+        let ids: Vec<u32> = raw.points.iter().map(|point| point.id).collect();
+        assert!(ids.iter().zip(0..).all(|(id, index)| *id == index), "step {step}: {raw:?}");
+    }
+}
+
+#[test]
+fn a_stack_at_rest_keeps_its_names() {
+    for shift in [0.0, 0.25] {
+        stack_rests::<f32, 2>(shift);
+        stack_rests::<f64, 2>(shift);
+        stack_rests::<f32, 3>(shift);
+        stack_rests::<f64, 3>(shift);
+    }
+}
+
+/// Contacts that ended come back under new numbers.
+#[test]
+fn a_number_is_never_given_twice() {
+    let solid = Cuboid::new(Vector::<f64, 2>::new(0.5, 0.5));
+    let (mut raw, mut seen) = (RawManifold::default(), 0);
+    for height in [1.0, 2.0, 0.99, 3.0, 0.98] {
+        let pose12 = f64::pose(Vector::<f64, 2>::new(0.0, height), [0.0; 3]);
+        let pair = Pair { first: solid.geometry().0, second: solid.geometry().0, pose12 };
+        f64::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
+        assert_eq!(raw.points.is_empty(), height > 1.0, "{height}: {raw:?}");
+        assert!(raw.points.iter().all(|point| point.id >= seen), "{height}: {raw:?}");
+        seen += u32::try_from(raw.points.len()).expect("two at most");
+    }
+    assert_eq!(seen, 6, "two contacts three times");
 }

@@ -1,34 +1,9 @@
 //! What holds for every pair of solids at any pose.
 
-use super::scene::{Random, Scene, fact, manifold, near_pose, off_surface, request, solids};
+use super::scene::{Scene, describe, fact, for_all_pairs, manifold, off_surface, request};
 use crate::math::{Point, Real, max};
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{FeatureId, Geometry, ShapeKind};
-
-/// Runs a check on every pair of kinds at `count` random poses near touching; the half-space is
-/// always second.
-fn for_all_pairs<N: Scene<D>, const D: usize>(
-    count: u64,
-    scale: f64,
-    mut check: impl FnMut(&Pair<'_, N, D>),
-) {
-    for seed in 0..count {
-        let mut random = Random(seed);
-        let all = solids::<N, D>(scale, &mut random);
-        for (index, first) in all[..all.len() - 1].iter().enumerate() {
-            for second in &all[index..] {
-                let kinds = [first.geometry().0, second.geometry().0];
-                let pose12 = near_pose(kinds, (scale, -0.1, 0.1), &mut random);
-                check(&Pair { first: kinds[0], second: kinds[1], pose12 });
-            }
-        }
-    }
-}
-
-fn describe<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> String {
-    let kinds = [pair.first, pair.second].map(|kind| Geometry(kind).kind());
-    format!("{kinds:?} at {:?}", pair.pose12)
-}
 
 fn lever<N: Real, const D: usize>(raw: &RawManifold<N, D>, arm: Point<N, D>, to: Point<N, D>) -> N {
     let arm = to - arm;
@@ -67,13 +42,13 @@ fn points_are_as_asked_everywhere() {
 }
 
 fn points_lie_on_both<N: Scene<D>, const D: usize>(accuracy: f64) {
-    let wish = request::<N>(0.05, 0.0);
+    let wish = request::<N>(0.1, 0.0);
     let mut seen = 0;
-    for_all_pairs::<N, D>(60, 1.0, |pair| {
+    for_all_pairs::<N, D>(120, 1.0, |pair| {
         let (separation, raw) = manifold(pair, &wish);
         // The witness is as good as the separation that it comes from.
-        let is_witness = |point: &&RawPoint<N, D>| point.point1 == separation.point1;
-        for point in raw.points.iter().filter(|point| !is_witness(point)) {
+        let is_own = |point: &&RawPoint<N, D>| point.point1 != separation.point1;
+        for point in raw.points.iter().filter(is_own) {
             let point2 = point.point1 + raw.normal * point.distance;
             let off1 = off_surface(pair.first, &point.point1).abs();
             let off2 = off_surface(pair.second, &pair.pose12.inverse_point(&point2)).abs();
@@ -82,7 +57,7 @@ fn points_lie_on_both<N: Scene<D>, const D: usize>(accuracy: f64) {
             seen += 1;
         }
     });
-    assert!(seen > 500, "{seen} points");
+    assert!(seen > 300, "{seen} points");
 }
 
 #[test]
@@ -176,7 +151,7 @@ fn bad_numbers<N: Scene<D>, const D: usize>() {
     let wish = request::<N>(0.05, 0.05);
     for_all_pairs::<N, D>(2, 1.0, |pair| {
         let (good, mut raw) = (fact(pair), RawManifold::default());
-        for bad in [N::INFINITY, -N::INFINITY, N::INFINITY - N::INFINITY] {
+        for bad in [N::INFINITY, -N::INFINITY, N::lit(f64::NAN)] {
             let mut separation = good;
             separation.distance = bad;
             N::build(pair, &separation, &wish, &mut raw);

@@ -1,9 +1,10 @@
 //! Solids at rest on each other: how many points delimit the area, counted by hand.
 
 use super::scene::{Scene, fact, manifold, request};
-use crate::math::{Point, Unit, Vector};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Unit, Vector};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Shape};
+use crate::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, FeatureId, Plane, Shape};
 
 /// A solid and the ground under it, whose top is at height zero. Plane, box, turn of the solid and
 /// height of its origin.
@@ -203,4 +204,57 @@ fn the_fact_is_the_one_assumed() {
     let separation = fact(&pair);
     assert_eq!(separation.distance, 0.5, "half a unit above the half-plane");
     assert_eq!(separation.normal, Vector::<f64, 2>::new(0.0, -1.0), "down to the half-plane");
+}
+
+#[test]
+fn half_spaces_back_to_back_touch_in_one_point() {
+    let plane = Plane::new(Unit::new_normalize(Vector::<f64, 3>::new(0.0, 1.0, 0.0)));
+    let pose12 = f64::pose(Vector::<f64, 3>::new(0.0, -0.5, 0.0), [0.0, 0.0, std::f64::consts::PI]);
+    let pair = Pair { first: plane.geometry().0, second: plane.geometry().0, pose12 };
+    let (normal, point1) = (Vector::<f64, 3>::new(0.0, 1.0, 0.0), Point::<f64, 3>::origin());
+    let mut separation =
+        Separation { distance: -0.5, normal, point1, point2: point1 - normal * 0.5 };
+    let mut raw = RawManifold::default();
+    f64::build(&pair, &separation, &request(0.0, 0.0), &mut raw);
+    assert_eq!(raw.points.len(), 1, "{raw:?}");
+    assert_eq!(raw.points[0].distance, -0.5, "a finite depth");
+    separation.distance = -f64::INFINITY;
+    f64::build(&pair, &separation, &request(0.0, 0.0), &mut raw);
+    assert!(raw.points.is_empty(), "no contact where the overlap has no bound");
+}
+
+/// A prism whose ends are regular polygons of twenty sides, of radius 1, from y = 0 to y = 1.
+fn prism() -> ConvexHull<f32> {
+    let places = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
+    let points: Vec<Point<f32, 3>> = places
+        .flat_map(|angle| {
+            let (sine, cosine) = angle.sine_cosine();
+            [0.0, 1.0].map(|y| Point::from(Vector::<f64, 3>::new(cosine, y, sine).map(f32::lit)))
+        })
+        .collect();
+    ConvexHull::from_points(&points)
+}
+
+#[test]
+fn a_prism_of_many_sides_stands_on_four_points() {
+    let solid = prism();
+    let standing = Rest { solid: &solid, height: 0.0, turn: [0.0; 3] };
+    assert_eq!(standing.counts(&request(1e-5, 0.0)), [4; 2], "few of twenty");
+    let mut wish = request(1e-5, 0.0);
+    wish.max_points = 32;
+    assert_eq!(standing.counts(&wish), [20; 2], "all of them, if asked for");
+}
+
+/// A flat tent: its ridge is the nearest to the ground, the near vertices belong to two faces.
+#[test]
+fn near_vertices_of_several_faces_count_above_a_half_space() {
+    let corners = [[-1.0, 0.01, 0.0], [1.0, 0.01, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
+    let mut points: Vec<_> = corners.map(|c| Point::from(Vector::<f32, 3>::from(c))).to_vec();
+    points.push(Point::<f32, 3>::new(0.0, 1.0, 0.0));
+    let solid = ConvexHull::from_points(&points);
+    let plane = Plane::new(Unit::new_normalize(Vector::<f32, 3>::new(0.0, 1.0, 0.0)));
+    let rest = Rest { solid: &solid, height: 0.0, turn: [0.0; 3] };
+    assert_eq!(rest.on(&plane, 0.0, &request(0.02, 0.0)).points.len(), 4, "both faces");
+    assert_eq!(rest.on(&plane, 0.0, &request(0.005, 0.0)).points.len(), 2, "the ridge");
+    assert_eq!(rest.on(&plane, 0.0, &request(0.0, 0.05)).points.len(), 4, "by the angle");
 }

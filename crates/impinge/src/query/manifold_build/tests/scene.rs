@@ -5,7 +5,8 @@ use crate::convex::{self, Separation, Simplicial};
 use crate::math::{Isometry2, Isometry3, Point, Pose, Real, Unit, Vector};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Geometry, Kind, Plane, Segment, Shape, Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry, Kind, Plane,
+    Segment, Shape, Triangle,
 };
 
 /// A scalar and dimension that manifolds are tested in.
@@ -20,7 +21,7 @@ pub(in crate::query) trait Scene<const D: usize>: Simplicial<D> {
     /// A pose turned by an axis times an angle; in the plane by the last component.
     fn pose(translation: Vector<Self, D>, turn: [f64; 3]) -> Pose<Self, D>;
 
-    /// Round solids of this dimension only.
+    /// Polytopes, and the solids of this dimension only, in the order of kinds.
     fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<Self, D>>>;
 }
 
@@ -38,8 +39,8 @@ impl<N: Real> Scene<2> for N {
         Pose::from_isometry(&Isometry2::new(translation, N::lit(turn[2])))
     }
 
-    fn own(_: f64, _: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
-        Vec::new()
+    fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
+        vec![Box::new(ConvexPolygon::from_points(&cloud(scale, random)))]
     }
 }
 
@@ -58,9 +59,20 @@ impl<N: Real> Scene<3> for N {
     }
 
     fn own(scale: f64, random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
+        let hull = ConvexHull::from_points(&cloud(scale, random));
         let mut length = || N::lit(random.between(0.3, 1.2) * scale);
-        vec![Box::new(Cylinder::new(length(), length())), Box::new(Cone::new(length(), length()))]
+        vec![
+            Box::new(hull),
+            Box::new(Cylinder::new(length(), length())),
+            Box::new(Cone::new(length(), length())),
+        ]
     }
+}
+
+/// Twelve points around the origin.
+fn cloud<N: Real, const D: usize>(scale: f64, random: &mut Random) -> Vec<Point<N, D>> {
+    let mut place = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
+    (0..12).map(|_| Point::from(place())).collect()
 }
 
 /// A small linear congruential generator (Knuth's MMIX constants).
@@ -162,4 +174,29 @@ pub(in crate::query) fn near_pose<N: Scene<D>, const D: usize>(
     let target = N::lit(random.between(low, high) * scale);
     pose12.translation -= apart.normal * (apart.distance - target);
     pose12
+}
+
+/// Runs a check on every pair of kinds at `count` random poses near touching; the half-space is
+/// always second.
+pub(in crate::query) fn for_all_pairs<N: Scene<D>, const D: usize>(
+    count: u64,
+    scale: f64,
+    mut check: impl FnMut(&Pair<'_, N, D>),
+) {
+    for seed in 0..count {
+        let mut random = Random(seed);
+        let all = solids::<N, D>(scale, &mut random);
+        for (index, first) in all[..all.len() - 1].iter().enumerate() {
+            for second in &all[index..] {
+                let kinds = [first.geometry().0, second.geometry().0];
+                let pose12 = near_pose(kinds, (scale, -0.1, 0.1), &mut random);
+                check(&Pair { first: kinds[0], second: kinds[1], pose12 });
+            }
+        }
+    }
+}
+
+pub(in crate::query) fn describe<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> String {
+    let kinds = [pair.first, pair.second].map(|kind| Geometry(kind).kind());
+    format!("{kinds:?} at {:?}", pair.pose12)
 }

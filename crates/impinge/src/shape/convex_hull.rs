@@ -1,0 +1,69 @@
+//! Convex polyhedra, in space.
+
+use core::ops::Deref;
+
+use super::error::or_panic;
+use super::{Geometry, Kind, Polytope, Shape, ShapeError};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real};
+
+/// The convex hull of some points, with a volume.
+///
+/// Vertices are in the order in which the points were given; faces are polygons, counter-clockwise
+/// seen from outside. Everything that can be asked of a [`Polytope`] can be asked of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexHull<N: Real> {
+    polytope: Polytope<N, 3>,
+}
+
+impl<N: Real> ConvexHull<N> {
+    /// The convex hull of points in any order; see [`Self::try_from_points`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_from_points`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn from_points(points: &[Point<N, 3>]) -> Self {
+        or_panic(Self::try_from_points(points))
+    }
+
+    /// The solid with these corners and faces; `None` unless the faces close its surface.
+    pub(crate) fn from_closed_faces(
+        corners: Vec<Point<N, 3>>,
+        faces: &[Vec<usize>],
+    ) -> Option<Self> {
+        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
+    }
+
+    /// The solid as vertices, edges, faces and what touches what.
+    #[must_use]
+    pub const fn polytope(&self) -> &Polytope<N, 3> {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Deref for ConvexHull<N> {
+    type Target = Polytope<N, 3>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Shape<N, 3> for ConvexHull<N> {
+    fn geometry(&self) -> Geometry<'_, N, 3> {
+        Geometry(Kind::Polytope(&self.polytope))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, 3> {
+        self.polytope.aabb_at(&Pose::identity())
+    }
+
+    fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
+        self.polytope.aabb_at(pose)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, 3> {
+        self.polytope.bounding_sphere()
+    }
+}

@@ -1,0 +1,76 @@
+//! Convex polygons, in the plane.
+
+use core::ops::Deref;
+
+use super::error::or_panic;
+use super::{Geometry, Kind, Polytope, Shape, ShapeError};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real};
+
+/// A convex polygon with three corners at least and an area.
+///
+/// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next. Everything
+/// that can be asked of a [`Polytope`] can be asked of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexPolygon<N: Real> {
+    polytope: Polytope<N, 2>,
+}
+
+impl<N: Real> ConvexPolygon<N> {
+    /// The polygon with a given convex outline, in either order; see [`Self::try_new`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(points: &[Point<N, 2>]) -> Self {
+        or_panic(Self::try_new(points))
+    }
+
+    /// The convex hull of points in any order; see [`Self::try_from_points`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_from_points`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn from_points(points: &[Point<N, 2>]) -> Self {
+        or_panic(Self::try_from_points(points))
+    }
+
+    /// The polygon with these corners: counter-clockwise, convex, three at least.
+    pub(crate) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
+        Self { polytope: Polytope::<N, 2>::from_corners(corners) }
+    }
+
+    /// The polygon as vertices, sides and what touches what.
+    #[must_use]
+    pub const fn polytope(&self) -> &Polytope<N, 2> {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Deref for ConvexPolygon<N> {
+    type Target = Polytope<N, 2>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Shape<N, 2> for ConvexPolygon<N> {
+    fn geometry(&self) -> Geometry<'_, N, 2> {
+        Geometry(Kind::Polytope(&self.polytope))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, 2> {
+        self.polytope.aabb_at(&Pose::identity())
+    }
+
+    fn aabb(&self, pose: &Pose<N, 2>) -> Aabb<N, 2> {
+        self.polytope.aabb_at(pose)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, 2> {
+        self.polytope.bounding_sphere()
+    }
+}

@@ -1,0 +1,167 @@
+//! The features of polytopes, in any dimension.
+
+use super::polytope::count32;
+use super::tilt::Tilt;
+use super::{ConvexPolyhedron, Feature, FeatureId, Polytope, SupportMap};
+use crate::math::{Point, Real, Vector, unit, unit_or};
+
+/// What faces a direction: the indices of a face, a side or a vertex.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Face(u32),
+    Side(u32),
+    Vertex(usize),
+}
+
+impl<N: Real, const D: usize> Polytope<N, D> {
+    /// The rule of [`SupportMap::core_feature`], with any limit.
+    fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
+        let vertex = self.support_vertex(direction);
+        let Some((side, slope)) = self.flattest_side(vertex, direction) else {
+            return Part::Vertex(vertex);
+        };
+        let face = self.most_aligned(self.side(side).faces.into_iter(), direction);
+        if tilt.admits_face(&self.faces[face as usize].normal, direction) {
+            Part::Face(face)
+        } else if tilt.admits(slope * slope) {
+            Part::Side(side)
+        } else {
+            Part::Vertex(vertex)
+        }
+    }
+
+    /// The side at a vertex that leans least along a direction, and the sine by which it does.
+    fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
+        let mut best: Option<(u32, N)> = None;
+        for &side in self.fan(vertex) {
+            let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
+            let slope = unit(&(b - a)).map_or(N::ONE, |(along, _)| along.dot(direction).abs());
+            if best.is_none_or(|(_, least)| slope < least) {
+                best = Some((side, slope));
+            }
+        }
+        best
+    }
+
+    /// The first of equals; face 0 of none.
+    fn most_aligned(&self, faces: impl Iterator<Item = u32>, direction: &Vector<N, D>) -> u32 {
+        let along = |face: u32| self.faces[face as usize].normal.dot(direction);
+        faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
+    }
+
+    fn fill(&self, part: Part, out: &mut Feature<N, D>) {
+        match part {
+            Part::Face(face) => self.fill_face(face, out),
+            Part::Side(side) => out.set_segment(Self::side_id(side), self.ends(side)),
+            Part::Vertex(vertex) => {
+                out.set_point(FeatureId::Vertex(count32(vertex)), self.vertices[vertex]);
+            }
+        }
+    }
+
+    fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
+        let face = &self.faces[index as usize];
+        out.clear();
+        out.id = FeatureId::Face(index);
+        for &vertex in self.face_vertices(face) {
+            out.push(FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
+        }
+        let sides = self.face_sides(face);
+        // A side of the plane is one segment, not a loop of two.
+        let count = if sides.len() == 2 { 1 } else { sides.len() };
+        out.side_ids.extend(sides[..count].iter().map(|&side| Self::side_id(side)));
+        out.normal = Some(face.normal);
+    }
+
+    fn ends(&self, side: u32) -> [(FeatureId, Point<N, D>); 2] {
+        let ends = self.side(side).vertices;
+        ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
+    }
+
+    /// The unit vector along the sum of the normals of some faces, all of which meet at one place.
+    fn mean_normal(&self, faces: impl Iterator<Item = u32>) -> Vector<N, D> {
+        let normals = faces.map(|face| self.faces[face as usize].normal);
+        let first = self.faces[0].normal;
+        let sum = normals.fold(Vector::<N, D>::zeros(), |sum, normal| sum + normal);
+        unit_or(&sum, first)
+    }
+
+    #[track_caller]
+    fn place(id: FeatureId, dimension: usize, count: usize) -> u32 {
+        let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
+        let is_there = (index as usize) < count && id == FeatureId::flat::<D>(dimension, index);
+        assert!(is_there, "the solid has no part of dimension {dimension} named {id:?}");
+        index
+    }
+
+    #[track_caller]
+    fn side_place(&self, id: FeatureId) -> u32 {
+        let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
+        Self::place(id, 1, count)
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        self.vertices[self.support_vertex(direction)]
+    }
+
+    fn center(&self) -> Point<N, D> {
+        self.center
+    }
+
+    fn reach(&self) -> N {
+        self.reach
+    }
+
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.fill(self.part_toward(direction, Tilt::usual()), out);
+    }
+}
+
+impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
+    fn vertex(&self, id: FeatureId) -> Point<N, D> {
+        self.vertices[Self::place(id, 0, self.vertices.len()) as usize]
+    }
+
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
+        self.ends(self.side_place(id))
+    }
+
+    fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
+        self.fill_face(Self::place(id, D - 1, self.faces.len()), out);
+    }
+
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
+        match id {
+            FeatureId::Face(_) => {
+                self.faces[Self::place(id, D - 1, self.faces.len()) as usize].normal
+            }
+            FeatureId::Edge(_) => {
+                self.mean_normal(self.side(self.side_place(id)).faces.into_iter())
+            }
+            FeatureId::Vertex(_) => {
+                // Each face at a vertex has two sides there, so each counts twice.
+                let fan = self.fan(Self::place(id, 0, self.vertices.len()) as usize);
+                self.mean_normal(fan.iter().flat_map(|&side| self.side(side).faces))
+            }
+        }
+    }
+
+    fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        let all = (0_u32..).take(self.faces.len());
+        self.fill_face(self.most_aligned(all, direction), out);
+    }
+
+    fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
+        self.fill(self.part_toward(direction, Tilt::of_angle(angle)), out);
+    }
+
+    fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
+        match self.part_toward(direction, Tilt::least()) {
+            Part::Face(face) => FeatureId::Face(face),
+            Part::Side(side) => Self::side_id(side),
+            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! On which side: orientation of points in the plane and in space, with the exact sign.
+//!
+//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"
+//! (1997): a rounded determinant with a bound on its error and, where the bound does not decide, the
+//! determinant as an unevaluated sum of doubles. Two stages are enough here: the second is rare.
+//! Exact while no product underflows, which for coordinates scaled to 1 takes differences below
+//! 1e-90; then the sign may be lost, never the program.
+
+use smallvec::SmallVec;
+
+use crate::math::{Point, Vector};
+
+type P2 = Point<f64, 2>;
+type P3 = Point<f64, 3>;
+
+/// A sum of doubles of which none overlaps another, least first; empty for zero.
+type Expansion = SmallVec<[f64; 32]>;
+
+/// `a + b` as the rounded sum and its error (Knuth).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let virtual_b = sum - a;
+    (sum, (a - (sum - virtual_b)) + (b - virtual_b))
+}
+
+/// A double as two halves of 26 bits (Dekker, Veltkamp).
+fn split(a: f64) -> (f64, f64) {
+    let c = 134_217_729.0 * a;
+    let high = c - (c - a);
+    (high, a - high)
+}
+
+/// `a · b` as the rounded product and its error; without fused multiply-add, for the same bits on
+/// every machine.
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let error = product - a_high * b_high - a_low * b_high - a_high * b_low;
+    (product, a_low * b_low - error)
+}
+
+/// Adds one double to an expansion.
+fn grow(expansion: &mut Expansion, addend: f64) {
+    let mut carry = addend;
+    let mut kept = 0;
+    for at in 0..expansion.len() {
+        let (sum, error) = two_sum(carry, expansion[at]);
+        carry = sum;
+        if error != 0.0 {
+            expansion[kept] = error;
+            kept += 1;
+        }
+    }
+    expansion.truncate(kept);
+    if carry != 0.0 {
+        expansion.push(carry);
+    }
+}
+
+fn difference(a: f64, b: f64) -> Expansion {
+    let (high, low) = two_sum(a, -b);
+    let mut expansion = Expansion::new();
+    grow(&mut expansion, low);
+    grow(&mut expansion, high);
+    expansion
+}
+
+fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
+    for &x in a {
+        for &y in b {
+            let (high, low) = two_product(sign * x, y);
+            grow(sum, low);
+            grow(sum, high);
+        }
+    }
+}
+
+/// `a · d − b · c`.
+fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
+    let mut sum = Expansion::new();
+    add_product(&mut sum, a, d, 1.0);
+    add_product(&mut sum, b, c, -1.0);
+    sum
+}
+
+/// The value, rounded, with the exact sign: the largest term outweighs all others.
+fn value(expansion: &[f64]) -> f64 {
+    expansion.iter().sum::<f64>()
+}
+
+/// Twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
+pub(super) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
+    let (u, v) = (a - c, b - c);
+    let (left, right) = (u.x * v.y, u.y * v.x);
+    let (det, bound) = (left - right, 4.0 * f64::EPSILON * (left.abs() + right.abs()));
+    if det.abs() > bound { det } else { area_exact(a, b, c) }
+}
+
+fn area_exact(a: &P2, b: &P2, c: &P2) -> f64 {
+    let (ux, uy) = (difference(a.x, c.x), difference(a.y, c.y));
+    let (vx, vy) = (difference(b.x, c.x), difference(b.y, c.y));
+    value(&minor(&ux, &uy, &vx, &vy))
+}
+
+/// Six times the volume of the tetrahedron: positive if `q` lies on the side of the triangle `abc`
+/// from which it is seen counter-clockwise. The sign is exact.
+#[inline]
+pub(super) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
+    let (u, v, w): (Vector<f64, 3>, Vector<f64, 3>, Vector<f64, 3>) = (a - q, b - q, c - q);
+    let (vw, wv) = (v.x * w.y, v.y * w.x);
+    let (wu, uw) = (w.x * u.y, w.y * u.x);
+    let (uv, vu) = (u.x * v.y, u.y * v.x);
+    let det = u.z * (vw - wv) + v.z * (wu - uw) + w.z * (uv - vu);
+    let permanent = u.z.abs() * (vw.abs() + wv.abs())
+        + v.z.abs() * (wu.abs() + uw.abs())
+        + w.z.abs() * (uv.abs() + vu.abs());
+    // Shewchuk's bound is 7 half-units plus higher terms; twice that costs nothing.
+    if det.abs() > 8.0 * f64::EPSILON * permanent { -det } else { volume_exact([a, b, c], q) }
+}
+
+#[cold]
+fn volume_exact(corners: [&P3; 3], q: &P3) -> f64 {
+    let [u, v, w] = corners.map(|p| [0, 1, 2].map(|axis| difference(p[axis], q[axis])));
+    let mut sum = Expansion::new();
+    add_product(&mut sum, &minor(&v[0], &v[1], &w[0], &w[1]), &u[2], -1.0);
+    add_product(&mut sum, &minor(&w[0], &w[1], &u[0], &u[1]), &v[2], -1.0);
+    add_product(&mut sum, &minor(&u[0], &u[1], &v[0], &v[1]), &w[2], -1.0);
+    value(&sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sign_survives_where_rounding_loses_it() {
+        // Kettner et al., "Classroom Examples of Robustness Problems" (2004): a grid of neighbouring
+        // doubles around a point of the line y = x, whose side the rounded determinant gets wrong.
+        let step = f64::EPSILON / 2.0;
+        let (b, c) = (P2::new(12.0, 12.0), P2::new(24.0, 24.0));
+        let mut rounded_wrong = 0;
+        for i in 0..64_u32 {
+            for j in 0..64_u32 {
+                let a = P2::new(0.5 + f64::from(i) * step, 0.5 + f64::from(j) * step);
+                let expected = f64::from(j) - f64::from(i);
+                let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+                assert_eq!(sign(area(&a, &b, &c)), sign(expected), "{a}");
+                let rounded = (a.x - c.x) * (b.y - c.y) - (a.y - c.y) * (b.x - c.x);
+                rounded_wrong += u32::from(sign(rounded) != sign(expected));
+            }
+        }
+        assert!(rounded_wrong > 100, "the example is hard: {rounded_wrong} of 4096");
+    }
+
+    #[test]
+    fn volumes_are_positive_in_front() {
+        let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(P3::from);
+        assert_eq!(volume(&a, &b, &c, &P3::new(0.2, 0.2, 3.0)), 3.0, "above");
+        assert_eq!(volume(&a, &b, &c, &P3::new(7.0, -4.0, 0.0)), 0.0, "in the plane");
+        assert_eq!(volume_exact([&a, &b, &c], &P3::new(0.2, 0.2, 3.0)), 3.0, "exactly");
+        let tiny = volume(&a, &b, &c, &P3::new(0.1, 0.7, -1e-60));
+        assert!(tiny < 0.0 && tiny > -1.1e-60, "{tiny} just below");
+    }
+
+    #[test]
+    fn exact_volumes_of_a_thin_tetrahedron() {
+        // Three points with coordinates whose differences need more than 53 bits.
+        let far = 1.0 + f64::EPSILON;
+        let [a, b, c] = [[1e-20, 0.0, far], [far, 1e-20, 0.0], [0.0, far, 1e-20]].map(P3::from);
+        let inside = P3::from((a.coords + b.coords + c.coords) / 3.0);
+        for (x, expected) in [(inside.x + 1e-15, 1.0), (inside.x - 1e-15, -1.0)] {
+            let q = P3::new(x, inside.y, inside.z);
+            assert_eq!(volume(&a, &b, &c, &q).signum(), expected, "{q}");
+            assert_eq!(volume_exact([&a, &b, &c], &q).signum(), expected, "{q} exactly");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Convex hulls in the plane.
+
+use super::exact::area;
+use super::outline::thinned;
+use super::span::{Scaled, first_three, precedes};
+use crate::math::{Point, Real};
+use crate::shape::ShapeError;
+
+/// The convex hull of some points: the indices of its corners, counter-clockwise, from the one of
+/// least x (of least y among equals).
+///
+/// Of points that coincide the first is named; points on a side are left out. A corner that lies
+/// within 4 rounding units of the largest coordinate (`4 · N::EPSILON · max |x|`) of the line between
+/// its neighbours counts as a point on a side, so every point given is inside the polygon or nearer
+/// to it than twice that. Time is O(n log n).
+///
+/// # Errors
+/// For fewer than three points, a coordinate that is not finite, or points that span no area beyond
+/// rounding: [`ShapeError::Degenerate`] says whether they span a point or a line.
+///
+/// ```
+/// use impinge::math::Point;
+/// use impinge::transformation::convex_hull2;
+///
+/// let points = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [0.0, 2.0]].map(Point::<f32, 2>::from);
+/// assert_eq!(convex_hull2(&points), Ok(vec![0, 2, 3]));
+/// ```
+pub fn convex_hull2<N: Real>(points: &[Point<N, 2>]) -> Result<Vec<usize>, ShapeError> {
+    let scaled = Scaled::of(points, 3)?;
+    first_three(&scaled)?;
+    let order = distinct(&scaled.points);
+    let mut ring = chain(&scaled.points, order.iter().copied());
+    let upper = chain(&scaled.points, order.iter().rev().copied());
+    // Each chain ends where the other starts.
+    ring.pop();
+    ring.extend_from_slice(&upper[..upper.len() - 1]);
+    let ring = thinned(&scaled.points, ring, scaled.flat());
+    if ring.len() < 3 { Err(ShapeError::Degenerate { dimension: 1 }) } else { Ok(ring) }
+}
+
+/// The indices in order of coordinates, of equal points the first alone.
+fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    // The coordinates are finite, and `precedes` orders them by value: a total order.
+    order.sort_by(|&i, &j| {
+        let (a, b) = (&points[i], &points[j]);
+        let is_before = precedes(a, b);
+        if is_before { core::cmp::Ordering::Less } else { precedes(b, a).cmp(&false) }
+    });
+    order.dedup_by(|later, earlier| points[*later] == points[*earlier]);
+    order
+}
+
+/// One side of the hull, from the first point to the last: every corner turns left.
+///
+/// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
+fn chain(points: &[Point<f64, 2>], order: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut chain: Vec<usize> = Vec::new();
+    for index in order {
+        while let [.., before, last] = chain[..]
+            && area(&points[before], &points[last], &points[index]) <= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(index);
+    }
+    chain
+}

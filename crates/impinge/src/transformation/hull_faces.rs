@@ -1,0 +1,225 @@
+//! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
+//! polygon.
+
+use super::quickhull::Surface;
+use super::span::{direction, distance_from_segment, precedes};
+use crate::math::{Point, Vector};
+
+type P3 = Point<f64, 3>;
+
+fn at(index: u32) -> usize {
+    index as usize
+}
+
+/// The vertices next to each vertex: pairs (vertex, neighbor), sorted, and whether the surface turns
+/// at the edge between them.
+fn spokes(surface: &Surface<'_>, flat: f64) -> Vec<(u32, u32, bool)> {
+    let mut spokes = Vec::with_capacity(3 * surface.facets.len());
+    for (index, facet) in (0_u32..).zip(&surface.facets) {
+        for side in 0..3 {
+            let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]];
+            spokes.push((from, to, !is_flat(surface, [index, facet.neighbors[side]], flat)));
+        }
+    }
+    spokes.sort_unstable();
+    spokes
+}
+
+/// The smaller of two neighbors lies in the plane of the larger.
+fn is_flat(surface: &Surface<'_>, [facet1, facet2]: [u32; 2], flat: f64) -> bool {
+    let is_first_larger = surface.doubled_area(facet1) >= surface.doubled_area(facet2);
+    let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
+    let corners = surface.facets[at(small)].corners;
+    corners.iter().all(|&corner| surface.height(large, corner).abs() <= flat)
+}
+
+/// Vertices, no two next to each other, without which the hull stays the same within `flat`: they
+/// lie on the segment between two neighbors or in the plane of all of them.
+pub(super) fn redundant(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<u32> {
+    let spokes = spokes(surface, flat);
+    let mut is_kept = vec![false; points.len()];
+    let mut redundant = Vec::new();
+    for ring in spokes.chunk_by(|a, b| a.0 == b.0) {
+        let vertex = ring[0].0;
+        // At a true corner three edges meet at least, or slivers hide some of them.
+        let turns = ring.iter().filter(|spoke| spoke.2).count();
+        let is_candidate = turns <= 2 && ring.len() <= 64 && !is_kept[at(vertex)];
+        let neighbors: Vec<P3> = ring.iter().map(|spoke| points[at(spoke.1)]).collect();
+        if is_candidate && is_inside(&points[at(vertex)], &neighbors, flat) {
+            redundant.push(vertex);
+            ring.iter().for_each(|spoke| is_kept[at(spoke.1)] = true);
+        }
+    }
+    redundant
+}
+
+fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
+    let pairs =
+        neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
+    pairs.clone().any(|(a, b)| distance_from_segment(vertex, a, b) <= flat)
+        || widest_normal(vertex, pairs)
+            .is_some_and(|normal| neighbors.iter().all(|p| normal.dot(&(p - vertex)).abs() <= flat))
+}
+
+/// The unit normal of the largest triangle of a vertex and two of its neighbors.
+fn widest_normal<'a>(
+    vertex: &P3,
+    pairs: impl Iterator<Item = (&'a P3, &'a P3)>,
+) -> Option<Vector<f64, 3>> {
+    let normals = pairs.map(|(a, b)| (a - vertex).cross(&(b - vertex)));
+    let widest =
+        normals.reduce(|best, n| if n.norm_squared() > best.norm_squared() { n } else { best })?;
+    direction(&widest).map(|(normal, _)| normal)
+}
+
+/// The loops of vertices of the faces, counter-clockwise from outside, from the first vertex in order
+/// of coordinates; triangles within `flat` of one plane are one face.
+///
+/// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
+pub(super) fn faces(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<Vec<u32>> {
+    let mut faces = Merger::new(surface, points, flat).merged();
+    straighten(&mut faces, points.len());
+    if !is_closed(&faces) {
+        faces = surface.facets.iter().map(|facet| facet.corners.to_vec()).collect();
+    }
+    for face in &mut faces {
+        let first = (1..face.len()).fold(0, |first, candidate| {
+            let is_before = precedes(&points[at(face[candidate])], &points[at(face[first])]);
+            if is_before { candidate } else { first }
+        });
+        face.rotate_left(first);
+    }
+    faces
+}
+
+/// A corner of a face that grows, and the facet beyond the side to the next corner.
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: u32,
+    beyond: u32,
+}
+
+struct Merger<'a> {
+    surface: &'a Surface<'a>,
+    points: &'a [P3],
+    flat: f64,
+    /// Which facets are part of a face.
+    is_taken: Vec<bool>,
+    /// For each vertex, one more than the last seed in whose face it is.
+    in_face_of: Vec<u32>,
+}
+
+impl<'a> Merger<'a> {
+    fn new(surface: &'a Surface<'a>, points: &'a [P3], flat: f64) -> Self {
+        let is_taken = vec![false; surface.facets.len()];
+        Self { surface, points, flat, is_taken, in_face_of: vec![0; points.len()] }
+    }
+
+    /// Grows a face from each facet that is in none yet, the largest first.
+    fn merged(mut self) -> Vec<Vec<u32>> {
+        let mut seeds: Vec<u32> = (0..).take(self.surface.facets.len()).collect();
+        let area = |facet: u32| self.surface.doubled_area(facet);
+        seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+        let mut faces = Vec::new();
+        for seed in seeds {
+            if !self.is_taken[at(seed)] {
+                faces.push(self.grow(seed));
+            }
+        }
+        faces
+    }
+
+    fn grow(&mut self, seed: u32) -> Vec<u32> {
+        let facet = &self.surface.facets[at(seed)];
+        self.is_taken[at(seed)] = true;
+        let mut ring = Vec::with_capacity(4);
+        for side in 0..3 {
+            self.in_face_of[at(facet.corners[side])] = seed + 1;
+            ring.push(Corner { vertex: facet.corners[side], beyond: facet.neighbors[side] });
+        }
+        // Each success takes one facet more; after a whole turn without any the face is done.
+        let (mut position, mut failures) = (0, 0);
+        while failures < ring.len() {
+            position %= ring.len();
+            if self.take_beyond(seed, &mut ring, position) {
+                failures = 0;
+            } else {
+                failures += 1;
+                position += 1;
+            }
+        }
+        ring.iter().map(|corner| corner.vertex).collect()
+    }
+
+    /// Takes in the facet beyond a side, if it lies in the plane of the seed and the face stays
+    /// convex.
+    fn take_beyond(&mut self, seed: u32, ring: &mut Vec<Corner>, position: usize) -> bool {
+        let (from, beyond) = (ring[position].vertex, ring[position].beyond);
+        let facet = &self.surface.facets[at(beyond)];
+        let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
+            return false;
+        };
+        // Seen from there the side runs backwards, to `from`; then come the far corner and back.
+        let far = facet.corners[(shared + 1) % 3];
+        let is_free = !self.is_taken[at(beyond)] && self.in_face_of[at(far)] != seed + 1;
+        let is_level = || self.surface.height(seed, far).abs() <= self.flat;
+        if !(is_free && is_level() && self.stays_convex(seed, ring, position, far)) {
+            return false;
+        }
+        self.is_taken[at(beyond)] = true;
+        self.in_face_of[at(far)] = seed + 1;
+        ring[position].beyond = facet.neighbors[shared];
+        ring.insert(
+            position + 1,
+            Corner { vertex: far, beyond: facet.neighbors[(shared + 1) % 3] },
+        );
+        true
+    }
+
+    fn stays_convex(&self, seed: u32, ring: &[Corner], position: usize, far: u32) -> bool {
+        let count = ring.len();
+        let vertex = |step: usize| ring[(position + step) % count].vertex;
+        let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
+        let normal = self.surface.normal(seed);
+        let turns_left = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.points[at(corner)]);
+            // How far b lies outside the line from a to c, times its length.
+            (b - a).cross(&(c - b)).dot(&normal) >= -self.flat * (c - a).norm()
+        };
+        turns_left([before, from, far])
+            && turns_left([from, far, to])
+            && turns_left([far, to, after])
+    }
+}
+
+/// Drops the vertices that only two faces share: in each of them the sides there form one line.
+fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
+    let mut uses = vec![(0_u32, [0_usize; 2]); vertices];
+    for (index, face) in faces.iter().enumerate() {
+        for &vertex in face {
+            let (count, users) = &mut uses[at(vertex)];
+            if let Some(user) = users.get_mut(at(*count)) {
+                *user = index;
+            }
+            *count += 1;
+        }
+    }
+    for (vertex, (count, users)) in (0_u32..).zip(uses) {
+        if count == 2 && users.iter().all(|&user| faces[user].len() > 3) {
+            users.iter().for_each(|&user| faces[user].retain(|&corner| corner != vertex));
+        }
+    }
+}
+
+/// Each side of a face is, backwards, the side of one other face.
+fn is_closed(faces: &[Vec<u32>]) -> bool {
+    let sides = |face: &Vec<u32>| {
+        let next = face.iter().cycle().skip(1);
+        face.iter().copied().zip(next.copied()).collect::<Vec<_>>()
+    };
+    let mut forward: Vec<(u32, u32)> = faces.iter().flat_map(sides).collect();
+    let mut backward: Vec<(u32, u32)> = forward.iter().map(|&(from, to)| (to, from)).collect();
+    forward.sort_unstable();
+    backward.sort_unstable();
+    forward == backward && forward.windows(2).all(|pair| pair[0] != pair[1])
+}

@@ -1,0 +1,88 @@
+//! What makes a hull a hull, checked slowly.
+
+use impinge::math::{Point, Real, Vector};
+use impinge::transformation::{IndexedHull, convex_hull3};
+
+use super::points::P3;
+
+/// What was measured, in rounding units of the points: `EPSILON · max |coordinate|`.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured {
+    /// How far a given point lies in front of a face, at most.
+    pub outside: f64,
+    /// How far a vertex of a face lies out of its plane, at most.
+    pub bent: f64,
+}
+
+pub fn cast<N: Real>(points: &[P3]) -> Vec<Point<N, 3>> {
+    points.iter().map(|p| Point::from(p.coords.map(N::lit))).collect()
+}
+
+/// The points over the largest coordinate, and one rounding unit there.
+fn normalized<N: Real>(points: &[Point<N, 3>]) -> (Vec<P3>, f64) {
+    let exact: Vec<P3> = points.iter().map(|p| Point::from(p.coords.map(Real::as_f64))).collect();
+    let size =
+        exact.iter().flat_map(|p| p.iter().copied()).fold(0.0, |size: f64, x| size.max(x.abs()));
+    (exact.iter().map(|p| p / size).collect(), N::EPSILON.as_f64())
+}
+
+/// The normal of a loop, by Newell's sum around its own first point.
+fn normal(points: &[P3], ring: &[usize]) -> Vector<f64, 3> {
+    let base = points[ring[0]];
+    let fan = ring.windows(2).map(|pair| (points[pair[0]] - base).cross(&(points[pair[1]] - base)));
+    fan.sum::<Vector<f64, 3>>().normalize()
+}
+
+fn sides(hull: &IndexedHull) -> Vec<(usize, usize)> {
+    let around = |ring: &Vec<usize>| {
+        (0..ring.len()).map(|at| (ring[at], ring[(at + 1) % ring.len()])).collect::<Vec<_>>()
+    };
+    hull.faces.iter().flat_map(around).collect()
+}
+
+/// Closed, one sphere, every vertex used, each loop without repetition.
+fn topology(hull: &IndexedHull) {
+    assert!(hull.vertices.windows(2).all(|pair| pair[0] < pair[1]), "ascending");
+    let mut used = hull.faces.concat();
+    used.sort_unstable();
+    used.dedup();
+    assert_eq!(used, hull.vertices, "the vertices are those of the faces");
+    let mut forward = sides(hull);
+    let mut backward: Vec<_> = forward.iter().map(|&(from, to)| (to, from)).collect();
+    forward.sort_unstable();
+    backward.sort_unstable();
+    assert_eq!(forward, backward, "each side has one twin");
+    assert!(forward.windows(2).all(|pair| pair[0] != pair[1]), "no side is there twice");
+    let edges = forward.len() / 2;
+    assert_eq!(hull.vertices.len() + hull.faces.len(), edges + 2, "Euler");
+}
+
+/// Checks a hull; heights are compared with every given point if there are not too many.
+pub fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull) -> Measured {
+    topology(hull);
+    let (exact, unit) = normalized(points);
+    let mut measured = Measured { outside: 0.0, bent: 0.0 };
+    let stride = 1 + exact.len() * hull.faces.len() / 20_000_000;
+    for ring in hull.faces.iter().step_by(stride) {
+        let normal = normal(&exact, ring);
+        let height = |p: &P3| normal.dot(&(p - exact[ring[0]])) / unit;
+        measured.bent = ring.iter().map(|&v| height(&exact[v]).abs()).fold(measured.bent, f64::max);
+        measured.outside = exact.iter().map(height).fold(measured.outside, f64::max);
+        for at in 0..ring.len() {
+            let [a, b, c] = [0, 1, 2].map(|step| exact[ring[(at + step) % ring.len()]]);
+            let outside_chord = (b - a).cross(&(c - b)).dot(&normal) / ((c - a).norm() * unit);
+            assert!(outside_chord >= -8.0, "a face turns right by {outside_chord}: {ring:?}");
+        }
+    }
+    measured
+}
+
+/// The hull of points given as `f64`, in one scalar, checked against the documented tolerance.
+pub fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull {
+    let points = cast::<N>(points);
+    let hull = convex_hull3(&points).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let measured = check(&points, &hull);
+    println!("{name}: {} vertices, {} faces, {measured:?}", hull.vertices.len(), hull.faces.len());
+    assert!(measured.outside <= 32.0 && measured.bent <= 16.0, "{name}: {measured:?}");
+    hull
+}

@@ -1,0 +1,8 @@
+//! Convex hulls and convex polygons against slow checks that share nothing with the library.
+
+mod checks;
+mod corpus;
+mod plane;
+mod points;
+mod solids;
+mod space;

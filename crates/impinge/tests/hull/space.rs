@@ -1,0 +1,186 @@
+//! Hulls in space.
+
+use impinge::math::{Point, Real};
+use impinge::shape::{ConvexHull, ShapeError};
+use impinge::transformation::convex_hull3;
+
+use super::checks::{cast, hull_of};
+use super::points::{P3, ball, cube, grid, octahedron, prism, slab, sphere, turned};
+
+fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
+    let hull = hull_of::<N>(name, points);
+    (hull.vertices.len(), hull.faces.len())
+}
+
+/// Solids whose faces are known, as they are and turned, small, large and far away.
+fn known_solids<N: Real>() {
+    let tetrahedron: Vec<P3> =
+        cube().into_iter().filter(|p| (p.x + p.y + p.z) % 2.0 == 0.0).collect();
+    let solids = [
+        ("tetrahedron", tetrahedron, (4, 4)),
+        ("cube", cube(), (8, 6)),
+        ("octahedron", octahedron(), (6, 8)),
+        ("prism of 5", prism(5), (10, 7)),
+        ("prism of 24", prism(24), (48, 26)),
+        ("3³ grid", grid(3), (8, 6)),
+        ("10³ grid", grid(10), (8, 6)),
+    ];
+    for (name, points, expected) in solids {
+        assert_eq!(counts::<N>(name, &points), expected, "{name}");
+        assert_eq!(counts::<N>(name, &turned(&points, 1.0, 0.0)), expected, "{name}, turned");
+        assert_eq!(counts::<N>(name, &turned(&points, 1e-23, 0.0)), expected, "{name}, tiny");
+        assert_eq!(counts::<N>(name, &turned(&points, 1e6, 0.0)), expected, "{name}, huge");
+        assert_eq!(counts::<N>(name, &turned(&points, 1.0, 30.0)), expected, "{name}, far");
+    }
+}
+
+#[test]
+fn known_solids_have_their_faces() {
+    known_solids::<f32>();
+    known_solids::<f64>();
+}
+
+#[test]
+fn a_cube_of_size_one_a_million_away() {
+    let far: Vec<P3> = cube().iter().map(|p| p + P3::new(1e6, -1e6, 1e6).coords).collect();
+    assert_eq!(counts::<f32>("exact", &far), (8, 6), "whole numbers are exact");
+    assert_eq!(counts::<f64>("exact", &far), (8, 6), "whole numbers are exact");
+    assert_eq!(counts::<f64>("turned", &turned(&cube(), 1.0, 1e6)), (8, 6), "noise of 1e-10");
+}
+
+fn random<N: Real>() {
+    let (vertices, _) = counts::<N>("8000 in a ball", &ball(8000));
+    assert!((200..1000).contains(&vertices), "{vertices} of 8000 are on the hull");
+    let (vertices, faces) = counts::<N>("2000 on a sphere", &sphere(2000));
+    assert_eq!((vertices, faces), (2000, 3996), "all are, and all faces are triangles");
+    let flat: Vec<P3> = ball(8000).iter().map(|p| P3::new(p.x, p.y, p.z * 1e-4)).collect();
+    counts::<N>("a lens", &turned(&flat, 1.0, 0.0));
+    let twice: Vec<P3> = ball(500).into_iter().flat_map(|p| [p, p, p]).collect();
+    let hull = hull_of::<N>("each point three times", &twice);
+    assert!(
+        hull.vertices.iter().all(|vertex| vertex % 3 == 0 || vertex % 3 > 0),
+        "any of the three"
+    );
+    assert_eq!(
+        hull.vertices.len(),
+        counts::<N>("each point once", &ball(500)).0,
+        "no more vertices"
+    );
+}
+
+#[test]
+fn random_points() {
+    random::<f32>();
+    random::<f64>();
+}
+
+fn slabs<N: Real>() {
+    // From well above the rounding of the coordinates to below it.
+    for units in [1e6, 1e4, 1e3, 100.0, 30.0, 10.0, 5.0, 3.0, 1.0, 0.1] {
+        let points = slab(units * N::EPSILON.as_f64());
+        let (level, tilted) = (cast::<N>(&points), cast::<N>(&turned(&points, 1.0, 0.0)));
+        for points in [level, tilted] {
+            let exact: Vec<P3> =
+                points.iter().map(|p| Point::from(p.coords.map(Real::as_f64))).collect();
+            match convex_hull3(&points) {
+                Ok(_) => assert!(hull_of::<N>("slab", &exact).vertices.len() >= 4, "{units}"),
+                Err(error) => {
+                    assert_eq!(error, ShapeError::Degenerate { dimension: 2 }, "{units}");
+                    assert!(units <= 5.0, "a slab {units} units thick is no plane");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn slabs_down_to_nothing() {
+    slabs::<f32>();
+    slabs::<f64>();
+}
+
+fn bad_input<N: Real>() {
+    let p = |x: f64, y: f64, z: f64| P3::new(x, y, z);
+    let line: Vec<P3> = (0..8).map(|i| p(f64::from(i), 2.0 * f64::from(i), 0.0)).collect();
+    let plane = [p(0.0, 0.0, 1.0), p(1.0, 0.0, 1.0), p(0.0, 1.0, 1.0), p(1.0, 1.0, 1.0)];
+    let degenerate = |dimension| Err(ShapeError::Degenerate { dimension });
+    let few = |given| Err(ShapeError::TooFewPoints { given, needed: 4 });
+    let cases = [
+        (vec![], few(0)),
+        (vec![p(1.0, 2.0, 3.0)], few(1)),
+        (vec![p(1.0, 2.0, 3.0); 9], degenerate(0)),
+        (vec![p(0.0, 0.0, 0.0); 9], degenerate(0)),
+        (line.clone(), degenerate(1)),
+        (turned(&line, 1.0, 5.0), degenerate(1)),
+        (plane.to_vec(), degenerate(2)),
+        (turned(&plane, 1e-20, 0.0), degenerate(2)),
+    ];
+    for (points, expected) in cases {
+        let points = cast::<N>(&points);
+        assert_eq!(convex_hull3(&points).map(|_| ()), expected, "{points:?}");
+        assert_eq!(ConvexHull::try_from_points(&points).map(|_| ()), expected, "{points:?}");
+    }
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut points = cast::<N>(&cube());
+        points[5].y = N::lit(bad);
+        assert_eq!(convex_hull3(&points), Err(ShapeError::PointNotFinite { index: 5 }), "{bad}");
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    bad_input::<f32>();
+    bad_input::<f64>();
+}
+
+#[test]
+#[should_panic(expected = "the points only span something of dimension 1")]
+fn the_panicking_constructor_says_why() {
+    let _ =
+        ConvexHull::<f32>::from_points(&[[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]].map(Point::from));
+}
+
+/// Products of the smallest numbers vanish and of the largest overflow, unless they are scaled first.
+#[test]
+fn the_ends_of_the_range() {
+    for scale in [f32::MIN_POSITIVE, 1e-40, 1e30, f32::MAX] {
+        let points: Vec<P3> = cube().iter().map(|p| p * f64::from(scale)).collect();
+        assert_eq!(counts::<f32>("cube", &points), (8, 6), "{scale}");
+        let solid = ConvexHull::from_points(&cast::<f32>(&points));
+        let unit = solid.faces().iter().all(|face| (face.normal.norm() - 1.0).abs() < 1e-6);
+        assert!(unit, "normals at {scale}");
+    }
+    for scale in [f64::MIN_POSITIVE, 1e-310, 1e300, f64::MAX] {
+        let points: Vec<P3> = cube().iter().map(|p| p * scale).collect();
+        assert_eq!(counts::<f64>("cube", &points), (8, 6), "{scale}");
+    }
+}
+
+#[test]
+fn scaling_by_a_power_of_two_changes_nothing() {
+    let points = turned(&ball(300), 1.0, 0.3);
+    let hull = convex_hull3(&cast::<f32>(&points));
+    for power in [-70, -3, 1, 40] {
+        let scaled: Vec<P3> = points
+            .iter()
+            .map(|p| P3::from(cast::<f32>(&[*p])[0].coords.map(f64::from)) * 2.0_f64.powi(power))
+            .collect();
+        assert_eq!(convex_hull3(&cast::<f32>(&scaled)), hull, "times 2^{power}");
+    }
+}
+
+#[test]
+#[ignore = "a measurement, for optimised builds"]
+fn time_of_large_hulls() {
+    for count in [1_000, 10_000, 100_000] {
+        for (name, points) in [("sphere", sphere(count)), ("ball", ball(count))] {
+            let points = cast::<f32>(&points);
+            let start = std::time::Instant::now();
+            let hull = convex_hull3(&points).expect("a volume");
+            let hulled = start.elapsed();
+            let solid = ConvexHull::try_from_points(&points).expect("a volume");
+            println!("{count} {name}: {hulled:?}, {:?} with the solid", start.elapsed() - hulled);
+            assert_eq!(solid.faces().len(), hull.faces.len(), "the same hull");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Random solids of each kind.
+
+use impinge::math::{Point, Real, Unit, Vector};
+use impinge::shape::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Segment, Shape, ShapeKind, Triangle,
+};
+
+use super::corpus::{hull, polygon};
+use super::random::Random;
+use super::solids::RoundHull;
+
+/// The kinds of the plane.
+pub const PLANE: [ShapeKind; 8] = [
+    ShapeKind::Ball,
+    ShapeKind::Segment,
+    ShapeKind::Capsule,
+    ShapeKind::Triangle,
+    ShapeKind::Cuboid,
+    ShapeKind::Polytope,
+    ShapeKind::SupportMap,
+    ShapeKind::Plane,
+];
+
+/// The kinds of space.
+pub const SPACE: [ShapeKind; 10] = [
+    ShapeKind::Ball,
+    ShapeKind::Segment,
+    ShapeKind::Capsule,
+    ShapeKind::Triangle,
+    ShapeKind::Cuboid,
+    ShapeKind::Polytope,
+    ShapeKind::Cylinder,
+    ShapeKind::Cone,
+    ShapeKind::SupportMap,
+    ShapeKind::Plane,
+];
+
+/// Makes a solid of a kind from random numbers, `scale` large.
+pub type Sample<N, const D: usize> = fn(ShapeKind, &mut Random, N) -> Box<dyn Shape<N, D>>;
+
+/// A point up to `scale` away from the origin.
+fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> {
+    Point::from(random.vector::<N, D>() * scale)
+}
+
+/// A size between a fifth of `scale` and all of it.
+fn size<N: Real>(random: &mut Random, scale: N) -> N {
+    N::lit(random.within(0.2, 1.0)) * scale
+}
+
+/// The kinds that both dimensions have.
+fn common<N: Real, const D: usize>(
+    kind: ShapeKind,
+    random: &mut Random,
+    scale: N,
+) -> Box<dyn Shape<N, D>> {
+    match kind {
+        ShapeKind::Ball => Box::new(Ball::new(size(random, scale))),
+        ShapeKind::Segment => Box::new(Segment::new(point(random, scale), point(random, scale))),
+        ShapeKind::Capsule => {
+            let (a, b) = (point(random, scale), point(random, scale));
+            Box::new(Capsule::<N, D>::try_from_ends(a, b, size(random, scale)).expect("finite"))
+        }
+        ShapeKind::Triangle => {
+            let mut corner = || point(random, scale);
+            Box::new(Triangle::<N, D>::new(corner(), corner(), corner()))
+        }
+        ShapeKind::Cuboid => {
+            Box::new(Cuboid::new(Vector::<N, D>::from_fn(|_, _| size(random, scale))))
+        }
+        ShapeKind::SupportMap => {
+            let points = (0..7).map(|_| point::<N, D>(random, scale)).collect();
+            Box::new(RoundHull { points, rounding: size(random, scale) })
+        }
+        ShapeKind::Plane => Box::new(Plane::new(Unit::new_unchecked(random.direction::<N, D>()))),
+        other => unreachable!("{other:?} has no sample"),
+    }
+}
+
+pub fn sample2<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<dyn Shape<N, 2>> {
+    match kind {
+        ShapeKind::Polytope => polygon(octagon(random, scale)),
+        other => common(other, random, scale),
+    }
+}
+
+/// A convex polygon, counter-clockwise.
+fn octagon<N: Real>(random: &mut Random, scale: N) -> Vec<Point<N, 2>> {
+    let stretch = [random.within(0.4, 1.0), random.within(0.4, 1.0)];
+    (0..8)
+        .map(|corner| {
+            let angle =
+                (f64::from(corner) + random.within(0.0, 0.8)) * core::f64::consts::FRAC_PI_4;
+            let (x, y) = (angle.cos() * stretch[0], angle.sin() * stretch[1]);
+            Point::<N, 2>::new(N::lit(x) * scale, N::lit(y) * scale)
+        })
+        .collect()
+}
+
+pub fn sample3<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<dyn Shape<N, 3>> {
+    match kind {
+        ShapeKind::Polytope => {
+            let points = (0..12).map(|_| Point::from(random.direction::<N, 3>() * scale));
+            hull(points.collect())
+        }
+        ShapeKind::Cylinder => Box::new(Cylinder::new(size(random, scale), size(random, scale))),
+        ShapeKind::Cone => Box::new(Cone::new(size(random, scale), size(random, scale))),
+        other => common(other, random, scale),
+    }
+}

@@ -1,0 +1,385 @@
+//! Rays whose answers are worked out by hand.
+
+use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
+use impinge::query::{Ray, RayCast};
+use impinge::shape::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle, Triangle,
+};
+
+type P2 = Point<f64, 2>;
+type P3 = Point<f64, 3>;
+type V2 = Vector<f64, 2>;
+type V3 = Vector<f64, 3>;
+
+/// Origin and direction; what a solid and a hollow shape answer.
+type Case<const D: usize> = ([f64; D], [f64; D], Option<f64>, Option<f64>);
+
+fn check<const D: usize>(shape: &dyn Shape<f64, D>, cases: &[Case<D>])
+where
+    f64: Space<D>,
+{
+    for &(origin, dir, solid, hollow) in cases {
+        let ray = Ray::new(Point::from(origin), Vector::<f64, D>::from(dir));
+        for (solid, expected) in [(true, solid), (false, hollow)] {
+            let found = shape.cast_local_ray(&ray, solid).map(|hit| hit.toi);
+            let same = match (found, expected) {
+                (Some(found), Some(expected)) => (found - expected).abs() <= 4e-15 * expected,
+                (found, expected) => found == expected,
+            };
+            assert!(same, "{shape:?} {ray:?} solid {solid}: {found:?}, not {expected:?}");
+        }
+    }
+}
+
+fn at(t: f64) -> (Option<f64>, Option<f64>) {
+    (Some(t), Some(t))
+}
+
+/// A ray that starts outside: both answers are the same.
+fn from_outside<const D: usize>(origin: [f64; D], dir: [f64; D], t: f64) -> Case<D> {
+    let (solid, hollow) = at(t);
+    (origin, dir, solid, hollow)
+}
+
+fn miss<const D: usize>(origin: [f64; D], dir: [f64; D]) -> Case<D> {
+    (origin, dir, None, None)
+}
+
+fn from_inside<const D: usize>(origin: [f64; D], dir: [f64; D], leave: f64) -> Case<D> {
+    (origin, dir, Some(0.0), Some(leave))
+}
+
+#[test]
+fn balls() {
+    check::<2>(
+        &Ball::new(1.0),
+        &[
+            from_outside([-3.0, 0.0], [1.0, 0.0], 2.0),
+            from_outside([-3.0, 0.0], [0.5, 0.0], 4.0),
+            from_outside([-3.0, 1.0], [1.0, 0.0], 3.0),
+            miss([-3.0, 1.0001], [1.0, 0.0]),
+            miss([3.0, 0.0], [1.0, 0.0]),
+            from_inside([0.0, 0.0], [2.0, 0.0], 0.5),
+            from_inside([1.0, 0.0], [1.0, 0.0], 0.0),
+            from_outside([1.0, 0.0], [-1.0, 0.0], 0.0),
+        ],
+    );
+    check::<3>(
+        &Ball::new(2.0),
+        &[
+            from_outside([0.0, 0.0, -6.0], [0.0, 0.0, 1000.0], 0.004),
+            from_outside([0.0, 2.0, -6.0], [0.0, 0.0, 1.0], 6.0),
+            miss([0.0, 2.0, -6.0], [0.0, 1e-9, 1.0]),
+            from_inside([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 3.0),
+        ],
+    );
+    check::<3>(
+        &Ball::new(0.0),
+        &[
+            from_outside([0.0, 0.0, -6.0], [0.0, 0.0, 1.0], 6.0),
+            miss([0.0, 1e-9, -6.0], [0.0, 0.0, 1.0]),
+        ],
+    );
+}
+
+#[test]
+fn cuboids() {
+    check::<2>(
+        &Cuboid::new(V2::new(1.0, 2.0)),
+        &[
+            from_outside([-3.0, 0.0], [1.0, 0.0], 2.0),
+            from_outside([-2.0, -3.0], [1.0, 1.0], 1.0),
+            from_outside([-3.0, 0.0], [1.0, 1.0], 2.0),
+            from_outside([-3.0, 2.0], [1.0, 0.0], 2.0),
+            miss([-3.0, 2.0001], [1.0, 0.0]),
+            miss([3.0, 2.0], [1.0, 0.0]),
+            from_inside([0.0, 0.0], [0.0, 4.0], 0.5),
+            from_inside([1.0, 0.0], [1.0, 0.0], 0.0),
+            from_outside([1.0, 0.0], [-1.0, 0.0], 0.0),
+            from_inside([0.0, 2.0], [1.0, 0.0], 0.0),
+        ],
+    );
+    check::<3>(
+        &Cuboid::new(V3::new(1.0, 1.0, 1.0)),
+        &[
+            from_outside([-2.0, -2.0, -2.0], [1.0, 1.0, 1.0], 1.0),
+            from_outside([-2.0, 1.0, 1.0], [1.0, 0.0, 0.0], 1.0),
+            from_outside([-2.0, 0.0, 1.0], [1.0, 1.0, 0.0], 1.0),
+            miss([-2.0, 1.0, 1.0001], [1.0, 0.0, 0.0]),
+        ],
+    );
+    check::<2>(
+        &Cuboid::new(V2::new(0.0, 1.0)),
+        &[
+            from_outside([-1.0, 0.0], [1.0, 0.0], 1.0),
+            from_outside([0.0, -3.0], [0.0, 1.0], 2.0),
+            from_inside([0.0, 0.0], [0.0, 1.0], 0.0),
+            miss([1e-9, -3.0], [0.0, 1.0]),
+        ],
+    );
+}
+
+#[test]
+fn half_spaces() {
+    check::<2>(
+        &Plane::new(Unit::new_unchecked(V2::y())),
+        &[
+            from_outside([0.0, 2.0], [3.0, -1.0], 2.0),
+            miss([0.0, 2.0], [0.0, 1.0]),
+            miss([0.0, 2.0], [1.0, 0.0]),
+            ([0.0, -1.0], [0.0, -1.0], Some(0.0), None),
+            ([0.0, -1.0], [1.0, 0.0], Some(0.0), None),
+            from_inside([0.0, -1.0], [1.0, 2.0], 0.5),
+            from_inside([0.0, 0.0], [1.0, 0.0], 0.0),
+            from_outside([0.0, 0.0], [0.0, -1.0], 0.0),
+        ],
+    );
+}
+
+#[test]
+fn segments() {
+    check::<2>(
+        &Segment::new(P2::new(0.0, 0.0), P2::new(2.0, 0.0)),
+        &[
+            from_outside([1.0, 3.0], [0.0, -1.0], 3.0),
+            from_outside([0.0, 3.0], [0.0, -1.0], 3.0),
+            from_outside([2.0, 3.0], [0.0, -0.25], 12.0),
+            miss([2.5, 3.0], [0.0, -1.0]),
+            from_outside([-1.0, 0.0], [1.0, 0.0], 1.0),
+            from_outside([3.0, 0.0], [-2.0, 0.0], 0.5),
+            miss([-1.0, 0.0], [-1.0, 0.0]),
+            miss([0.0, 1.0], [1.0, 0.0]),
+            from_inside([1.0, 0.0], [1.0, 0.0], 0.0),
+            from_inside([1.0, 0.0], [0.0, 1.0], 0.0),
+        ],
+    );
+    check::<3>(
+        &Segment::new(P3::new(0.0, 0.0, 0.0), P3::new(1.0, 2.0, 3.0)),
+        &[
+            from_outside([0.5, 1.0, 5.5], [0.0, 0.0, -1.0], 4.0),
+            miss([0.5, 1.001, 5.5], [0.0, 0.0, -1.0]),
+            from_outside([-1.0, -2.0, -3.0], [1.0, 2.0, 3.0], 1.0),
+            miss([2.0, 4.0, 6.0], [1.0, 2.0, 3.0]),
+        ],
+    );
+    check::<2>(
+        &Segment::new(P2::new(3.0, 1.0), P2::new(3.0, 1.0)),
+        &[
+            from_outside([0.0, 1.0], [1.0, 0.0], 3.0),
+            from_outside([0.0, 0.0], [3.0, 1.0], 1.0),
+            miss([0.0, 0.0], [3.0, 1.01]),
+        ],
+    );
+}
+
+#[test]
+fn capsules() {
+    check::<2>(
+        &Capsule::new(1.0, 1.0),
+        &[
+            from_outside([-3.0, 0.0], [1.0, 0.0], 2.0),
+            from_outside([0.0, 5.0], [0.0, -1.0], 3.0),
+            from_outside([-3.0, 1.0], [1.0, 0.0], 2.0),
+            from_outside([-3.0, 1.6], [1.0, 0.0], 2.2),
+            from_outside([-3.0, 2.0], [1.0, 0.0], 3.0),
+            miss([-3.0, 2.0001], [1.0, 0.0]),
+            from_outside([1.0, 5.0], [0.0, -1.0], 4.0),
+            from_inside([0.0, 0.0], [0.0, 1.0], 2.0),
+            from_inside([0.0, 0.0], [1.0, 0.0], 1.0),
+        ],
+    );
+    check::<3>(&Capsule::new(0.0, 2.0), &[from_outside([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0)]);
+    check::<3>(
+        &Capsule::new(1.0, 0.0),
+        &[
+            from_outside([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], 3.0),
+            from_outside([0.0, -3.0, 0.0], [0.0, 1.0, 0.0], 2.0),
+        ],
+    );
+}
+
+#[test]
+fn triangles_of_the_plane() {
+    let [a, b, c] = [P2::new(0.0, 0.0), P2::new(4.0, 0.0), P2::new(0.0, 4.0)];
+    for triangle in [Triangle::new(a, b, c), Triangle::new(a, c, b), Triangle::new(c, a, b)] {
+        check::<2>(
+            &triangle,
+            &[
+                from_outside([1.0, -1.0], [0.0, 1.0], 1.0),
+                from_outside([-1.0, 0.0], [1.0, 0.0], 1.0),
+                from_outside([-2.0, 6.0], [1.0, -1.0], 2.0),
+                from_outside([-1.0, 4.0], [1.0, 0.0], 1.0),
+                from_outside([-1.0, -1.0], [1.0, 1.0], 1.0),
+                miss([-1.0, 4.1], [1.0, 0.0]),
+                miss([5.0, 5.0], [1.0, 1.0]),
+                from_inside([1.0, 1.0], [1.0, 0.0], 2.0),
+                from_inside([1.0, 0.0], [1.0, 0.0], 0.0),
+            ],
+        );
+    }
+    let flat = Triangle::new(a, P2::new(2.0, 0.0), b);
+    check::<2>(
+        &flat,
+        &[
+            from_outside([1.0, 3.0], [0.0, -1.0], 3.0),
+            from_outside([-1.0, 0.0], [1.0, 0.0], 1.0),
+            miss([5.0, 3.0], [0.0, -1.0]),
+        ],
+    );
+}
+
+#[test]
+fn triangles_of_space() {
+    let [a, b, c] = [P3::new(0.0, 0.0, 0.0), P3::new(4.0, 0.0, 0.0), P3::new(0.0, 4.0, 0.0)];
+    for triangle in [Triangle::new(a, b, c), Triangle::new(a, c, b)] {
+        check::<3>(
+            &triangle,
+            &[
+                from_outside([1.0, 1.0, 3.0], [0.0, 0.0, -1.0], 3.0),
+                from_outside([1.0, 1.0, -3.0], [0.0, 0.0, 2.0], 1.5),
+                from_outside([2.0, 0.0, 1.0], [0.0, 0.0, -1.0], 1.0),
+                from_outside([2.0, 2.0, 1.0], [0.0, 0.0, -1.0], 1.0),
+                from_outside([4.0, 0.0, 1.0], [0.0, 0.0, -1.0], 1.0),
+                miss([2.0, 2.001, 1.0], [0.0, 0.0, -1.0]),
+                miss([1.0, 1.0, 3.0], [0.0, 0.0, 1.0]),
+                from_outside([-1.0, 1.0, 0.0], [1.0, 0.0, 0.0], 1.0),
+                from_outside([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0),
+                miss([-1.0, 1.0, 0.001], [1.0, 0.0, 0.0]),
+                from_inside([1.0, 1.0, 0.0], [1.0, 0.0, 0.0], 0.0),
+                from_inside([1.0, 1.0, 0.0], [0.0, 0.0, 1.0], 0.0),
+            ],
+        );
+    }
+    check::<3>(
+        &Triangle::new(a, P3::new(2.0, 0.0, 0.0), b),
+        &[
+            from_outside([1.0, 0.0, 3.0], [0.0, 0.0, -1.0], 3.0),
+            miss([1.0, 0.1, 3.0], [0.0, 0.0, -1.0]),
+        ],
+    );
+    check::<3>(&Triangle::new(b, b, b), &[from_outside([4.0, 0.0, 3.0], [0.0, 0.0, -1.0], 3.0)]);
+}
+
+#[test]
+fn cylinders() {
+    check::<3>(
+        &Cylinder::new(1.0, 2.0),
+        &[
+            from_outside([0.0, 5.0, 0.0], [0.0, -1.0, 0.0], 4.0),
+            from_outside([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0], 3.0),
+            from_outside([-5.0, 1.0, 0.0], [1.0, 0.0, 0.0], 3.0),
+            miss([-5.0, 1.0001, 0.0], [1.0, 0.0, 0.0]),
+            from_outside([-5.0, 0.0, 2.0], [1.0, 0.0, 0.0], 5.0),
+            from_outside([2.0, 5.0, 0.0], [0.0, -1.0, 0.0], 4.0),
+            from_outside([-3.0, 2.0, 0.0], [1.0, -1.0, 0.0], 1.0),
+            from_inside([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0),
+            from_inside([0.0, 0.0, 0.0], [0.0, 0.0, 4.0], 0.5),
+            from_inside([2.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.0),
+        ],
+    );
+    check::<3>(
+        &Cylinder::new(0.0, 2.0),
+        &[
+            from_outside([1.0, 1.0, 0.0], [0.0, -1.0, 0.0], 1.0),
+            from_outside([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0], 3.0),
+        ],
+    );
+}
+
+#[test]
+fn cones() {
+    check::<3>(
+        &Cone::new(1.0, 1.0),
+        &[
+            from_outside([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0], 4.5),
+            from_outside([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], 4.5),
+            from_outside([0.0, 5.0, 0.0], [0.0, -1.0, 0.0], 4.0),
+            from_outside([0.0, -5.0, 0.0], [0.0, 1.0, 0.0], 4.0),
+            from_outside([0.5, 5.0, 0.0], [0.0, -1.0, 0.0], 5.0),
+            from_outside([-5.0, -1.0, 0.0], [1.0, 0.0, 0.0], 4.0),
+            from_outside([-5.0, 1.0, 0.0], [1.0, 0.0, 0.0], 5.0),
+            miss([-5.0, 1.0001, 0.0], [1.0, 0.0, 0.0]),
+            miss([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
+            miss([0.0, 5.0, 0.0], [0.0, 1.0, 0.0]),
+            from_inside([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0),
+            from_inside([0.0, 0.0, 0.0], [0.0, -1.0, 0.0], 1.0),
+            from_inside([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], 0.5),
+            from_outside([-0.5, 2.0, 0.0], [0.5, -1.0, 0.0], 1.0),
+        ],
+    );
+    check::<3>(&Cone::new(0.0, 2.0), &[from_outside([1.0, 1.0, 0.0], [0.0, -1.0, 0.0], 1.0)]);
+    check::<3>(&Cone::new(2.0, 0.0), &[from_outside([1.0, 1.0, 0.0], [-1.0, 0.0, 0.0], 1.0)]);
+}
+
+#[test]
+fn normals_are_in_the_world_and_point_out() {
+    let quarter = Isometry2::new(V2::new(10.0, 0.0), std::f64::consts::FRAC_PI_2);
+    let cuboid = Cuboid::new(V2::new(1.0, 2.0));
+    let ray = Ray::new(P2::new(0.0, 0.0), V2::new(1.0, 0.0));
+    let hit = cuboid.toi_and_normal_with_ray(&quarter, &ray, true).expect("it is ahead");
+    assert!((hit.toi - 8.0).abs() < 1e-14, "{hit:?}");
+    assert!((hit.normal + V2::x()).norm() < 1e-15, "{hit:?}");
+    assert_eq!(hit.feature, FeatureId::Face(2), "the side that was up");
+    let inside = Ray::new(P2::new(10.0, 0.0), V2::new(1.0, 0.0));
+    let hit = cuboid.toi_and_normal_with_ray(&quarter, &inside, false).expect("it leaves");
+    assert!((hit.normal - V2::x()).norm() < 1e-15, "out of the solid: {hit:?}");
+    let solid = cuboid.toi_and_normal_with_ray(&quarter, &inside, true).expect("it is inside");
+    assert_eq!((solid.toi, solid.normal), (0.0, V2::zeros()), "no surface is met");
+}
+
+#[test]
+fn flat_sets_face_the_ray() {
+    let [a, b, c] = [P3::new(0.0, 0.0, 0.0), P3::new(4.0, 0.0, 0.0), P3::new(0.0, 4.0, 0.0)];
+    let triangle = Triangle::new(a, b, c);
+    for (height, face) in [(1.0, 0), (-1.0, 1)] {
+        let ray = Ray::new(P3::new(1.0, 1.0, height), V3::new(0.0, 0.0, -height));
+        let hit = triangle.cast_local_ray(&ray, true).expect("it is ahead");
+        assert_eq!(hit.normal, V3::new(0.0, 0.0, height), "from {height}");
+        assert_eq!(hit.feature, FeatureId::Face(face), "from {height}");
+    }
+}
+
+fn all_of_space() -> Vec<ShapeHandle<f64, 3>> {
+    let [a, b, c] = [P3::new(-1.0, 0.0, 0.0), P3::new(1.0, 0.0, 0.0), P3::new(0.0, 1.0, 0.0)];
+    vec![
+        ShapeHandle::new(Ball::new(1.0)),
+        ShapeHandle::new(Segment::new(a, b)),
+        ShapeHandle::new(Capsule::new(1.0, 1.0)),
+        ShapeHandle::new(Triangle::new(a, b, c)),
+        ShapeHandle::new(Cuboid::new(V3::new(1.0, 1.0, 1.0))),
+        ShapeHandle::new(Cylinder::new(1.0, 1.0)),
+        ShapeHandle::new(Cone::new(1.0, 1.0)),
+        ShapeHandle::new(Plane::new(Unit::new_unchecked(V3::y()))),
+    ]
+}
+
+#[test]
+fn a_ray_without_direction_is_a_point() {
+    for shape in all_of_space() {
+        let m = Isometry3::translation(3.0, 2.0, 1.0);
+        let inside = Ray::new(P3::new(3.0, 2.0, 1.0), V3::zeros());
+        assert_eq!(shape.toi_with_ray(&m, &inside, true), Some(0.0), "{shape:?}");
+        let outside = Ray::new(P3::new(3.0, 9.0, 1.0), V3::zeros());
+        assert_eq!(shape.toi_with_ray(&m, &outside, true), None, "{shape:?}");
+        assert_eq!(shape.toi_with_ray(&m, &outside, false), None, "{shape:?}");
+    }
+    let middle = Ray::new(P3::origin(), V3::zeros());
+    assert_eq!(Ball::new(1.0).cast_local_ray(&middle, false), None, "not on the boundary");
+    let pole = Ray::new(P3::new(0.0, 1.0, 0.0), V3::zeros());
+    assert!(Ball::new(1.0).cast_local_ray(&pole, false).is_some(), "on the boundary");
+}
+
+#[test]
+fn rays_that_are_not_finite_hit_nothing() {
+    for shape in all_of_space() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let ray = Ray::new(P3::origin(), V3::new(bad, 0.0, 1.0));
+            assert_eq!(shape.cast_local_ray(&ray, true), None, "{shape:?} along {bad}");
+            let ray = Ray::new(P3::new(0.0, bad, 0.0), V3::x());
+            assert_eq!(shape.cast_local_ray(&ray, true), None, "{shape:?} from {bad}");
+        }
+        let far = Ray::new(P3::new(1e300, 1e300, 0.0), V3::new(-1e-300, -1e-300, 0.0));
+        let found = shape.cast_local_ray(&far, false);
+        assert!(found.is_none_or(|hit| hit.toi.is_finite()), "{shape:?}: {found:?}");
+    }
+}
