@@ -124,7 +124,7 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, ConvexPolygon, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
     };
 
     /// A rectangle.

@@ -124,7 +124,7 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, Cone, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
     };
 
     /// A box.
