@@ -65,8 +65,9 @@ fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
             ColliderBuilder::new(SharedShape::halfspace(vector(normal)))
         }
         SceneShape::Segment { ends: [a, b] } => ColliderBuilder::segment(vector(a), vector(b)),
-        SceneShape::Triangle { corners: [a, b, c] } => {
-            ColliderBuilder::triangle(vector(a), vector(b), vector(c))
+        SceneShape::Triangle { corners } => {
+            let [a, b, c] = counter_clockwise(*corners);
+            ColliderBuilder::triangle(vector(&a), vector(&b), vector(&c))
         }
         SceneShape::Convex { points } => {
             let points: Vec<_> = points.iter().map(vector).collect();
@@ -74,6 +75,12 @@ fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
         }
         SceneShape::Cylinder { .. } | SceneShape::Cone { .. } => unreachable!("not of the plane"),
     }
+}
+
+/// The order that rapier counts on: of a clockwise triangle it misses contacts.
+fn counter_clockwise([a, b, c]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
+    let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    if turn < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
 fn vector(v: &[f64; 2]) -> Vector {
