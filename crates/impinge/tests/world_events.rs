@@ -269,15 +269,15 @@ fn half_spaces_overlap_without_points<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Started(ground, ceiling)], "antiparallel ones do touch");
 }
 
-mod all {
-    in_all!(proximity_goes_through_all_transitions);
-    in_all!(contacts_start_with_the_first_point_and_stop_with_the_last);
-    in_all!(one_contact_to_many_is_not_reported);
-    in_all!(removal_ends_each_pair_once);
-    in_all!(removals_of_both_ends_tell_once);
-    in_all!(what_never_touched_never_stops);
-    in_all!(changes_in_place_are_followed);
-    in_all!(names_last_as_long_as_contacts);
-    in_all!(phases_are_exchanged_without_false_events);
-    in_all!(half_spaces_overlap_without_points);
+in_tests! {
+    proximity_goes_through_all_transitions,
+    contacts_start_with_the_first_point_and_stop_with_the_last,
+    one_contact_to_many_is_not_reported,
+    removal_ends_each_pair_once,
+    removals_of_both_ends_tell_once,
+    what_never_touched_never_stops,
+    changes_in_place_are_followed,
+    names_last_as_long_as_contacts,
+    phases_are_exchanged_without_false_events,
+    half_spaces_overlap_without_points,
 }

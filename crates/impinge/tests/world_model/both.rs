@@ -321,7 +321,12 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         let found: Vec<_> = hits.iter().map(|(object, _)| twin(object)).collect();
         let expected = self.naive.interferences_with_ray(&a, &direction, naive_groups);
         let handles: Vec<_> = expected.iter().map(|(handle, _)| *handle).collect();
-        assert_eq!(found, handles, "from {a:?} along {direction:?}");
+        let scene = |handle: &Handle| {
+            let object = self.naive.object(*handle).expect("alive");
+            format!("{:?} at {:?}\n", object.shape, object.pose)
+        };
+        let scene: String = found.iter().chain(&handles).map(scene).collect();
+        assert_eq!(found, handles, "from {a:?} along {direction:?}: {scene}");
         let slack = 1e-3 * if N::EPSILON.as_f64() < 1e-9 { 1e-6 } else { 1.0 };
         for ((_, hit), (_, t)) in hits.iter().zip(&expected) {
             assert!((hit.toi.as_f64() - t).abs() <= slack * (1.0 + t), "{} for {t}", hit.toi);

@@ -25,7 +25,7 @@ fn run<N: Grid<D>, const D: usize>(seed: u64, operations: usize) {
     let tally = both.tally;
     println!("{D} dimensions, seed {seed}: {tally:?}");
     assert!(tally.updates > operations / 8, "updates: {tally:?}");
-    assert!(tally.started > operations / 50, "contacts start: {tally:?}");
+    assert!(tally.started > operations / 100, "contacts start: {tally:?}");
     assert!(tally.transitions > operations / 50, "proximities change: {tally:?}");
     assert!(tally.removal_events > operations / 500, "removals end pairs: {tally:?}");
     assert!(tally.exchanges > 10 && tally.refusals > 100, "rare operations: {tally:?}");

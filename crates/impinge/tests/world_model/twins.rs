@@ -6,7 +6,7 @@ use impinge::math::Space;
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, ProximityEvent};
 use impinge::query;
 use impinge::world::CollisionWorld;
-use impinge_reference::geometry::{Pose, Solid};
+use impinge_reference::geometry::{Pose, Solid, point_signed_distance};
 use impinge_reference::world as reference;
 use impinge_reference::world::{Handle, Shape};
 
@@ -18,11 +18,14 @@ use impinge_reference::world::{Handle, Shape};
 #[derive(Clone, Debug)]
 pub(crate) struct OnGrid<const D: usize>(pub(crate) Solid<D>);
 
+fn on_grid(distance: f64) -> f64 {
+    const STEPS: f64 = (1_u64 << 40) as f64;
+    (distance * STEPS).round() / STEPS
+}
+
 impl<const D: usize> Shape<D> for OnGrid<D> {
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64 {
-        const STEPS: f64 = (1_u64 << 40) as f64;
-        let distance = self.0.signed_distance(pose, &other.0, other_pose);
-        (distance * STEPS).round() / STEPS
+        on_grid(self.0.signed_distance(pose, &other.0, other_pose))
     }
 
     fn bounding_radius(&self) -> f64 {
@@ -34,7 +37,7 @@ impl<const D: usize> Shape<D> for OnGrid<D> {
     }
 
     fn contains_point(&self, pose: &Pose<D>, point: &[f64; D]) -> bool {
-        self.0.contains_point(pose, point)
+        on_grid(point_signed_distance(&self.0, pose, point)) <= 0.0
     }
 
     fn aabb(&self, pose: &Pose<D>) -> ([f64; D], [f64; D]) {

@@ -84,15 +84,19 @@ pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world.contact_events().to_vec()
 }
 
-/// Runs a check for both scalars and dimensions.
-macro_rules! in_all {
-    ($check:ident) => {
-        #[test]
-        fn $check() {
-            super::$check::<f32, 2>();
-            super::$check::<f64, 2>();
-            super::$check::<f32, 3>();
-            super::$check::<f64, 3>();
+/// Runs each check for both scalars and dimensions.
+macro_rules! in_tests {
+    ($($check:ident),* $(,)?) => {
+        mod both_scalars_and_dimensions {
+            $(
+                #[test]
+                fn $check() {
+                    super::$check::<f32, 2>();
+                    super::$check::<f64, 2>();
+                    super::$check::<f32, 3>();
+                    super::$check::<f64, 3>();
+                }
+            )*
         }
     };
 }
