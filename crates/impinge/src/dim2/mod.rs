@@ -34,6 +34,7 @@ mod filter;
 /// Simple volumes that enclose shapes.
 pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
+    pub use crate::shape::{aabb, bounding_sphere};
 
     /// An axis-aligned box of the plane.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 2>;
@@ -123,7 +124,7 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, ConvexPolygon, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
     };
 
     /// A rectangle.
