@@ -124,7 +124,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError,
+        ShapeKind, SupportMap,
     };
 
     /// A box.
