@@ -34,6 +34,7 @@ mod filter;
 /// Simple volumes that enclose shapes.
 pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
+    pub use crate::shape::{aabb, bounding_sphere};
 
     /// An axis-aligned box of the plane.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 2>;
@@ -123,7 +124,7 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, ConvexPolygon, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
     };
 
     /// A rectangle.
@@ -142,6 +143,11 @@ pub mod shape {
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 2>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
+}
+
+/// Shapes from points.
+pub mod transformation {
+    pub use crate::transformation::convex_hull2 as convex_hull;
 }
 
 /// Numbers, vectors and poses.

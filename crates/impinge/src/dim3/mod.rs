@@ -34,6 +34,7 @@ mod filter;
 /// Simple volumes that enclose shapes.
 pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
+    pub use crate::shape::{aabb, bounding_sphere};
 
     /// An axis-aligned box of space.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 3>;
@@ -123,7 +124,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, Cone, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError,
+        ShapeKind, SupportMap,
     };
 
     /// A box.
@@ -142,6 +144,11 @@ pub mod shape {
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
+}
+
+/// Shapes from points.
+pub mod transformation {
+    pub use crate::transformation::{IndexedHull, convex_hull3 as convex_hull};
 }
 
 /// Numbers, vectors and poses.
