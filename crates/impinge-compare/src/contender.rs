@@ -13,8 +13,11 @@ pub trait Contender<const D: usize> {
     /// Converts the new placements of some objects; not timed.
     fn prepare(&mut self, moved: &[(usize, Placement<D>)]);
 
-    /// Hands over the new poses, updates, reads every contact point; timed.
-    fn step(&mut self) -> Reading;
+    /// Hands over the new poses and updates; timed.
+    fn step(&mut self);
+
+    /// Reads every contact point; timed.
+    fn read(&self) -> Reading;
 
     /// The pairs with a contact point, smaller index first, sorted; not timed.
     fn touching(&self) -> Vec<(usize, usize)>;
@@ -38,6 +41,8 @@ pub struct Lane {
     pub first: Duration,
     /// The steps after it.
     pub times: Vec<Duration>,
+    /// The part of each that was spent on reading.
+    pub reading_times: Vec<Duration>,
     /// Touching pairs at the last comparison.
     pub touching: usize,
     /// What was read at the last step.
@@ -58,7 +63,7 @@ pub struct Race {
 /// Steps two contenders alternately; who goes first alternates too.
 pub fn race<const D: usize>(
     scene: &Scene<D>,
-    mut contenders: [&mut dyn Contender<D>; 2],
+    contenders: [&mut dyn Contender<D>; 2],
     steps: u32,
 ) -> Race {
     let mut race = Race {
@@ -66,6 +71,7 @@ pub fn race<const D: usize>(
             name: contenders[n].name(),
             first: Duration::ZERO,
             times: Vec::new(),
+            reading_times: Vec::new(),
             touching: 0,
             reading: Reading::default(),
         }),
@@ -78,8 +84,10 @@ pub fn race<const D: usize>(
         for n in order {
             contenders[n].prepare(&moved);
             let start = ThreadTime::now();
-            let reading = contenders[n].step();
-            race.lanes[n].note(start.elapsed(), reading, step);
+            contenders[n].step();
+            let updated = start.elapsed();
+            race.lanes[n].reading = contenders[n].read();
+            race.lanes[n].note(step, start.elapsed(), updated);
         }
         if step % 10 == 0 {
             race.compare(&contenders);
@@ -96,12 +104,12 @@ fn moved<const D: usize>(scene: &Scene<D>, step: u32) -> Vec<(usize, Placement<D
 }
 
 impl Lane {
-    fn note(&mut self, time: Duration, reading: Reading, step: u32) {
-        self.reading = reading;
+    fn note(&mut self, step: u32, total: Duration, updated: Duration) {
         if step == 0 {
-            self.first = time;
+            self.first = total;
         } else {
-            self.times.push(time);
+            self.times.push(total);
+            self.reading_times.push(total.saturating_sub(updated));
         }
     }
 }

@@ -16,7 +16,7 @@ mod rapier3;
 mod report;
 
 use contender::{Contender, race};
-use impinge_scenes::{Scene, pile, sparse_drift};
+use impinge_scenes::{Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift};
 use report::{Row, print_header, print_rows, write_csv};
 
 /// Two objects whose distance is at most this have contact points: the sum of what the objects of
@@ -35,11 +35,11 @@ fn main() {
     print_header(&arguments);
     let n = arguments.objects;
     let mut rows = Vec::new();
-    for scene in [pile::<2>(n), sparse_drift::<2>(n)] {
+    for scene in scenes::<2>(n) {
         let rival = rapier2::Rapier::new(&scene);
         run(&scene, &mut ours::plane(&scene), rival, &arguments, &mut rows);
     }
-    for scene in [pile::<3>(n), sparse_drift::<3>(n)] {
+    for scene in scenes::<3>(n) {
         let rival = rapier3::Rapier::new(&scene);
         run(&scene, &mut ours::space(&scene), rival, &arguments, &mut rows);
     }
@@ -47,6 +47,16 @@ fn main() {
         Ok(path) => println!("\nwritten to {}", path.display()),
         Err(error) => eprintln!("the table could not be written: {error}"),
     }
+}
+
+/// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
+fn scenes<const D: usize>(n: usize) -> [Scene<D>; 4] {
+    let linear = f64::from(PREDICTION) / 2.0;
+    let mut scenes = [pile(n), sparse_drift(n), few_moving(n), mixed_shapes(n)];
+    for object in scenes.iter_mut().flat_map(|scene| &mut scene.objects) {
+        object.query = SceneQuery::Contacts { linear, angular: 0.0 };
+    }
+    scenes
 }
 
 /// Runs one scene, prints its part of the table and keeps it.

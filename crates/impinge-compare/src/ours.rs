@@ -3,7 +3,10 @@
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, ShapeHandle,
+    Triangle,
+};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
@@ -24,7 +27,13 @@ where
 
 /// A world in the plane with the objects of a scene as they are at step 0.
 pub fn plane(scene: &Scene<2>) -> Impinge<2> {
-    Impinge::new(scene, |placement| {
+    let particular = |shape: &SceneShape<2>| match shape {
+        SceneShape::Convex { points } => {
+            ShapeHandle::new(ConvexPolygon::from_points(&hull(points)))
+        }
+        other => unreachable!("{other:?} is not of the plane"),
+    };
+    Impinge::new(scene, particular, |placement| {
         let [cosine, sine] = placement.complex().map(|x| x as f32);
         let rotation = UnitComplex::from_cos_sin_unchecked(cosine, sine);
         let translation = placement.translation.map(|x| x as f32);
@@ -34,7 +43,17 @@ pub fn plane(scene: &Scene<2>) -> Impinge<2> {
 
 /// A world in space with the objects of a scene as they are at step 0.
 pub fn space(scene: &Scene<3>) -> Impinge<3> {
-    Impinge::new(scene, |placement| {
+    let particular = |shape: &SceneShape<3>| match shape {
+        SceneShape::Convex { points } => ShapeHandle::new(ConvexHull::from_points(&hull(points))),
+        SceneShape::Cylinder { half_height, radius } => {
+            ShapeHandle::new(Cylinder::new(*half_height as f32, *radius as f32))
+        }
+        SceneShape::Cone { half_height, radius } => {
+            ShapeHandle::new(Cone::new(*half_height as f32, *radius as f32))
+        }
+        other => unreachable!("{other:?} is of every dimension"),
+    };
+    Impinge::new(scene, particular, |placement| {
         let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
         let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
         let translation = placement.translation.map(|x| x as f32);
@@ -46,7 +65,12 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    fn new(scene: &Scene<D>, isometry: fn(&Placement<D>) -> Isometry<D>) -> Self {
+    /// `particular` makes the shapes that are particular to a dimension.
+    fn new(
+        scene: &Scene<D>,
+        particular: fn(&SceneShape<D>) -> ShapeHandle<f32, D>,
+        isometry: fn(&Placement<D>) -> Isometry<D>,
+    ) -> Self {
         let mut world = CollisionWorld::new(scene.margin as f32);
         let handles = scene.objects.iter().enumerate().map(|(n, object)| {
             let query = match object.query {
@@ -56,17 +80,26 @@ where
                 SceneQuery::Proximity { margin } => GeometricQueryType::Proximity(margin as f32),
             };
             let position = isometry(&scene.placement(n, 0));
-            world.add(position, shape(&object.shape), CollisionGroups::new(), query, n)
+            let shape = common(&object.shape).unwrap_or_else(|| particular(&object.shape));
+            world.add(position, shape, CollisionGroups::new(), query, n)
         });
         let handles = handles.collect();
         Self { world, isometry, handles, moved: Vec::new() }
     }
 }
 
-fn shape<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D> {
-    let point = |p: &[f64; D]| Point::<f32, D>::from(p.map(|x| x as f32));
+fn point<const D: usize>(point: &[f64; D]) -> Point<f32, D> {
+    Point::from(point.map(|x| x as f32))
+}
+
+fn hull<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
+    points.iter().map(point).collect()
+}
+
+/// The shapes that exist in every dimension.
+fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> {
     let vector = |v: &[f64; D]| Vector::<f32, D>::from(v.map(|x| x as f32));
-    match shape {
+    Some(match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),
         SceneShape::Cuboid { half_extents } => ShapeHandle::new(Cuboid::new(vector(half_extents))),
         SceneShape::Plane { normal } => {
@@ -79,8 +112,10 @@ fn shape<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D> {
         SceneShape::Triangle { corners: [a, b, c] } => {
             ShapeHandle::new(Triangle::new(point(a), point(b), point(c)))
         }
-        other => unimplemented!("{other:?} is in none of the scenes that are compared"),
-    }
+        SceneShape::Convex { .. } | SceneShape::Cylinder { .. } | SceneShape::Cone { .. } => {
+            return None;
+        }
+    })
 }
 
 impl<const D: usize> Contender<D> for Impinge<D>
@@ -97,11 +132,14 @@ where
         self.moved.extend(poses);
     }
 
-    fn step(&mut self) -> Reading {
+    fn step(&mut self) {
         for (handle, isometry) in &self.moved {
             self.world.set_position(*handle, *isometry);
         }
         self.world.update();
+    }
+
+    fn read(&self) -> Reading {
         let mut reading = Reading::default();
         for (_, _, manifold) in self.world.contact_manifolds() {
             for tracked in manifold.contacts() {

@@ -61,8 +61,30 @@ fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
         SceneShape::Capsule { half_height, radius } => {
             ColliderBuilder::capsule_y(*half_height as f32, *radius as f32)
         }
-        other => unimplemented!("{other:?} is in none of the scenes that are compared"),
+        SceneShape::Plane { normal } => {
+            ColliderBuilder::new(SharedShape::halfspace(vector(normal)))
+        }
+        SceneShape::Segment { ends: [a, b] } => ColliderBuilder::segment(vector(a), vector(b)),
+        SceneShape::Triangle { corners } => {
+            let [a, b, c] = counter_clockwise(*corners);
+            ColliderBuilder::triangle(vector(&a), vector(&b), vector(&c))
+        }
+        SceneShape::Convex { points } => {
+            let points: Vec<_> = points.iter().map(vector).collect();
+            ColliderBuilder::convex_hull(&points).expect("the points span all dimensions")
+        }
+        SceneShape::Cylinder { .. } | SceneShape::Cone { .. } => unreachable!("not of the plane"),
     }
+}
+
+/// The order that rapier counts on: of a clockwise triangle it misses contacts.
+fn counter_clockwise([a, b, c]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
+    let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    if turn < 0.0 { [a, c, b] } else { [a, b, c] }
+}
+
+fn vector(v: &[f64; 2]) -> Vector {
+    Vector::from(v.map(|x| x as f32))
 }
 
 fn pose(placement: &Placement<2>) -> Pose {
@@ -81,7 +103,7 @@ impl Contender<2> for Rapier {
         self.moved.extend(moved.iter().map(|(n, placement)| (self.handles[*n], pose(placement))));
     }
 
-    fn step(&mut self) -> Reading {
+    fn step(&mut self) {
         for (handle, pose) in &self.moved {
             self.colliders[*handle].set_position(*pose);
         }
@@ -95,6 +117,9 @@ impl Contender<2> for Rapier {
             &(),
             &(),
         );
+    }
+
+    fn read(&self) -> Reading {
         let mut reading = Reading::default();
         let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
         for point in manifolds.flat_map(|manifold| &manifold.points) {

@@ -61,8 +61,28 @@ fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
         SceneShape::Capsule { half_height, radius } => {
             ColliderBuilder::capsule_y(*half_height as f32, *radius as f32)
         }
-        other => unimplemented!("{other:?} is in none of the scenes that are compared"),
+        SceneShape::Plane { normal } => {
+            ColliderBuilder::new(SharedShape::halfspace(vector(normal)))
+        }
+        SceneShape::Segment { ends: [a, b] } => ColliderBuilder::segment(vector(a), vector(b)),
+        SceneShape::Triangle { corners: [a, b, c] } => {
+            ColliderBuilder::triangle(vector(a), vector(b), vector(c))
+        }
+        SceneShape::Convex { points } => {
+            let points: Vec<_> = points.iter().map(vector).collect();
+            ColliderBuilder::convex_hull(&points).expect("the points span all dimensions")
+        }
+        SceneShape::Cylinder { half_height, radius } => {
+            ColliderBuilder::cylinder(*half_height as f32, *radius as f32)
+        }
+        SceneShape::Cone { half_height, radius } => {
+            ColliderBuilder::cone(*half_height as f32, *radius as f32)
+        }
     }
+}
+
+fn vector(v: &[f64; 3]) -> Vector {
+    Vector::from(v.map(|x| x as f32))
 }
 
 fn pose(placement: &Placement<3>) -> Pose {
@@ -81,7 +101,7 @@ impl Contender<3> for Rapier {
         self.moved.extend(moved.iter().map(|(n, placement)| (self.handles[*n], pose(placement))));
     }
 
-    fn step(&mut self) -> Reading {
+    fn step(&mut self) {
         for (handle, pose) in &self.moved {
             self.colliders[*handle].set_position(*pose);
         }
@@ -95,6 +115,9 @@ impl Contender<3> for Rapier {
             &(),
             &(),
         );
+    }
+
+    fn read(&self) -> Reading {
         let mut reading = Reading::default();
         let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
         for point in manifolds.flat_map(|manifold| &manifold.points) {

@@ -24,6 +24,8 @@ pub struct Row {
     median: f64,
     minimum: f64,
     p90: f64,
+    /// The median of the part spent on reading.
+    reading: f64,
     /// The median over that of the first contender.
     ratio: f64,
 }
@@ -31,7 +33,7 @@ pub struct Row {
 impl Row {
     /// The rows of a race.
     pub fn of<const D: usize>(scene: &Scene<D>, race: &Race) -> Vec<Self> {
-        let base = quantile(&race.lanes[0], 50);
+        let base = quantile(&race.lanes[0].times, 50);
         let row = |lane: &Lane| Self {
             scene: scene.name,
             dimension: D,
@@ -41,10 +43,11 @@ impl Row {
             points: lane.reading.points,
             disagreements: race.disagreements,
             first: milliseconds(lane.first),
-            median: quantile(lane, 50),
-            minimum: quantile(lane, 0),
-            p90: quantile(lane, 90),
-            ratio: quantile(lane, 50) / base,
+            median: quantile(&lane.times, 50),
+            minimum: quantile(&lane.times, 0),
+            p90: quantile(&lane.times, 90),
+            reading: quantile(&lane.reading_times, 50),
+            ratio: quantile(&lane.times, 50) / base,
         };
         race.lanes.iter().map(row).collect()
     }
@@ -55,8 +58,8 @@ fn milliseconds(time: Duration) -> f64 {
 }
 
 /// The time that a percentage of the steps do not exceed; NaN for no steps.
-fn quantile(lane: &Lane, percent: usize) -> f64 {
-    let mut times = lane.times.clone();
+fn quantile(times: &[Duration], percent: usize) -> f64 {
+    let mut times = times.to_vec();
     times.sort_unstable();
     let last = times.len().saturating_sub(1);
     times.get(last * percent / 100).map_or(f64::NAN, |&time| milliseconds(time))
@@ -66,7 +69,7 @@ fn quantile(lane: &Lane, percent: usize) -> f64 {
 pub fn print_header(arguments: &Arguments) {
     println!("{} objects, {} steps, milliseconds per step", arguments.objects, arguments.steps);
     println!(
-        "{:<14} {:<2} {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>9} {:>6}",
+        "{:<14} {:<2} {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}",
         "scene",
         "D",
         "contender",
@@ -77,6 +80,7 @@ pub fn print_header(arguments: &Arguments) {
         "median",
         "minimum",
         "p90",
+        "reading",
         "ratio"
     );
 }
@@ -85,7 +89,7 @@ pub fn print_header(arguments: &Arguments) {
 pub fn print_rows(rows: &[Row]) {
     for row in rows {
         println!(
-            "{:<14} {:<2} {:<10} {:>9} {:>9} {:>7} {:>9.3} {:>9.3} {:>9.3} {:>9.3} {:>6.2}",
+            "{:<14} {:<2} {:<10} {:>9} {:>9} {:>7} {:>9.3} {:>9.3} {:>9.3} {:>9.3} {:>9.3} {:>6.2}",
             row.scene,
             row.dimension,
             row.contender,
@@ -96,6 +100,7 @@ pub fn print_rows(rows: &[Row]) {
             row.median,
             row.minimum,
             row.p90,
+            row.reading,
             row.ratio
         );
     }
@@ -107,10 +112,10 @@ pub fn write_csv(machine: &str, rows: &[Row]) -> io::Result<PathBuf> {
     fs::create_dir_all(&folder)?;
     let mut text = String::from(
         "scene,dimension,objects,contender,touching,points,disagreements,\
-         first_ms,median_ms,minimum_ms,p90_ms,ratio\n",
+         first_ms,median_ms,minimum_ms,p90_ms,reading_ms,ratio\n",
     );
     for row in rows {
-        let numbers = [row.first, row.median, row.minimum, row.p90, row.ratio];
+        let numbers = [row.first, row.median, row.minimum, row.p90, row.reading, row.ratio];
         let numbers = numbers.map(|x| format!("{x:.4}")).join(",");
         text += &format!(
             "{},{},{},{},{},{},{},{numbers}\n",

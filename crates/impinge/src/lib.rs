@@ -7,6 +7,8 @@ pub mod bvh;
 pub(crate) mod convex;
 pub mod dim2;
 pub mod dim3;
+#[cfg(doctest)]
+mod guide;
 pub mod math;
 pub mod narrow_phase;
 pub mod pairs;

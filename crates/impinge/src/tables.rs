@@ -20,7 +20,7 @@ use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
 use crate::query::{
     ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold, advance,
-    build2, build3,
+    contacts2, contacts3,
 };
 use crate::shape::{Kind, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -36,8 +36,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
     pub(crate) surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
-    /// Contact points from the separation and the features of the two solids.
-    pub(crate) manifold: ManifoldFn<N, D>,
+    /// The contact points of a pair.
+    pub(crate) contacts: ContactsFn<N, D>,
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
     pub(crate) public_manifold:
         fn(&ContactState<N, D>, &Posed<'_, N, D>, u64) -> ContactManifold<N, D>,
@@ -50,8 +50,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
 
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
-type ManifoldFn<N, const D: usize> =
-    fn(&Pair<'_, N, D>, &Separation<N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+type ContactsFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
@@ -99,7 +99,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
-    manifold: ManifoldFn<N, D>,
+    contacts: ContactsFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
 }
@@ -107,7 +107,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
-        manifold: build2,
+        contacts: contacts2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
     };
@@ -116,7 +116,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
-        manifold: build3,
+        contacts: contacts3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
     };
@@ -131,7 +131,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             time_of_impact: advance,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
-            manifold: particular.manifold,
+            contacts: particular.contacts,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifold,
             proximity: proximity_of,

@@ -39,11 +39,11 @@ where
         return Err(format!("swapping changes {found:?} to {swapped:?}"));
     }
     let signed = -found.depth.as_f64();
-    if !((signed - expected.signed).abs() <= expected.tolerance) {
+    if (signed - expected.signed).abs() > expected.tolerance {
         return Err(format!("signed distance {signed} instead of {}", expected.signed));
     }
     let tied = found.world1 - found.normal.into_inner() * found.depth - found.world2;
-    if !(tied.norm().as_f64() <= expected.tolerance) {
+    if tied.norm().as_f64() > expected.tolerance {
         return Err(format!("the points are off by {}", tied.norm().as_f64()));
     }
     let apart = distance(m1, g1, m2, g2);
@@ -77,7 +77,7 @@ where
     }
     let lost = expected.signed - gap_along(&exact[0], &exact[1], &normal);
     // A normal in f32 is itself off by rounding, which moves the farthest points of the solids.
-    let extent = exact.iter().map(|solid| solid.extent()).fold(0.0, f64::max);
+    let extent = exact.iter().map(Placed::extent).fold(0.0, f64::max);
     let rounding = if expected.tolerance < 1e-8 * extent { 0.0 } else { 5e-7 * extent };
     if lost <= expected.tolerance + rounding {
         return Ok(());

@@ -48,6 +48,8 @@ struct Setting {
     offset: f64,
     /// Everything is so much larger.
     scale: f64,
+    /// Half of the sizes and coordinates are zero.
+    degenerate: bool,
 }
 
 /// A way to make random solids and rotations of one dimension.
@@ -59,7 +61,7 @@ struct Maker<N: Real, R, const D: usize> {
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R, D> {
     /// Two solids in a setting: the same up to the scale for every scale.
     fn make(&self, setting: &Setting) -> [Placed<N, R, D>; 2] {
-        let random = &mut Random(setting.seed);
+        let random = &mut Random(setting.seed, setting.degenerate);
         let scale = N::lit(setting.scale);
         let origin = random.vector::<N, D>() * N::lit(setting.offset) * scale;
         let shape1 = (self.sample)(setting.kinds[0], random, scale);
@@ -96,12 +98,17 @@ fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
 }
 
 /// What arithmetic may get wrong about a pair of kinds, relative to their size.
-fn precision<N: Real, const D: usize>(kinds: [ShapeKind; 2]) -> N {
+fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
+    let kinds = setting.kinds;
     let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
     let ball = kinds.contains(&ShapeKind::Ball) || kinds.contains(&ShapeKind::Plane);
     if kinds.into_iter().any(curved) && !ball {
-        // 1e-4 in f32 and 1e-9 in f64.
-        return max(N::EPSILON * N::lit(1024.0), N::lit(1e-9));
+        // Of a curved solid that swallows one a thousand times smaller every direction is about as
+        // good as the best, and the general algorithm reaches its cap.
+        let swallowed = setting.regime == Regime::Coincident && (setting.ratio - 1.0).abs() > 0.99;
+        let relative = if swallowed { 1e-6 } else { 1e-9 };
+        // In f32 this is 1e-4.
+        return max(N::EPSILON * N::lit(1024.0), N::lit(relative));
     }
     let closed = |kind| matches!(kind, ShapeKind::Segment | ShapeKind::Capsule);
     if D == 2 || ball || kinds.into_iter().all(closed) {
@@ -124,7 +131,11 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     };
     let signed = -found.depth;
     let swapped = contact(m2, g2, m1, g1, N::INFINITY).map(|swapped| swapped.flipped());
-    assert_eq!(swapped, Some(found), "swapped {setting:?}");
+    // Of equal solids at one place, both orders are the same question and have one answer.
+    let same = setting.regime == Regime::Coincident && format!("{g1:?}") == format!("{g2:?}");
+    if !same {
+        assert_eq!(swapped, Some(found), "swapped {setting:?}");
+    }
     let apart = distance(m1, g1, m2, g2);
     assert_eq!(apart, max(signed, N::ZERO), "distance {setting:?}");
     assert_eq!(distance(m2, g2, m1, g1), apart, "distance swapped {setting:?}");
@@ -140,7 +151,7 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert_eq!(proximity(m1, g1, m2, g2, apart), near, "{setting:?}");
     assert_eq!(closest_points(m1, g1, m2, g2, apart), nearest, "{setting:?}");
     let flipped = closest_points(m2, g2, m1, g1, apart).flipped();
-    assert_eq!(flipped, nearest, "{setting:?}");
+    assert_eq!(flipped, nearest, "swapped {setting:?}");
     if !touching {
         assert_eq!(proximity(m1, g1, m2, g2, closer), Proximity::Disjoint, "{setting:?}");
         assert_eq!(closest_points(m1, g1, m2, g2, closer), ClosestPoints::Disjoint, "{setting:?}");
@@ -155,7 +166,7 @@ fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     found: &Contact<N, D>,
 ) {
     let normal = found.normal.into_inner();
-    let noise = precision::<N, D>(setting.kinds) * (pair[0].extent() + pair[1].extent());
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
     assert!((normal.norm() - N::ONE).abs() < N::EPSILON * N::lit(32.0), "unit {setting:?}");
     let off = (found.world1 - normal * found.depth - found.world2).norm();
     assert!(off <= noise, "the points are off by {off} {setting:?}");
@@ -164,7 +175,7 @@ fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     }
     let certified = gap_along(&pair[0], &pair[1], &normal);
     assert!(certified >= -found.depth - noise, "{certified} of {} {setting:?}", -found.depth);
-    let random = &mut Random(setting.seed ^ 0x5eed);
+    let random = &mut Random(setting.seed ^ 0x5eed, false);
     for _ in 0..40 {
         let other = gap_along(&pair[0], &pair[1], &random.direction());
         assert!(other <= -found.depth + noise, "{other} above {} {setting:?}", -found.depth);
@@ -177,7 +188,7 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     pair: &[Placed<N, R, D>; 2],
 ) {
     let Some(found) = contact_of(pair) else { return };
-    let noise = precision::<N, D>(setting.kinds) * (pair[0].extent() + pair[1].extent());
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
     // What has sharp tips may pass the other by rounding; of two such solids nothing can be said.
     let sharpness = |kind: &ShapeKind| match kind {
         ShapeKind::Segment | ShapeKind::Triangle | ShapeKind::Cone => 2,
@@ -217,7 +228,7 @@ fn check_scaled<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
             depth: found.depth * by,
         });
         assert_eq!(contact_of(&scaled), expected, "2^{power} {setting:?}");
-        let v = [Random(setting.seed).vector::<N, D>(), Random(1).vector::<N, D>()];
+        let v = [Random(setting.seed, false).vector::<N, D>(), Random(1, false).vector::<N, D>()];
         assert_eq!(impact(&scaled, &v.map(|v| v * by)), impact(pair, &v), "2^{power} {setting:?}");
     }
 }
@@ -236,7 +247,7 @@ fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     mut pair: [Placed<N, R, D>; 2],
 ) {
     let before = signed(&pair[0], &pair[1]);
-    let random = &mut Random(setting.seed);
+    let random = &mut Random(setting.seed, setting.degenerate);
     let turn = (maker.turn)(random);
     let shift = random.vector::<N, D>() * N::lit(setting.scale);
     for solid in &mut pair {
@@ -245,7 +256,7 @@ fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
         solid.pose.rotation = turn.clone() * solid.pose.rotation.clone();
     }
     let after = signed(&pair[0], &pair[1]);
-    let noise = precision::<N, D>(setting.kinds) * (pair[0].extent() + pair[1].extent());
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
     let same = before == after || (before - after).abs() <= noise;
     assert!(same, "{before} becomes {after} {setting:?}");
 }
@@ -255,10 +266,10 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
 ) -> bool {
-    let random = &mut Random(setting.seed ^ 7);
+    let random = &mut Random(setting.seed ^ 7, false);
     let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
     // Half of the pairs are sent at each other.
-    if setting.seed % 2 == 0 {
+    if setting.seed.is_multiple_of(2) {
         v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
     }
     let found = impact(pair, &v);
@@ -285,8 +296,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     };
     let speed = (v[0] - v[1]).norm();
     let end = found.unwrap_or_else(|| N::lit(8.0 * setting.ratio.max(1.0)) / speed);
-    let noise =
-        precision::<N, D>(setting.kinds) * (pair[0].extent() + pair[1].extent() + speed * end);
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent() + speed * end);
     for step in 0..20 {
         let time = end * N::lit(f64::from(step) / 20.0);
         let before = at(time);
@@ -306,8 +316,15 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
         for (regime, seed) in REGIMES.iter().flat_map(|r| (0..SEEDS).map(move |seed| (*r, seed))) {
             let ratio = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3][usize::try_from(seed % 6).expect("small")];
-            let base =
-                Setting { kinds: [kind1, kind2], regime, seed, ratio, offset: 0.0, scale: 1.0 };
+            let base = Setting {
+                kinds: [kind1, kind2],
+                regime,
+                seed,
+                ratio,
+                offset: 0.0,
+                scale: 1.0,
+                degenerate: false,
+            };
             let mut all = || {
                 let pair = maker.make(&base);
                 check(&base, &pair);
@@ -320,6 +337,11 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
                 check_moved(maker, &base, pair);
                 let far = Setting { offset: 1e6, ..base };
                 check(&far, &maker.make(&far));
+                let flat = Setting { degenerate: true, ..base };
+                let pair = maker.make(&flat);
+                check(&flat, &pair);
+                check_scaled(maker, &flat, &pair);
+                check_moved(maker, &flat, pair);
             };
             broken += u32::from(catch_unwind(AssertUnwindSafe(&mut all)).is_err());
             settings += 1;
@@ -361,6 +383,7 @@ fn poses_that_are_not_finite_touch_nothing() {
             ratio: 1.0,
             offset: 0.0,
             scale: 1.0,
+            degenerate: false,
         };
         let mut pair = maker.make(&setting);
         pair[0].pose.translation.vector.x = f32::NAN;

@@ -22,7 +22,7 @@ mod interface;
 mod rest;
 mod search;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "f64"))]
 mod tests;
 
 pub use dbvt::{DBVTBroadPhase, TreeVolume};

@@ -124,8 +124,9 @@ impl<const D: usize> Bounds<D> {
 /// `Real::as_f32_below`, with selections in place of branches: whether a number is rounded up or
 /// down to `f32` is a coin toss that no processor foresees. A zero is positive.
 #[inline]
+#[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, then corrects")]
 fn below(x: f64) -> f32 {
-    let nearest = f64::as_f32(x) + 0.0;
+    let nearest = x as f32 + 0.0;
     let bits = nearest.to_bits();
     let smaller = if nearest > 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) };
     let smaller = if nearest == 0.0 { 0x8000_0001 } else { smaller };

@@ -33,6 +33,9 @@ mod tree;
 mod validate;
 mod visit;
 
+#[cfg(all(test, feature = "f64"))]
+mod tests;
+
 pub use block::{Block, LANES};
 pub use bounds::Bounds;
 pub use join::Joiner;

@@ -17,11 +17,13 @@ use crate::math::{Point, Real, max, min};
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
 
-/// What a queue holds. Blocks go before objects of the same key, so that equal objects leave by
-/// ascending id.
+/// What a queue holds: blocks and candidates by the key of their lane, objects by their own, which
+/// is computed only once a candidate comes up. At equal keys, objects go last, so that they leave
+/// by ascending id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
     Block { tree: u8, layer: u8, block: u32 },
+    Candidate { id: u32 },
     Object { id: u32 },
 }
 
@@ -88,35 +90,44 @@ impl Frontier {
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }
+                Entry::Candidate { id } => {
+                    if let Some(key) = (keys.object)(id) {
+                        self.push_object(key, id);
+                    }
+                }
                 Entry::Block { tree, layer, block } => {
                     let place = (tree, layer, block);
-                    self.open(trees[usize::from(tree)], place, keys);
+                    let opened = trees[usize::from(tree)];
+                    let blocks = &opened.layers[usize::from(layer)].blocks;
+                    self.open(opened, place, (keys.block)(&blocks[block as usize]), limit);
                 }
             }
         }
     }
 
+    /// Adds the lanes of a block that count and are within the limit.
     fn open<N: Real, const D: usize>(
         &mut self,
         tree: &Tree<D>,
         (index, layer, block): (u8, u8, u32),
-        keys: &Keys<impl Fn(&Block<D>) -> (u32, [N; LANES]), impl Fn(u32) -> Option<N>>,
+        (mut mask, lane_keys): (u32, [N; LANES]),
+        limit: N,
     ) {
-        let (mut mask, lane_keys) =
-            (keys.block)(&tree.layers[usize::from(layer)].blocks[block as usize]);
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let child = block * small(LANES) + lane;
+            let key = lane_keys[lane as usize];
+            let is_beyond = key > limit;
+            if is_beyond {
+                continue;
+            }
             if layer > 0 {
                 if tree.is_block(layer - 1, child) {
-                    let entry = Entry::Block { tree: index, layer: layer - 1, block: child };
-                    self.push(lane_keys[lane as usize], entry);
+                    self.push(key, Entry::Block { tree: index, layer: layer - 1, block: child });
                 }
-            } else if let Some(id) = tree.id_in(child)
-                && let Some(key) = (keys.object)(id)
-            {
-                self.push(key, Entry::Object { id });
+            } else if let Some(id) = tree.id_in(child) {
+                self.push(key, Entry::Candidate { id });
             }
         }
     }

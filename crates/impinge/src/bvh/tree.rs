@@ -169,7 +169,12 @@ impl<const D: usize> Tree<D> {
     pub fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
         let slot = self.expect_slot(id);
-        self.write(slot, bounds);
+        self.boxes[slot] = *bounds;
+        self.is_stale = true;
+        // A block with changed lanes is listed already.
+        if self.layers[0].changed[slot / LANES] == 0 {
+            self.touch(slot / LANES);
+        }
         self.mark_changed(slot);
     }
 

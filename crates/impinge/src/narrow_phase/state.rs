@@ -46,11 +46,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
             self.raw.flip_names();
             self.swapped = swapped;
         }
-        let tables = N::tables();
-        match (tables.separation)(&pair, request.prediction) {
-            Some(separation) => (tables.manifold)(&pair, &separation, request, &mut self.raw),
-            None => self.raw.points.clear(),
-        }
+        (N::tables().contacts)(&pair, request, &mut self.raw);
     }
 
     /// The manifold as users see it; `posed` is that of the last update and `pair_number` names the

@@ -65,7 +65,7 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
             return Some(time);
         }
         let closing = -found.normal.dot(&velocity);
-        if !(closing > N::ZERO) {
+        if closing <= N::ZERO {
             return None;
         }
         let later = time + found.distance / closing;

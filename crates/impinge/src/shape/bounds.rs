@@ -1,5 +1,6 @@
 //! Boxes and spheres around shapes placed somewhere.
 
+use super::segment::length_of;
 use super::{Polytope, Shape};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, max};
@@ -35,7 +36,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// by the rounding of its distance.
     pub(super) fn bounding_sphere(&self) -> BoundingSphere<N, D> {
         let center = self.aabb_at(&Pose::identity()).center();
-        let distance = |vertex: &Point<N, D>| (vertex - center).norm();
+        let distance = |vertex: &Point<N, D>| length_of(&(vertex - center));
         let radius = self.vertices.iter().map(distance).fold(N::ZERO, max);
         let radius = radius * (N::ONE + N::lit(4.0) * N::EPSILON);
         BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())

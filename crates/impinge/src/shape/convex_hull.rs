@@ -3,9 +3,9 @@
 use core::ops::Deref;
 
 use super::error::or_panic;
-use super::{Geometry, Kind, Polytope, Shape, ShapeError};
+use super::{Geometry, Kind, Polytope, Shape};
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real};
+use crate::math::{Point, Pose, Real, Vector};
 
 /// The convex hull of some points, with a volume.
 ///
@@ -27,12 +27,14 @@ impl<N: Real> ConvexHull<N> {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The solid with these corners and faces; `None` unless the faces close its surface.
+    /// The solid with these corners and faces, given by outward unit normals and loops of three
+    /// corners at least; `None` unless the faces close its surface.
     pub(crate) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
+        normals: &[Vector<N, 3>],
         faces: &[Vec<usize>],
     ) -> Option<Self> {
-        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
+        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, normals, faces)? })
     }
 
     /// The solid as vertices, edges, faces and what touches what.

@@ -3,7 +3,7 @@
 use core::ops::Deref;
 
 use super::error::or_panic;
-use super::{Geometry, Kind, Polytope, Shape, ShapeError};
+use super::{Geometry, Kind, Polytope, Shape};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real};
 

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::error::{finite, or_panic, size};
+use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::Aabb;
@@ -63,7 +64,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 
     fn reach(&self) -> N {
-        self.half_extents.norm()
+        length_of(&self.half_extents)
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {

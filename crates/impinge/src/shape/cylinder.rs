@@ -2,6 +2,7 @@
 
 use super::error::{or_panic, size};
 use super::round::{Disk, radial_of};
+use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::Aabb;
@@ -69,7 +70,7 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     }
 
     fn reach(&self) -> N {
-        (self.half_height * self.half_height + self.radius * self.radius).sqrt()
+        length_of(&Vector::<N, 2>::new(self.half_height, self.radius))
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {

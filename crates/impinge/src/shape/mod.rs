@@ -76,7 +76,7 @@ pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
     /// A sphere around the solid in its own frame.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         let aabb = self.local_aabb();
-        let radius = aabb.half_extents().norm();
+        let radius = segment::length_of(&aabb.half_extents());
         BoundingSphere::try_new(aabb.center(), radius).unwrap_or(BoundingSphere::unbounded())
     }
 }

@@ -1,6 +1,7 @@
 //! The common core of convex polygons and convex hulls: vertices, faces, edges and who meets whom.
 
-use super::{FeatureId, SupportMap};
+use super::FeatureId;
+use super::segment::length_of;
 use crate::math::{Point, Real, Vector, max};
 
 /// A convex solid with flat faces, in any dimension.
@@ -117,7 +118,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 
     /// The largest distance of a vertex from the origin.
     pub(super) fn reach_of(vertices: &[Point<N, D>]) -> N {
-        vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, vertex.coords.norm()))
+        vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, length_of(&vertex.coords)))
     }
 
     /// For each vertex the edges (in the plane: the faces) that end at it.

@@ -72,31 +72,19 @@ impl<N: Real> Polytope<N, 2> {
     }
 }
 
-/// The unit normal of a polygon by the areas of its shadows (Newell); `None` if it has no area.
-fn newell(points: &[Point<f64, 3>], ring: &[u32]) -> Option<Vector<f64, 3>> {
-    let at = |vertex: u32| points[vertex as usize];
-    let base = at(ring[0]);
-    let next = ring.iter().skip(1).zip(&ring[2..]);
-    let sum = next.fold(Vector::<f64, 3>::zeros(), |sum, (&a, &b)| {
-        sum + (at(a) - base).cross(&(at(b) - base))
-    });
-    let length = sum.norm();
-    (length > 0.0).then(|| sum / length)
-}
-
 impl<N: Real> Polytope<N, 3> {
-    /// The solid with these corners and faces, three corners to a face at least; `None` unless each
-    /// side of a face is, backwards, a side of one other.
+    /// The solid with these corners and faces, given by outward unit normals and loops of three
+    /// corners at least; `None` unless each side of a face is, backwards, a side of one other.
     pub(super) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
+        normals: &[Vector<N, 3>],
         faces: &[Vec<usize>],
     ) -> Option<Self> {
-        let scaled = Scaled::of(&corners);
-        let mut hull = Self::from_vertices(corners, scaled.center());
-        for face in faces {
+        let center = Scaled::of(&corners).center();
+        let mut hull = Self::from_vertices(corners, center);
+        for (normal, face) in normals.iter().zip(faces) {
             let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();
-            let normal = newell(&scaled.points, &ring)?;
-            hull.push_face(normal.map(N::lit), &ring);
+            hull.push_face(*normal, &ring);
         }
         hull.connect()?;
         hull.collect_fans();

@@ -100,3 +100,58 @@ impl<N: Real> Polytope<N, 3> {
         if is_sphere { Ok(()) } else { Err("the surface is not that of one solid") }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::math::{Point, Vector};
+    use crate::shape::Polytope;
+
+    const LOOPS: [[usize; 3]; 4] = [[0, 3, 2], [0, 1, 3], [0, 2, 1], [1, 2, 3]];
+
+    fn tetrahedron(loops: &[[usize; 3]]) -> Option<Polytope<f64, 3>> {
+        let loops: Vec<_> = loops.iter().map(|ring| ring.to_vec()).collect();
+        let axis = Vector::<f64, 3>::ith;
+        let slant = Vector::<f64, 3>::repeat(1.0).normalize();
+        let normals = [-axis(0, 1.0), -axis(1, 1.0), -axis(2, 1.0), slant];
+        Polytope::<f64, 3>::from_closed_faces(corners(), &normals, &loops)
+    }
+
+    fn corners() -> Vec<Point<f64, 3>> {
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(Point::from)
+            .to_vec()
+    }
+
+    #[test]
+    fn damage_is_seen() {
+        let solid = tetrahedron(&LOOPS).expect("closed");
+        assert_eq!(solid.validate(), Ok(()), "a tetrahedron");
+        let mut dented = solid.clone();
+        dented.vertices[3] = Point::<f64, 3>::new(0.1, 0.1, 0.1);
+        assert!(dented.validate().is_err(), "a vertex moved inside");
+        let mut long = solid.clone();
+        long.faces[1].normal *= 2.0;
+        assert_eq!(long.validate(), Err("a normal is not unit"), "a long normal");
+        let mut crossed = solid.clone();
+        crossed.edges[0].faces.swap(0, 1);
+        assert_eq!(
+            crossed.validate(),
+            Err("a face runs along an edge that is not its own"),
+            "an edge with its faces swapped"
+        );
+        let mut polygon = Polytope::<f64, 2>::from_corners(
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Point::from).to_vec(),
+        );
+        assert_eq!(polygon.validate(), Ok(()), "a triangle");
+        polygon.vertices.swap(0, 1);
+        assert!(polygon.validate().is_err(), "turned over");
+    }
+
+    #[test]
+    fn open_surfaces_are_refused() {
+        let mut turned = LOOPS;
+        turned[0].reverse();
+        assert_eq!(tetrahedron(&turned), None, "a face turned over");
+        assert_eq!(tetrahedron(&LOOPS[..3]), None, "a face is missing");
+    }
+}

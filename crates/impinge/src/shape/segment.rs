@@ -3,7 +3,7 @@
 use super::error::{finite, or_panic};
 use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
+use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
 
 /// The points between `a` and `b`, which may coincide.
 ///
@@ -50,9 +50,14 @@ impl<N: Real, const D: usize> Segment<N, D> {
     }
 }
 
+/// The length of a vector, however short or long: its square need not be a number of the type.
+pub(super) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+    unit(v).map_or(N::ZERO, |(_, length)| length)
+}
+
 /// The larger of the distances of two points from the origin.
 pub(super) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
-    max(a.coords.norm(), b.coords.norm())
+    max(length_of(&a.coords), length_of(&b.coords))
 }
 
 /// The box around two points, grown by `reach`.

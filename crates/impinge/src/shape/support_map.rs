@@ -1,5 +1,6 @@
 //! What a convex solid offers to the algorithms.
 
+use super::segment::length_of;
 use super::{Feature, FeatureId};
 use crate::math::{Point, Real, Vector, max, unit};
 
@@ -26,15 +27,15 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// A length that no point of the core exceeds in distance from the local origin, and that is
     /// not much larger than needed: tolerances are in proportion to it.
     fn reach(&self) -> N {
-        let mut squared = N::ZERO;
+        let mut corner = Vector::<N, D>::zeros();
         for axis in 0..D {
             let mut direction = Vector::<N, D>::zeros();
             direction[axis] = N::ONE;
             let high = self.core_support(&direction)[axis].abs();
             let low = self.core_support(&-direction)[axis].abs();
-            squared += max(high, low) * max(high, low);
+            corner[axis] = max(high, low);
         }
-        squared.sqrt()
+        length_of(&corner)
     }
 
     /// A point of the whole solid farthest along `direction`.

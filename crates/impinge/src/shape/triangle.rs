@@ -1,7 +1,7 @@
 //! Triangles: filled in the plane, flat in space.
 
 use super::error::{finite, or_panic};
-use super::segment::{box_of, farther};
+use super::segment::{box_of, farther, length_of};
 use super::tilt::Tilt;
 use super::{Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -73,7 +73,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
 
     fn reach(&self) -> N {
         let [a, b, c] = &self.corners;
-        max(farther(a, b), c.coords.norm())
+        max(farther(a, b), length_of(&c.coords))
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {

@@ -1,5 +1,6 @@
 //! The features of triangles, in any dimension: what faces a direction, and which way it runs.
 
+use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, Feature, FeatureId, SupportMap, Triangle};
 use crate::math::{Matrix, Point, Real, Vector, cross, unit, unit_or};
@@ -46,10 +47,6 @@ impl<N: Real, const D: usize> Span<N, D> {
         let (normal, _) = unit(&rest(direction))?;
         Some(unit_or(&rest(&normal), normal))
     }
-}
-
-fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
-    unit(v).map_or(N::ZERO, |(_, length)| length)
 }
 
 /// The part of a vector perpendicular to a unit vector.

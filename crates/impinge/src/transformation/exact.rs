@@ -102,6 +102,28 @@ fn area_exact(a: &P2, b: &P2, c: &P2) -> f64 {
     value(&minor(&ux, &uy, &vx, &vy))
 }
 
+/// The part of the sum of magnitudes below which a rounded volume is not used.
+const MARGIN: f64 = 4.0 * 1_048_576.0 * f64::EPSILON;
+
+/// `a · b − c · d`, right to the last digits whatever cancels.
+fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let ((left, left_error), (right, right_error)) = (two_product(a, b), two_product(c, d));
+    (left - right) + (left_error - right_error)
+}
+
+/// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice
+/// the area: right to the last digits for slivers too.
+pub(super) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
+    let two_sums = |p: &P3| [0, 1, 2].map(|axis| two_sum(p[axis], -a[axis]));
+    let (u, v) = (two_sums(b), two_sums(c));
+    Vector::<f64, 3>::from_fn(|axis, _| {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let head = product_difference(u[i].0, v[j].0, u[j].0, v[i].0);
+        let tail = u[i].0 * v[j].1 + u[i].1 * v[j].0 - u[j].0 * v[i].1 - u[j].1 * v[i].0;
+        head + tail
+    })
+}
+
 /// Six times the volume of the tetrahedron: positive if `q` lies on the side of the triangle `abc`
 /// from which it is seen counter-clockwise. The sign is exact.
 #[inline]
@@ -114,8 +136,9 @@ pub(super) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let permanent = u.z.abs() * (vw.abs() + wv.abs())
         + v.z.abs() * (wu.abs() + uw.abs())
         + w.z.abs() * (uv.abs() + vu.abs());
-    // Shewchuk's bound is 7 half-units plus higher terms; twice that costs nothing.
-    if det.abs() > 8.0 * f64::EPSILON * permanent { -det } else { volume_exact([a, b, c], q) }
+    // Shewchuk's bound is 7 half-units. A million times that makes the magnitude right to six digits
+    // too, which heights over slivers need, and is still rare.
+    if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 
 #[cold]
@@ -155,11 +178,24 @@ mod tests {
     #[test]
     fn volumes_are_positive_in_front() {
         let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(P3::from);
-        assert_eq!(volume(&a, &b, &c, &P3::new(0.2, 0.2, 3.0)), 3.0, "above");
+        assert_eq!(volume(&a, &b, &c, &P3::new(0.25, 0.25, 3.0)), 3.0, "above");
         assert_eq!(volume(&a, &b, &c, &P3::new(7.0, -4.0, 0.0)), 0.0, "in the plane");
-        assert_eq!(volume_exact([&a, &b, &c], &P3::new(0.2, 0.2, 3.0)), 3.0, "exactly");
+        assert_eq!(volume_exact([&a, &b, &c], &P3::new(0.25, 0.25, 3.0)), 3.0, "exactly");
         let tiny = volume(&a, &b, &c, &P3::new(0.1, 0.7, -1e-60));
         assert!(tiny < 0.0 && tiny > -1.1e-60, "{tiny} just below");
+    }
+
+    #[test]
+    fn slivers_have_normals() {
+        let (a, b) = (P3::new(0.1, 0.3, 0.7), P3::new(1.1, 1.3, 1.7));
+        let c = P3::new(0.6, 0.8, 1.2 + f64::EPSILON);
+        let normal = area_vector(&a, &b, &c);
+        // Exact: the heights of both ends over the plane of the three points vanish.
+        for p in [b, c] {
+            let height = normal.normalize().dot(&(p - a));
+            assert!(height.abs() < 1e-16, "{p} lies {height} out of the plane");
+        }
+        assert!(normal.norm() > 1e-17, "a sliver is not nothing: {normal}");
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
 //! polygon.
 
-use super::quickhull::Surface;
-use super::span::{direction, distance_from_segment, precedes};
+use super::quickhull::Facet;
+use super::span::{Scaled, direction, distance_from_segment, precedes};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -13,12 +13,13 @@ fn at(index: u32) -> usize {
 
 /// The vertices next to each vertex: pairs (vertex, neighbor), sorted, and whether the surface turns
 /// at the edge between them.
-fn spokes(surface: &Surface<'_>, flat: f64) -> Vec<(u32, u32, bool)> {
-    let mut spokes = Vec::with_capacity(3 * surface.facets.len());
-    for (index, facet) in (0_u32..).zip(&surface.facets) {
+fn spokes(facets: &[Facet], points: &Scaled<3>) -> Vec<(u32, u32, bool)> {
+    let mut spokes = Vec::with_capacity(3 * facets.len());
+    for facet in facets {
         for side in 0..3 {
             let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]];
-            spokes.push((from, to, !is_flat(surface, [index, facet.neighbors[side]], flat)));
+            let beyond = &facets[at(facet.neighbors[side])];
+            spokes.push((from, to, !is_flat(facet, beyond, points)));
         }
     }
     spokes.sort_unstable();
@@ -26,17 +27,18 @@ fn spokes(surface: &Surface<'_>, flat: f64) -> Vec<(u32, u32, bool)> {
 }
 
 /// The smaller of two neighbors lies in the plane of the larger.
-fn is_flat(surface: &Surface<'_>, [facet1, facet2]: [u32; 2], flat: f64) -> bool {
-    let is_first_larger = surface.doubled_area(facet1) >= surface.doubled_area(facet2);
+fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
+    let is_first_larger = facet1.doubled_area() >= facet2.doubled_area();
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
-    let corners = surface.facets[at(small)].corners;
-    corners.iter().all(|&corner| surface.height(large, corner).abs() <= flat)
+    let mut far = small.corners.iter().filter(|&corner| !large.corners.contains(corner));
+    far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
 }
 
 /// Vertices, no two next to each other, without which the hull stays the same within `flat`: they
 /// lie on the segment between two neighbors or in the plane of all of them.
-pub(super) fn redundant(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<u32> {
-    let spokes = spokes(surface, flat);
+pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
+    let points = &scaled.points;
+    let spokes = spokes(facets, scaled);
     let mut is_kept = vec![false; points.len()];
     let mut redundant = Vec::new();
     for ring in spokes.chunk_by(|a, b| a.0 == b.0) {
@@ -44,8 +46,8 @@ pub(super) fn redundant(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<
         // At a true corner three edges meet at least, or slivers hide some of them.
         let turns = ring.iter().filter(|spoke| spoke.2).count();
         let is_candidate = turns <= 2 && ring.len() <= 64 && !is_kept[at(vertex)];
-        let neighbors: Vec<P3> = ring.iter().map(|spoke| points[at(spoke.1)]).collect();
-        if is_candidate && is_inside(&points[at(vertex)], &neighbors, flat) {
+        let neighbors = || ring.iter().map(|spoke| points[at(spoke.1)]).collect::<Vec<P3>>();
+        if is_candidate && is_inside(&points[at(vertex)], &neighbors(), scaled.flat()) {
             redundant.push(vertex);
             ring.iter().for_each(|spoke| is_kept[at(spoke.1)] = true);
         }
@@ -72,22 +74,34 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// The loops of vertices of the faces, counter-clockwise from outside, from the first vertex in order
-/// of coordinates; triangles within `flat` of one plane are one face.
+/// A face of the hull.
+#[derive(Clone, Debug)]
+pub(super) struct Face {
+    /// The outward unit normal of the largest triangle in it: the hull has no point in front of that,
+    /// however much smaller triangles are bent within the tolerance.
+    pub(super) normal: Vector<f64, 3>,
+    /// The vertices, counter-clockwise from outside, from the first in order of coordinates.
+    pub(super) ring: Vec<u32>,
+}
+
+/// The faces: triangles within the tolerance of one plane are one face.
 ///
 /// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
-pub(super) fn faces(surface: &Surface<'_>, points: &[P3], flat: f64) -> Vec<Vec<u32>> {
-    let mut faces = Merger::new(surface, points, flat).merged();
+pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Face> {
+    let points = &scaled.points;
+    let mut faces = Merger::new(facets, scaled).merged();
     straighten(&mut faces, points.len());
     if !is_closed(&faces) {
-        faces = surface.facets.iter().map(|facet| facet.corners.to_vec()).collect();
+        let triangle =
+            |facet: &Facet| Face { normal: facet.normal(points), ring: facet.corners.to_vec() };
+        faces = facets.iter().map(triangle).collect();
     }
-    for face in &mut faces {
-        let first = (1..face.len()).fold(0, |first, candidate| {
-            let is_before = precedes(&points[at(face[candidate])], &points[at(face[first])]);
+    for Face { ring, .. } in &mut faces {
+        let first = (1..ring.len()).fold(0, |first, candidate| {
+            let is_before = precedes(&points[at(ring[candidate])], &points[at(ring[first])]);
             if is_before { candidate } else { first }
         });
-        face.rotate_left(first);
+        ring.rotate_left(first);
     }
     faces
 }
@@ -100,7 +114,7 @@ struct Corner {
 }
 
 struct Merger<'a> {
-    surface: &'a Surface<'a>,
+    facets: &'a [Facet],
     points: &'a [P3],
     flat: f64,
     /// Which facets are part of a face.
@@ -110,27 +124,33 @@ struct Merger<'a> {
 }
 
 impl<'a> Merger<'a> {
-    fn new(surface: &'a Surface<'a>, points: &'a [P3], flat: f64) -> Self {
-        let is_taken = vec![false; surface.facets.len()];
-        Self { surface, points, flat, is_taken, in_face_of: vec![0; points.len()] }
+    fn new(facets: &'a [Facet], scaled: &'a Scaled<3>) -> Self {
+        Self {
+            facets,
+            points: &scaled.points,
+            flat: scaled.flat(),
+            is_taken: vec![false; facets.len()],
+            in_face_of: vec![0; scaled.points.len()],
+        }
     }
 
     /// Grows a face from each facet that is in none yet, the largest first.
-    fn merged(mut self) -> Vec<Vec<u32>> {
-        let mut seeds: Vec<u32> = (0..).take(self.surface.facets.len()).collect();
-        let area = |facet: u32| self.surface.doubled_area(facet);
+    fn merged(mut self) -> Vec<Face> {
+        let mut seeds: Vec<u32> = (0..).take(self.facets.len()).collect();
+        let area = |facet: u32| self.facets[at(facet)].doubled_area();
         seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
         let mut faces = Vec::new();
         for seed in seeds {
             if !self.is_taken[at(seed)] {
-                faces.push(self.grow(seed));
+                let normal = self.facets[at(seed)].normal(self.points);
+                faces.push(Face { normal, ring: self.grow(seed) });
             }
         }
         faces
     }
 
     fn grow(&mut self, seed: u32) -> Vec<u32> {
-        let facet = &self.surface.facets[at(seed)];
+        let facet = &self.facets[at(seed)];
         self.is_taken[at(seed)] = true;
         let mut ring = Vec::with_capacity(4);
         for side in 0..3 {
@@ -155,14 +175,14 @@ impl<'a> Merger<'a> {
     /// convex.
     fn take_beyond(&mut self, seed: u32, ring: &mut Vec<Corner>, position: usize) -> bool {
         let (from, beyond) = (ring[position].vertex, ring[position].beyond);
-        let facet = &self.surface.facets[at(beyond)];
+        let facet = &self.facets[at(beyond)];
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
             return false;
         };
         // Seen from there the side runs backwards, to `from`; then come the far corner and back.
         let far = facet.corners[(shared + 1) % 3];
         let is_free = !self.is_taken[at(beyond)] && self.in_face_of[at(far)] != seed + 1;
-        let is_level = || self.surface.height(seed, far).abs() <= self.flat;
+        let is_level = || self.facets[at(seed)].height(self.points, far).abs() <= self.flat;
         if !(is_free && is_level() && self.stays_convex(seed, ring, position, far)) {
             return false;
         }
@@ -180,7 +200,7 @@ impl<'a> Merger<'a> {
         let count = ring.len();
         let vertex = |step: usize| ring[(position + step) % count].vertex;
         let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
-        let normal = self.surface.normal(seed);
+        let normal = self.facets[at(seed)].normal(self.points);
         let turns_left = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| self.points[at(corner)]);
             // How far b lies outside the line from a to c, times its length.
@@ -193,10 +213,10 @@ impl<'a> Merger<'a> {
 }
 
 /// Drops the vertices that only two faces share: in each of them the sides there form one line.
-fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
+fn straighten(faces: &mut [Face], vertices: usize) {
     let mut uses = vec![(0_u32, [0_usize; 2]); vertices];
     for (index, face) in faces.iter().enumerate() {
-        for &vertex in face {
+        for &vertex in &face.ring {
             let (count, users) = &mut uses[at(vertex)];
             if let Some(user) = users.get_mut(at(*count)) {
                 *user = index;
@@ -205,17 +225,17 @@ fn straighten(faces: &mut [Vec<u32>], vertices: usize) {
         }
     }
     for (vertex, (count, users)) in (0_u32..).zip(uses) {
-        if count == 2 && users.iter().all(|&user| faces[user].len() > 3) {
-            users.iter().for_each(|&user| faces[user].retain(|&corner| corner != vertex));
+        if count == 2 && users.iter().all(|&user| faces[user].ring.len() > 3) {
+            users.iter().for_each(|&user| faces[user].ring.retain(|&corner| corner != vertex));
         }
     }
 }
 
 /// Each side of a face is, backwards, the side of one other face.
-fn is_closed(faces: &[Vec<u32>]) -> bool {
-    let sides = |face: &Vec<u32>| {
-        let next = face.iter().cycle().skip(1);
-        face.iter().copied().zip(next.copied()).collect::<Vec<_>>()
+fn is_closed(faces: &[Face]) -> bool {
+    let sides = |Face { ring, .. }: &Face| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().copied().zip(next.copied()).collect::<Vec<_>>()
     };
     let mut forward: Vec<(u32, u32)> = faces.iter().flat_map(sides).collect();
     let mut backward: Vec<(u32, u32)> = forward.iter().map(|&(from, to)| (to, from)).collect();

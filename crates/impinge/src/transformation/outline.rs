@@ -23,8 +23,7 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize>
         kept.push(index);
     }
     // Around the seam each turn of the loop removes a point or ends it.
-    loop {
-        let [first, second, .., before, last] = kept[..] else { break };
+    while let [first, second, .., before, last] = kept[..] {
         if adds_nothing(before, last, first) {
             kept.pop();
         } else if adds_nothing(last, first, second) {

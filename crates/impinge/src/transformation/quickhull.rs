@@ -5,7 +5,7 @@
 //! border is always one loop: the surface stays closed and weakly convex whatever the input. Points
 //! that stick out by no more than the tolerance from every facet are left outside.
 
-use super::exact::volume;
+use super::exact::{area_vector, volume};
 use super::span::{larger, precedes};
 use crate::math::{Point, Vector};
 
@@ -21,8 +21,8 @@ pub(super) struct Facet {
     pub(super) neighbors: [u32; 3],
     /// Twice the area: volumes over it are heights.
     doubled_area: f64,
-    /// Points in front of it, each on the list of one facet only.
-    outside: Vec<u32>,
+    /// Points in front of it and how far, each on the list of one facet only.
+    outside: Vec<(u32, f64)>,
     is_alive: bool,
     /// The number of the last search that came by.
     seen: u32,
@@ -31,7 +31,7 @@ pub(super) struct Facet {
 /// The surface while it grows.
 pub(super) struct Surface<'a> {
     points: &'a [P3],
-    pub(super) facets: Vec<Facet>,
+    facets: Vec<Facet>,
     /// Points no higher than this above every facet are left outside.
     tolerance: f64,
     searches: u32,
@@ -54,37 +54,52 @@ fn index_of(position: usize) -> u32 {
     u32::try_from(position).expect("counts fit 32 bits")
 }
 
+fn area_vector_of(points: &[P3], [a, b, c]: [u32; 3]) -> Vector<f64, 3> {
+    area_vector(&points[at(a)], &points[at(b)], &points[at(c)])
+}
+
+fn volume_over(points: &[P3], [a, b, c]: [u32; 3], point: u32) -> f64 {
+    volume(&points[at(a)], &points[at(b)], &points[at(c)], &points[at(point)])
+}
+
+impl Facet {
+    /// The outward unit normal.
+    pub(super) fn normal(&self, points: &[P3]) -> Vector<f64, 3> {
+        area_vector_of(points, self.corners) / larger(self.doubled_area, f64::MIN_POSITIVE)
+    }
+
+    /// Twice the area.
+    pub(super) const fn doubled_area(&self) -> f64 {
+        self.doubled_area
+    }
+
+    /// How far a point lies in front of it; the sign is exact.
+    pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
+        volume_over(points, self.corners, point) / larger(self.doubled_area, f64::MIN_POSITIVE)
+    }
+}
+
 impl<'a> Surface<'a> {
-    /// The hull of the points named, grown from a tetrahedron of four of them.
-    pub(super) fn grown(
-        points: &'a [P3],
-        named: &[u32],
-        first: [u32; 4],
-        tolerance: f64,
-    ) -> Option<Self> {
+    /// The facets of the hull, grown from a tetrahedron of four of the points; `None` if these lie in
+    /// a plane.
+    pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {
         let mut surface = Self { points, facets: Vec::new(), tolerance, searches: 0 };
         surface.start(first)?;
-        surface.distribute(named.to_vec(), &[0, 1, 2, 3]);
-        // Each turn adds a vertex or puts a point that no facet can take to rest.
-        let mut queue: Vec<u32> = vec![0, 1, 2, 3];
-        let mut resting = 0;
-        loop {
-            while let Some(&facet) = queue.get(resting) {
-                resting += 1;
-                surface.raise(facet, &mut queue);
+        surface.distribute((0..).take(points.len()), &[0, 1, 2, 3]);
+        // Each call adds a vertex, gives a point up, or finds that a facet has nothing to add. The
+        // last facet first: that stays where the memory is warm.
+        let mut pending: Vec<u32> = vec![0, 1, 2, 3];
+        while !pending.is_empty() {
+            while let Some(facet) = pending.pop() {
+                surface.raise(facet, &mut pending);
             }
-            queue.clear();
-            resting = 0;
-            if !surface.promote(&mut queue) {
-                break;
-            }
+            surface.promote(&mut pending);
         }
-        surface.compact();
-        Some(surface)
+        Some(surface.compacted())
     }
 
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
-        let height = self.volume([a, b, c], d);
+        let height = volume_over(self.points, [a, b, c], d);
         if height == 0.0 {
             return None;
         }
@@ -102,7 +117,7 @@ impl<'a> Surface<'a> {
     }
 
     fn push(&mut self, corners: [u32; 3], neighbors: [u32; 3]) -> u32 {
-        let doubled_area = self.normal_of(corners).norm();
+        let doubled_area = area_vector_of(self.points, corners).norm();
         let outside = Vec::new();
         self.facets.push(Facet {
             corners,
@@ -115,31 +130,8 @@ impl<'a> Surface<'a> {
         index_of(self.facets.len() - 1)
     }
 
-    fn normal_of(&self, [a, b, c]: [u32; 3]) -> Vector<f64, 3> {
-        let [a, b, c] = [a, b, c].map(|corner| self.points[at(corner)]);
-        (b - a).cross(&(c - a))
-    }
-
-    /// The outward unit normal of a facet.
-    pub(super) fn normal(&self, facet: u32) -> Vector<f64, 3> {
-        let normal = self.normal_of(self.facets[at(facet)].corners);
-        normal / larger(normal.norm(), f64::MIN_POSITIVE)
-    }
-
-    /// Twice the area of a facet.
-    pub(super) fn doubled_area(&self, facet: u32) -> f64 {
-        self.facets[at(facet)].doubled_area
-    }
-
-    fn volume(&self, [a, b, c]: [u32; 3], point: u32) -> f64 {
-        let points = self.points;
-        volume(&points[at(a)], &points[at(b)], &points[at(c)], &points[at(point)])
-    }
-
-    /// How far a point lies in front of a facet; the sign is exact.
-    pub(super) fn height(&self, facet: u32, point: u32) -> f64 {
-        let facet = &self.facets[at(facet)];
-        self.volume(facet.corners, point) / larger(facet.doubled_area, f64::MIN_POSITIVE)
+    fn height(&self, facet: u32, point: u32) -> f64 {
+        self.facets[at(facet)].height(self.points, point)
     }
 
     /// Puts each point on the list of the facet that it lies farthest in front of; drops those in
@@ -147,7 +139,7 @@ impl<'a> Surface<'a> {
     ///
     /// A point in front of a facet that was taken away, and outside, is in front of one of those put
     /// in its place.
-    fn distribute(&mut self, points: Vec<u32>, facets: &[u32]) {
+    fn distribute(&mut self, points: impl Iterator<Item = u32>, facets: &[u32]) {
         for point in points {
             let (mut best, mut top) = (NONE, 0.0);
             for &facet in facets {
@@ -157,7 +149,7 @@ impl<'a> Surface<'a> {
                 }
             }
             if best != NONE {
-                self.facets[at(best)].outside.push(point);
+                self.facets[at(best)].outside.push((point, top));
             }
         }
     }
@@ -165,12 +157,11 @@ impl<'a> Surface<'a> {
     /// The point farthest in front of a facet, if any is above the tolerance.
     fn farthest(&self, facet: u32) -> Option<u32> {
         let outside = &self.facets[at(facet)].outside;
-        let top = outside.iter().fold(0.0, |top, &point| larger(top, self.height(facet, point)));
+        let top = outside.iter().fold(0.0, |top, &(_, height)| larger(top, height));
         let mut best = None;
-        for &point in outside {
+        for &(point, height) in outside {
             let precedes = |best: u32| precedes(&self.points[at(best)], &self.points[at(point)]);
-            let is_high = self.height(facet, point) >= top - 0.25 * self.tolerance;
-            if is_high && best.is_none_or(precedes) {
+            if height >= top - 0.25 * self.tolerance && best.is_none_or(precedes) {
                 best = Some(point);
             }
         }
@@ -178,7 +169,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Draws the surface out to the point farthest in front of a facet.
-    fn raise(&mut self, facet: u32, queue: &mut Vec<u32>) {
+    fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
         if !self.facets[at(facet)].is_alive {
             return;
         }
@@ -186,8 +177,8 @@ impl<'a> Surface<'a> {
         let visible = self.visible_from(point, facet);
         let Some(horizon) = self.horizon(&visible) else {
             // Only products below the range of doubles lead here: the point is given up.
-            self.facets[at(facet)].outside.retain(|&other| other != point);
-            queue.push(facet);
+            self.facets[at(facet)].outside.retain(|&(other, _)| other != point);
+            pending.push(facet);
             return;
         };
         let created = self.replace(point, &horizon);
@@ -197,9 +188,9 @@ impl<'a> Surface<'a> {
             facet.is_alive = false;
             orphans.append(&mut facet.outside);
         }
-        orphans.retain(|&orphan| orphan != point);
-        self.distribute(orphans, &created);
-        queue.extend(created);
+        let orphans = orphans.into_iter().map(|(orphan, _)| orphan);
+        self.distribute(orphans.filter(|&orphan| orphan != point), &created);
+        pending.extend(created);
     }
 
     /// The facets that a point is in front of, found from one of them: they are connected.
@@ -264,22 +255,21 @@ impl<'a> Surface<'a> {
         (first..index_of(self.facets.len())).collect()
     }
 
-    /// Looks among the points left outside for those that are above the tolerance over a facet other
-    /// than their own, moves them there and names these facets. The others are dropped.
-    fn promote(&mut self, queue: &mut Vec<u32>) -> bool {
+    /// Moves each point left outside to the facet that it is highest over, and names those facets
+    /// over which this is above the tolerance. The others stay: the surface may yet turn below them.
+    fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if !self.facets[at(facet)].is_alive {
                 continue;
             }
-            for point in core::mem::take(&mut self.facets[at(facet)].outside) {
+            for (point, _) in core::mem::take(&mut self.facets[at(facet)].outside) {
                 let (best, height) = self.highest_above(point, facet);
+                self.facets[at(best)].outside.push((point, height));
                 if height > self.tolerance {
-                    self.facets[at(best)].outside.push(point);
-                    queue.push(best);
+                    pending.push(best);
                 }
             }
         }
-        !queue.is_empty()
     }
 
     /// The facet over which a point is highest, found from one that it is in front of.
@@ -294,8 +284,8 @@ impl<'a> Surface<'a> {
         best
     }
 
-    /// Forgets the facets taken away.
-    fn compact(&mut self) {
+    /// The facets that are left, numbered anew.
+    fn compacted(mut self) -> Vec<Facet> {
         let mut renamed = vec![NONE; self.facets.len()];
         let mut count = 0;
         for (facet, name) in self.facets.iter().zip(&mut renamed) {
@@ -308,6 +298,7 @@ impl<'a> Surface<'a> {
         for facet in &mut self.facets {
             facet.neighbors = facet.neighbors.map(|neighbor| renamed[at(neighbor)]);
         }
+        self.facets
     }
 }
 

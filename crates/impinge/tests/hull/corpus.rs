@@ -32,11 +32,7 @@ fn points3(value: &Value) -> Vec<P3> {
 
 fn points2<N: Real>(value: &Value) -> Vec<Point<N, 2>> {
     let points = value.as_array().expect("a list of points");
-    points
-        .iter()
-        .map(|p| numbers(p))
-        .map(|p| Point::<N, 2>::new(N::lit(p[0]), N::lit(p[1])))
-        .collect()
+    points.iter().map(numbers).map(|p| Point::<N, 2>::new(N::lit(p[0]), N::lit(p[1]))).collect()
 }
 
 /// The convex shapes of all pair cases.

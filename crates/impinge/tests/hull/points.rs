@@ -2,35 +2,35 @@
 
 use impinge::math::{Isometry3, Point, Vector};
 
-pub type P3 = Point<f64, 3>;
+pub(crate) type P3 = Point<f64, 3>;
 
 /// A small generator of numbers in [-1, 1): a permuted congruential generator (O'Neill, 2014).
-pub struct Numbers(u64);
+pub(crate) struct Numbers(u64);
 
 impl Numbers {
-    pub const fn new(seed: u64) -> Self {
+    pub(crate) const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    pub fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let word = u32::try_from(self.0 >> 33).expect("31 bits");
         f64::from((word ^ (word >> 14)) & 0x00ff_ffff) / f64::from(1_u32 << 23) - 1.0
     }
 
-    pub fn vector(&mut self) -> Vector<f64, 3> {
+    pub(crate) fn vector(&mut self) -> Vector<f64, 3> {
         Vector::<f64, 3>::from_fn(|_, _| self.next())
     }
 }
 
-pub fn ball(count: usize) -> Vec<P3> {
+pub(crate) fn ball(count: usize) -> Vec<P3> {
     let mut numbers = Numbers::new(7);
     let inside = core::iter::repeat_with(|| numbers.vector()).filter(|v| v.norm() < 1.0);
     inside.take(count).map(P3::from).collect()
 }
 
-pub fn sphere(count: usize) -> Vec<P3> {
+pub(crate) fn sphere(count: usize) -> Vec<P3> {
     let mut numbers = Numbers::new(11);
     let inside =
         core::iter::repeat_with(|| numbers.vector()).filter(|v| (0.1..1.0).contains(&v.norm()));
@@ -38,22 +38,22 @@ pub fn sphere(count: usize) -> Vec<P3> {
 }
 
 /// The whole points from 0 to `count - 1` on each axis.
-pub fn grid(count: u32) -> Vec<P3> {
+pub(crate) fn grid(count: u32) -> Vec<P3> {
     let axis = move || (0..count).map(f64::from);
     axis().flat_map(|x| axis().flat_map(move |y| axis().map(move |z| P3::new(x, y, z)))).collect()
 }
 
-pub fn cube() -> Vec<P3> {
+pub(crate) fn cube() -> Vec<P3> {
     grid(2)
 }
 
-pub fn octahedron() -> Vec<P3> {
+pub(crate) fn octahedron() -> Vec<P3> {
     let axis = |i: usize| Vector::<f64, 3>::ith(i, 1.0);
     (0..3).flat_map(|i| [P3::from(axis(i)), P3::from(-axis(i))]).collect()
 }
 
 /// A regular prism of height 2 with corners on the unit circle.
-pub fn prism(sides: u32) -> Vec<P3> {
+pub(crate) fn prism(sides: u32) -> Vec<P3> {
     let corner = |i: u32, z: f64| {
         let angle = std::f64::consts::TAU * f64::from(i) / f64::from(sides);
         P3::new(angle.cos(), angle.sin(), z)
@@ -62,13 +62,13 @@ pub fn prism(sides: u32) -> Vec<P3> {
 }
 
 /// The points turned, scaled and moved; what was exactly flat is so no more.
-pub fn turned(points: &[P3], scale: f64, offset: f64) -> Vec<P3> {
+pub(crate) fn turned(points: &[P3], scale: f64, offset: f64) -> Vec<P3> {
     let turn = Isometry3::rotation(Vector::<f64, 3>::new(0.3, -0.9, 1.7));
     points.iter().map(|p| turn * p * scale + Vector::<f64, 3>::repeat(offset)).collect()
 }
 
 /// A flat box of the given thickness with noise on its large faces.
-pub fn slab(thickness: f64) -> Vec<P3> {
+pub(crate) fn slab(thickness: f64) -> Vec<P3> {
     let mut numbers = Numbers::new(3);
     (0..500)
         .map(|_| {

@@ -4,8 +4,8 @@ use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ShapeError};
 use impinge::transformation::convex_hull3;
 
-use super::checks::{cast, hull_of};
-use super::points::{P3, ball, cube, grid, octahedron, prism, slab, sphere, turned};
+use super::checks::{cast, hull_of, hull_within};
+use super::points::{Numbers, P3, ball, cube, grid, octahedron, prism, slab, sphere, turned};
 
 fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
     let hull = hull_of::<N>(name, points);
@@ -52,15 +52,14 @@ fn random<N: Real>() {
     let (vertices, _) = counts::<N>("8000 in a ball", &ball(8000));
     assert!((200..1000).contains(&vertices), "{vertices} of 8000 are on the hull");
     let (vertices, faces) = counts::<N>("2000 on a sphere", &sphere(2000));
-    assert_eq!((vertices, faces), (2000, 3996), "all are, and all faces are triangles");
+    assert_eq!(vertices, 2000, "all are");
+    assert!((3980..=3996).contains(&faces), "{faces}: triangles, but for neighbors flat by chance");
     let flat: Vec<P3> = ball(8000).iter().map(|p| P3::new(p.x, p.y, p.z * 1e-4)).collect();
     counts::<N>("a lens", &turned(&flat, 1.0, 0.0));
     let twice: Vec<P3> = ball(500).into_iter().flat_map(|p| [p, p, p]).collect();
     let hull = hull_of::<N>("each point three times", &twice);
-    assert!(
-        hull.vertices.iter().all(|vertex| vertex % 3 == 0 || vertex % 3 > 0),
-        "any of the three"
-    );
+    let thirds: Vec<usize> = hull.vertices.iter().map(|vertex| vertex / 3).collect();
+    assert!(thirds.windows(2).all(|pair| pair[0] < pair[1]), "one of each three at most");
     assert_eq!(
         hull.vertices.len(),
         counts::<N>("each point once", &ball(500)).0,
@@ -72,6 +71,84 @@ fn random<N: Real>() {
 fn random_points() {
     random::<f32>();
     random::<f64>();
+}
+
+/// Few whole numbers: most points lie in planes and on lines with many others.
+fn small_grids<N: Real>() {
+    let mut numbers = Numbers::new(33);
+    let (mut solids, mut flat) = (0, 0);
+    for round in 0..600 {
+        let size = f64::from(1 + round % 4);
+        let mut point = || P3::from(numbers.vector().map(|x| ((x + 1.0) * 0.5 * size).round()));
+        let points: Vec<P3> = (0..4 + round % 19).map(|_| point()).collect();
+        let turned = turned(&points, 0.7, 0.0);
+        for points in [points, turned] {
+            if let Err(error) = convex_hull3(&cast::<N>(&points)) {
+                assert!(matches!(error, ShapeError::Degenerate { .. }), "{error}");
+                flat += 1;
+            } else {
+                hull_of::<N>("small grid", &points);
+                let solid = ConvexHull::<N>::from_points(&cast(&points));
+                assert_eq!(solid.validate(), Ok(()), "{points:?}");
+                solids += 1;
+            }
+        }
+    }
+    assert!(solids > 800 && flat > 20, "{solids} solids, {flat} flat sets");
+}
+
+#[test]
+fn points_of_small_grids() {
+    small_grids::<f32>();
+    small_grids::<f64>();
+}
+
+/// Clouds of rounding size around the corners of a solid, on its edges and on its faces.
+fn noise<N: Real>() {
+    let mut numbers = Numbers::new(17);
+    for units in [0.5, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3] {
+        let corners = turned(&prism(6), 1.0, 0.0);
+        let mut points = Vec::new();
+        for _ in 0..400 {
+            let mut pick = || {
+                let nearest = numbers.vector();
+                let along = |p: &&P3| nearest.dot(&p.coords);
+                corners.iter().max_by(|p, q| along(p).total_cmp(&along(q))).expect("twelve").coords
+            };
+            let (a, b) = (pick(), pick());
+            let t = (numbers.next() * 2.0).clamp(-1.0, 1.0) * 0.5 + 0.5;
+            let shake = numbers.vector() * (units * N::EPSILON.as_f64());
+            points.push(P3::from(a * t + b * (1.0 - t) + shake));
+        }
+        let hull = hull_of::<N>("noise", &points);
+        assert!(
+            units > 4.0 || hull.vertices.len() < 60,
+            "{units}: {} vertices",
+            hull.vertices.len()
+        );
+        let solid = ConvexHull::<N>::from_points(&cast(&points));
+        assert_eq!(solid.validate(), Ok(()), "noise of {units} units");
+    }
+}
+
+#[test]
+fn clouds_of_rounding_size() {
+    noise::<f32>();
+    noise::<f64>();
+}
+
+/// A smooth surface sampled so finely that neighbors lie in one plane within rounding.
+#[test]
+fn samples_finer_than_rounding() {
+    for sides in [1000, 6000] {
+        let hull = hull_of::<f32>("round prism", &prism(sides));
+        assert!(hull.faces.iter().any(|face| face.len() > 300), "the caps are polygons");
+        hull_of::<f64>("round prism", &prism(sides));
+    }
+    let cap: Vec<P3> =
+        ball(6000).iter().map(|p| P3::new(p.x, p.y, 1e-5 * (p.x * p.x + p.y * p.y))).collect();
+    hull_within::<f32>(32.0, "shallow dish", &cap);
+    hull_of::<f64>("shallow dish", &cap);
 }
 
 fn slabs<N: Real>() {
@@ -171,6 +248,7 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 #[ignore = "a measurement, for optimised builds"]
+#[expect(clippy::print_stdout, reason = "the measurement is what it is for")]
 fn time_of_large_hulls() {
     for count in [1_000, 10_000, 100_000] {
         for (name, points) in [("sphere", sphere(count)), ("ball", ball(count))] {

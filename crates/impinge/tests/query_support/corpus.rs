@@ -2,7 +2,10 @@
 
 use impinge::math::na::{Quaternion, Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry, Point, Real, Unit, Vector};
-use impinge::shape::{Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Segment, Shape, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, Shape,
+    Triangle,
+};
 use serde_json::Value;
 
 use super::Placed;
@@ -72,7 +75,7 @@ fn common<N: Real, const D: usize>(value: &Value) -> Option<Box<dyn Shape<N, D>>
 
 pub fn shape2<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 2>>> {
     common(value).or_else(|| match value["type"].as_str() {
-        Some("convex_polygon") => Some(polygon(points(&value["points"]))),
+        Some("convex_polygon") => Some(polygon(&points(&value["points"]))),
         _ => None,
     })
 }
@@ -86,19 +89,19 @@ pub fn shape3<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 3>>> {
         Some("cone" | "cone_y") => {
             Some(Box::new(Cone::new(number(&value["half_height"]), either(value, "radius", "r"))))
         }
-        Some("convex" | "convex_hull") => Some(hull(points(&value["points"]))),
+        Some("convex" | "convex_hull") => Some(hull(&points(&value["points"]))),
         _ => None,
     })
 }
 
-/// A polygon.
-pub fn polygon<N: Real>(points: Vec<Point<N, 2>>) -> Box<dyn Shape<N, 2>> {
-    Box::new(RoundHull { points, rounding: N::ZERO })
+/// The hull of some points.
+pub fn polygon<N: Real>(points: &[Point<N, 2>]) -> Box<dyn Shape<N, 2>> {
+    Box::new(ConvexPolygon::from_points(points))
 }
 
-/// A hull.
-pub fn hull<N: Real>(points: Vec<Point<N, 3>>) -> Box<dyn Shape<N, 3>> {
-    Box::new(RoundHull { points, rounding: N::ZERO })
+/// The hull of some points.
+pub fn hull<N: Real>(points: &[Point<N, 3>]) -> Box<dyn Shape<N, 3>> {
+    Box::new(ConvexHull::from_points(points))
 }
 
 /// The turn that takes the y axis to the axis that a shape of the corpus stands along.

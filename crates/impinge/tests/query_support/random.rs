@@ -3,8 +3,9 @@
 use impinge::math::na::{Quaternion, UnitComplex, UnitQuaternion};
 use impinge::math::{Real, Vector};
 
-/// `SplitMix64` (Steele, Lea and Flood, 2014).
-pub struct Random(pub u64);
+/// `SplitMix64` (Steele, Lea and Flood, 2014); with the flag, half of the sizes and coordinates of
+/// the solids made from it are zero.
+pub struct Random(pub u64, pub bool);
 
 impl Random {
     pub fn bits(&mut self) -> u64 {
@@ -24,6 +25,11 @@ impl Random {
     /// Between `low` and `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.signed() * 0.5 + 0.5)
+    }
+
+    /// One, or zero for half of the sizes of degenerate solids.
+    pub fn size_or_zero(&mut self) -> f64 {
+        if self.1 && self.bits() & 1 == 0 { 0.0 } else { 1.0 }
     }
 
     /// A vector in the unit ball, not too short.

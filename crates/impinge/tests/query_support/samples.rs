@@ -40,12 +40,13 @@ pub type Sample<N, const D: usize> = fn(ShapeKind, &mut Random, N) -> Box<dyn Sh
 
 /// A point up to `scale` away from the origin.
 fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> {
-    Point::from(random.vector::<N, D>() * scale)
+    let v = random.vector::<N, D>() * scale;
+    Point::from(v.map(|x| x * N::lit(random.size_or_zero())))
 }
 
 /// A size between a fifth of `scale` and all of it.
 fn size<N: Real>(random: &mut Random, scale: N) -> N {
-    N::lit(random.within(0.2, 1.0)) * scale
+    N::lit(random.within(0.2, 1.0) * random.size_or_zero()) * scale
 }
 
 /// The kinds that both dimensions have.
@@ -79,7 +80,7 @@ fn common<N: Real, const D: usize>(
 
 pub fn sample2<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<dyn Shape<N, 2>> {
     match kind {
-        ShapeKind::Polytope => polygon(octagon(random, scale)),
+        ShapeKind::Polytope => polygon(&octagon(random, scale)),
         other => common(other, random, scale),
     }
 }
@@ -101,7 +102,7 @@ pub fn sample3<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<d
     match kind {
         ShapeKind::Polytope => {
             let points = (0..12).map(|_| Point::from(random.direction::<N, 3>() * scale));
-            hull(points.collect())
+            hull(&points.collect::<Vec<_>>())
         }
         ShapeKind::Cylinder => Box::new(Cylinder::new(size(random, scale), size(random, scale))),
         ShapeKind::Cone => Box::new(Cone::new(size(random, scale), size(random, scale))),

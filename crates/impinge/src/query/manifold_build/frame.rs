@@ -6,7 +6,7 @@ use crate::math::{Point, Real, Vector, max};
 use crate::shape::{FeatureId, Geometry, Kind};
 
 /// How many rounding errors of the pair's size are told from nothing.
-const ROUNDING_ERRORS: f64 = 16.0;
+pub(super) const ROUNDING_ERRORS: f64 = 16.0;
 
 /// The plane through the witness perpendicular to the normal, and what the request admits.
 ///

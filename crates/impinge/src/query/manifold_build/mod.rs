@@ -10,6 +10,7 @@
 //! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
 //! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
+mod box_faces;
 mod facet;
 mod frame;
 mod half_space;
@@ -22,6 +23,7 @@ pub(super) mod tests;
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
+use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
 use crate::math::{Pose, Real, Vector, orthonormal_basis, perp};
@@ -57,6 +59,34 @@ pub(crate) fn build3<N: Real>(
     build(pair, &frame, (request, request.max_points), out);
 }
 
+/// The manifold of a pair in space, from nothing: by the fused algorithm of its kinds where there is
+/// one and it does not decline, else from the separation.
+pub(crate) fn contacts3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) {
+    if box_faces::build(pair, request, out) {
+        return;
+    }
+    match separation_in_space(pair, request.prediction) {
+        Some(separation) => build3(pair, &separation, request, out),
+        None => out.points.clear(),
+    }
+}
+
+/// The manifold of a pair in the plane, from nothing.
+pub(crate) fn contacts2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    match separation_in_plane(pair, request.prediction) {
+        Some(separation) => build2(pair, &separation, request, out),
+        None => out.points.clear(),
+    }
+}
+
 fn build<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
@@ -70,7 +100,7 @@ fn build<N: Real, const D: usize>(
     }
     let mut candidates = candidates(pair, frame);
     names::inherit(&out.points, &mut candidates);
-    let deepest = deepest(&candidates, frame);
+    let deepest = deepest(&candidates, distance + frame.tolerance);
     candidates[deepest].distance = distance;
     let chosen = reduce::chosen(&candidates, deepest, limit.max(1), frame.tolerance);
     out.normal = frame.normal();
@@ -133,9 +163,8 @@ fn add_witness<N: Real, const D: usize>(
 }
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
-/// rounding, one that the previous manifold held, then the deepest.
-fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, frame: &Frame<N, D>) -> usize {
-    let limit = frame.witness.distance + frame.tolerance;
+/// rounding, at most `limit`, one that the previous manifold held, then the deepest.
+fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, limit: N) -> usize {
     let rank = |index: usize| {
         let candidate = &candidates[index];
         let is_level = candidate.distance <= limit;

@@ -1,10 +1,9 @@
 //! Ball against convex hull in space.
 
 use super::projection::{Projection, center_in_second, noise};
-use super::segments::nearest_on_segment;
-use super::wrong_kinds;
+use super::{ball_segment, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Real, cross, unit};
+use crate::math::{Point, Real, cross};
 use crate::query::Pair;
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
@@ -46,41 +45,66 @@ fn project_from_outside<N: Real>(
     center: &Point<N, 3>,
     flat: &Projection<N, 3>,
 ) -> Projection<N, 3> {
-    let mut best = (N::INFINITY, flat.point);
+    let mut best: Option<Projection<N, 3>> = None;
     for face in hull.faces().iter().filter(|face| height(face, center) > N::ZERO) {
-        let point = nearest_on_face(hull, face, center);
-        let squared = (center - point).norm_squared();
-        if squared < best.0 {
-            best = (squared, point);
+        let seen = project_on_face(hull, face, center);
+        if best.is_none_or(|best| seen.distance < best.distance) {
+            best = Some(seen);
         }
     }
-    let Some((outward, distance)) = unit(&(center - best.1)) else { return *flat };
-    // The offset is mostly rounding where the point is close: a face may know better.
-    let certain = outward.dot(&(center - hull.core_support(&outward)));
-    let reach = hull.reach() + center.coords.norm();
-    let outward = if certain + noise(reach) < flat.distance { flat.outward } else { outward };
-    Projection { distance, outward, point: best.1 }
+    let mut best = best.unwrap_or(*flat);
+    // The offset from a side is mostly rounding where the point is close: a face may know better.
+    let certain = best.outward.dot(&(center - hull.core_support(&best.outward)));
+    if certain + noise(hull.reach() + center.coords.norm()) < flat.distance {
+        best.outward = flat.outward;
+    }
+    best
 }
 
-/// The point of a face nearest to a point in front of it.
-fn nearest_on_face<N: Real>(
+/// A point seen from a face that it is in front of.
+fn project_on_face<N: Real>(
     hull: &Polytope<N, 3>,
     face: &PolytopeFace<N, 3>,
     center: &Point<N, 3>,
-) -> Point<N, 3> {
+) -> Projection<N, 3> {
     let around = hull.face_vertices(face);
     let corner = |at: usize| hull.vertices()[around[at % around.len()] as usize];
-    let mut best: Option<(N, Point<N, 3>)> = None;
+    let mut best: Option<Projection<N, 3>> = None;
     for side in 0..around.len() {
         let ends = [corner(side), corner(side + 1)];
         let beyond = cross(&(ends[1] - ends[0]), &face.normal).dot(&(center - ends[0]));
         if beyond > N::ZERO {
-            let point = nearest_on_segment(&ends, center).0;
-            let squared = (center - point).norm_squared();
-            if best.is_none_or(|(least, _)| squared < least) {
-                best = Some((squared, point));
+            let seen = ball_segment::project(&ends, center);
+            if best.is_none_or(|best| seen.distance < best.distance) {
+                best = Some(seen);
             }
         }
     }
-    best.map_or_else(|| center - face.normal * height(face, center), |(_, point)| point)
+    best.unwrap_or_else(|| {
+        let distance = height(face, center);
+        let point = center - face.normal * distance;
+        Projection { distance, outward: face.normal, point }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::ConvexHull;
+
+    #[test]
+    fn over_a_face_an_edge_a_vertex_and_inside() {
+        let p = Point::<f64, 3>::new;
+        let corners = [p(0.0, 0.0, 0.0), p(4.0, 0.0, 0.0), p(0.0, 4.0, 0.0), p(0.0, 0.0, 4.0)];
+        let hull = ConvexHull::from_points(&corners);
+        let below = project(&hull, &p(1.0, 1.0, -2.0));
+        assert_eq!((below.distance, below.outward.z), (2.0, -1.0), "below the base");
+        let edge = project(&hull, &p(2.0, -3.0, -4.0));
+        assert_eq!((edge.distance, edge.point), (5.0, p(2.0, 0.0, 0.0)), "beside an edge");
+        let vertex = project(&hull, &p(-2.0, -1.0, -2.0));
+        assert_eq!((vertex.distance, vertex.point), (3.0, p(0.0, 0.0, 0.0)), "beyond a vertex");
+        let inside = project(&hull, &p(0.5, 0.75, 1.0));
+        assert_eq!((inside.distance, inside.outward.x), (-0.5, -1.0), "out through x = 0");
+        assert_eq!(inside.point, p(0.0, 0.75, 1.0), "on that face");
+    }
 }

@@ -1,7 +1,7 @@
 //! Ball against triangle in space, where a triangle has no thickness.
 
 use super::ball_segment;
-use super::projection::{Projection, center_in_second, noise};
+use super::projection::{Projection, center_in_second, made_perpendicular, noise};
 use super::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross, max, unit};
@@ -22,10 +22,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 
 /// A point seen from a triangle; the distance is never negative.
 fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
-    let across = cross(&(corners[1] - corners[0]), &(corners[2] - corners[0]));
-    let normal = unit(&across).map(|(normal, _)| toward(&normal, &(center - corners[0])));
-    if let Some(normal) = normal
-        && lies_over(corners, &across, center)
+    let front = front(corners);
+    let normal = front.map(|front| toward(&front, &(center - corners[0])));
+    if let (Some(front), Some(normal)) = (front, normal)
+        && lies_over(corners, &front, center)
     {
         let distance = max((center - corners[0]).dot(&normal), N::ZERO);
         return Projection { distance, outward: normal, point: center - normal * distance };
@@ -39,6 +39,24 @@ fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Project
         seen.outward = normal;
     }
     seen
+}
+
+/// The unit normal on the side that sees the corners counter-clockwise; `None` for a triangle that is
+/// a segment up to rounding.
+///
+/// From the longest side and what is perpendicular to it: however thin the triangle, the normal is
+/// then off by rounding only in the direction in which the triangle is thin.
+fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
+    let side = |at: usize| corners[(at + 1) % 3] - corners[at % 3];
+    let longer = |a: usize, b: usize| {
+        if side(b).norm_squared() > side(a).norm_squared() { b } else { a }
+    };
+    let longest = longer(longer(0, 1), 2);
+    let (along, length) = unit(&side(longest))?;
+    let next = side(longest + 1);
+    let inward = made_perpendicular(&next, &along)?;
+    let thin = next.dot(&inward) <= N::lit(16.0) * N::EPSILON * length;
+    unit(&cross(&along, &inward)).filter(|_| !thin).map(|(front, _)| front)
 }
 
 /// The nearest of the three sides, the first of equals.
@@ -59,11 +77,11 @@ fn toward<N: Real>(normal: &Vector<N, 3>, direction: &Vector<N, 3>) -> Vector<N,
     if normal.dot(direction) < N::ZERO { -normal } else { *normal }
 }
 
-/// The point projects into the triangle along `across`, a normal of any length.
-fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], across: &Vector<N, 3>, p: &Point<N, 3>) -> bool {
+/// The point projects into the triangle, whose front normal is `front`.
+fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], front: &Vector<N, 3>, p: &Point<N, 3>) -> bool {
     (0..3).all(|side| {
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
-        cross(&(to - from), &(p - from)).dot(across) >= N::ZERO
+        cross(&(to - from), &(p - from)).dot(front) >= N::ZERO
     })
 }
 

@@ -16,7 +16,7 @@ mod ball_cylinder;
 mod ball_polytope;
 mod ball_segment;
 mod ball_triangle;
-mod cuboid_axes;
+pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
 mod general;
 mod outline;
@@ -27,6 +27,8 @@ mod segment_segment;
 mod segments;
 mod table2;
 mod table3;
+#[cfg(test)]
+mod tests;
 mod world;
 
 use crate::convex::Separation;

@@ -164,7 +164,7 @@ fn direct_axis<N: Real>(
 mod tests {
     use super::*;
     use crate::math::Pose;
-    use crate::shape::{Capsule, Cuboid, Segment, Shape, Triangle};
+    use crate::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Segment, Shape, Triangle};
 
     fn p(x: f64, y: f64) -> Point<f64, 2> {
         Point::<f64, 2>::new(x, y)
@@ -224,6 +224,20 @@ mod tests {
             let found = of(&capsule, &Triangle::new(a, b, c), 1.25, -1.0);
             assert_eq!((found.distance, found.normal.x), (1.0, 1.0), "beside the upright side");
         }
+    }
+
+    #[test]
+    fn a_polygon_pokes_and_swallows() {
+        let corners = [p(2.0, 0.0), p(0.0, 1.0), p(-2.0, 0.0), p(0.0, -1.0)];
+        let diamond = ConvexPolygon::new(&corners);
+        let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0));
+        let poked = of(&cuboid, &diamond, 2.5, 0.25);
+        assert_eq!((poked.distance, poked.normal.x), (-0.5, 1.0), "by its left tip");
+        assert_eq!(poked.point1, p(1.0, 0.25), "the side above the tip");
+        let ball = Ball::new(0.5);
+        let inside = of(&ball, &diamond, 0.0, 0.0);
+        let expected = -0.5 - 2.0 / 5.0_f64.sqrt();
+        assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
     }
 
     #[test]

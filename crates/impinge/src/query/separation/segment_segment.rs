@@ -16,11 +16,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let ends2 = local2.map(|end| pair.pose12.point(&end));
     let (point1, point2) = nearest_of_segments(&ends1, &ends2);
     let distance = (point2 - point1).norm();
-    if !(distance - rounding1 - rounding2 <= limit) {
-        return None;
-    }
-    let normal = best_normal(&ends1, &ends2, &(point2 - point1));
-    Some(Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2))
+    (distance - rounding1 - rounding2 <= limit).then(|| {
+        let normal = best_normal(&ends1, &ends2, &(point2 - point1));
+        Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2)
+    })
 }
 
 /// The unit vector along which the segments are farthest apart.
@@ -58,4 +57,64 @@ fn best_normal<N: Real>(
         }
     }
     best.map_or_else(first_axis, |(_, normal)| normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::shape::{Capsule, Segment, Shape};
+
+    fn p(x: f64, y: f64, z: f64) -> Point<f64, 3> {
+        Point::<f64, 3>::new(x, y, z)
+    }
+
+    fn of(shape1: &dyn Shape<f64, 3>, shape2: &dyn Shape<f64, 3>) -> Separation<f64, 3> {
+        let (first, second) = (shape1.geometry().0, shape2.geometry().0);
+        let pair = Pair { first, second, pose12: Pose::identity() };
+        separation(&pair, f64::INFINITY).expect("nothing is beyond infinity")
+    }
+
+    #[test]
+    fn one_above_the_other() {
+        let low = Segment::new(p(-1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        let high = Capsule::try_from_ends(p(0.5, -1.0, 2.0), p(0.5, 1.0, 2.0), 0.25);
+        let found = of(&low, &high.expect("finite"));
+        assert_eq!((found.distance, found.normal.z), (1.75, 1.0), "straight up");
+        assert_eq!(found.point1, p(0.5, 0.0, 0.0), "below the crossing");
+        assert_eq!(found.point2, p(0.5, 0.0, 1.75), "the bottom of the capsule");
+    }
+
+    #[test]
+    fn crossing_segments_have_no_depth_but_a_normal() {
+        let along_x = Segment::new(p(-1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        let along_y = Segment::new(p(0.0, -1.0, 0.0), p(0.0, 1.0, 0.0));
+        let found = of(&along_x, &along_y);
+        assert_eq!((found.distance, found.normal.z.abs()), (0.0, 1.0), "out of their plane");
+        let thick = |a, b| Capsule::try_from_ends(a, b, 0.5).expect("finite");
+        let found = of(&thick(*along_x.a(), *along_x.b()), &thick(*along_y.a(), *along_y.b()));
+        assert_eq!((found.distance, found.normal.z.abs()), (-1.0, 1.0), "both radii deep");
+    }
+
+    #[test]
+    fn on_one_line() {
+        let near = Segment::new(p(0.0, 0.0, 0.0), p(2.0, 0.0, 0.0));
+        let beyond = Segment::new(p(5.0, 0.0, 0.0), p(9.0, 0.0, 0.0));
+        let found = of(&near, &beyond);
+        assert_eq!((found.distance, found.normal.x), (3.0, 1.0), "end to end");
+        let over = Segment::new(p(1.0, 0.0, 0.0), p(9.0, 0.0, 0.0));
+        let found = of(&near, &over);
+        assert_eq!((found.distance, found.normal.x), (0.0, 0.0), "they leave sideways");
+        let point = Segment::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one place");
+    }
+
+    #[test]
+    fn side_by_side() {
+        let left = Segment::new(p(0.0, 0.0, 0.0), p(0.0, 4.0, 0.0));
+        let right = Segment::new(p(3.0, 1.0, 4.0), p(3.0, 9.0, 4.0));
+        let found = of(&left, &right);
+        assert_eq!(found.distance, 5.0, "3 across and 4 up");
+        assert!((found.normal - Vector::<f64, 3>::new(0.6, 0.0, 0.8)).norm() < 1e-15, "across");
+    }
 }

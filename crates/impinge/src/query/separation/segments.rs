@@ -94,8 +94,7 @@ fn common_perpendicular<N: Real>(
     let across = cross(&toward1, &toward2);
     let squared = across.norm_squared();
     let tiny = N::lit(64.0) * N::EPSILON * N::EPSILON;
-    // Written so that NaN is refused too.
-    if !(squared > tiny * toward1.norm_squared() * toward2.norm_squared()) {
+    if squared <= tiny * toward1.norm_squared() * toward2.norm_squared() {
         return None;
     }
     let (mut s, mut t) = (N::ZERO, N::ZERO);

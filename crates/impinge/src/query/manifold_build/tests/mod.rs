@@ -1,5 +1,6 @@
 //! What every manifold must be, over random poses and in scenes worked out by hand.
 
+mod box_faces;
 mod lasting;
 mod properties;
 mod resting;

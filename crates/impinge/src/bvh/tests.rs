@@ -1,0 +1,209 @@
+//! Trees alone against lists: joins in every regime, searches, and the order of the nearest.
+
+use super::{Bounds, Frontier, Joiner, Keys, Lanes, Tree};
+use crate::bounding_volume::Aabb;
+use crate::math::Point;
+use crate::pairs::pack;
+
+/// Numbers from a linear congruential generator, below `bound`.
+fn next(state: &mut u64, bound: u32) -> u32 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
+}
+
+fn small_float(value: u32) -> f32 {
+    f32::from(u16::try_from(value).expect("small"))
+}
+
+/// A box of up to two units on a grid of halves.
+fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
+    let lo: [f32; D] = core::array::from_fn(|_| small_float(next(state, 2 * side)) / 2.0);
+    Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
+}
+
+/// A tree and what it should hold: by id, the box now and the box at the last settling.
+struct Twin<const D: usize> {
+    tree: Tree<D>,
+    list: Vec<Option<(Bounds<D>, Bounds<D>)>>,
+    /// The least id of this tree.
+    first: usize,
+}
+
+impl<const D: usize> Twin<D> {
+    /// Ids from `first` on.
+    fn new(state: &mut u64, first: u32, count: u32, side: u32) -> Self {
+        let (tree, list) = (Tree::new(Lanes::detect()), vec![None; first as usize]);
+        let mut twin = Self { tree, list, first: first as usize };
+        for id in first..first + count {
+            let bounds = random_box(state, side);
+            twin.tree.insert(id, &bounds, &Bounds::NOWHERE);
+            twin.list.push(Some((bounds, Bounds::NOWHERE)));
+        }
+        twin
+    }
+
+    /// Moves, removes or adds about one object in `rarity`.
+    fn change(&mut self, state: &mut u64, side: u32, rarity: u32) {
+        for id in self.first..self.list.len() {
+            let number = u32::try_from(id).expect("small");
+            if next(state, rarity) != 0 {
+                continue;
+            }
+            let bounds = random_box(state, side);
+            match &mut self.list[id] {
+                Some(_) if next(state, 5) == 0 => {
+                    self.tree.remove(number);
+                    self.list[id] = None;
+                }
+                Some((now, _)) => {
+                    self.tree.set(number, &bounds);
+                    *now = bounds;
+                }
+                None => {
+                    self.tree.insert(number, &bounds, &Bounds::NOWHERE);
+                    self.list[id] = Some((bounds, Bounds::NOWHERE));
+                }
+            }
+        }
+        self.tree.refit();
+        self.tree.validate().expect("sound after a refit");
+    }
+
+    fn settle(&mut self) {
+        self.tree.settle();
+        self.tree.maintain();
+        self.tree.validate().expect("sound after settling");
+        self.list.iter_mut().flatten().for_each(|(now, before)| *before = *now);
+    }
+
+    fn objects(&self) -> impl Iterator<Item = (u32, &(Bounds<D>, Bounds<D>))> {
+        (0..).zip(&self.list).filter_map(|(id, object)| Some((id, object.as_ref()?)))
+    }
+}
+
+/// The pairs of different objects that overlap and did not before.
+fn began<const D: usize>(first: &Twin<D>, second: &Twin<D>) -> Vec<u64> {
+    let mut keys = Vec::new();
+    for (a, (now1, before1)) in first.objects() {
+        for (b, (now2, before2)) in second.objects() {
+            if a != b && now1.overlaps(now2) && !before1.overlaps(before2) {
+                keys.push(pack(a, b));
+            }
+        }
+    }
+    keys.sort_unstable();
+    keys.dedup();
+    keys
+}
+
+fn sorted(mut keys: Vec<u64>) -> Vec<u64> {
+    keys.sort_unstable();
+    keys
+}
+
+/// `rarity1` and `rarity2`: how many of the objects of the two trees change in a step.
+fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32) {
+    let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
+    let mut first = Twin::<D>::new(&mut state, 0, 700, side);
+    let mut second = Twin::<D>::new(&mut state, 700, 90, side);
+    let (mut joiner, mut found) = (Joiner::default(), 0);
+    for step in 0..25 {
+        first.change(&mut state, side, rarity1);
+        second.change(&mut state, side, rarity2);
+        let (mut own, mut across) = (Vec::new(), Vec::new());
+        joiner.self_join(&first.tree, &mut own);
+        joiner.cross_join(&first.tree, &second.tree, &mut across);
+        found += own.len() + across.len();
+        assert!(sorted(own) == began(&first, &first), "step {step}: within the first");
+        assert!(sorted(across) == began(&first, &second), "step {step}: across");
+        first.settle();
+        second.settle();
+    }
+    assert!(found > 1000, "{found} beginnings");
+}
+
+#[test]
+fn joins_in_every_regime() {
+    check_joins::<2>(20, 1, 1);
+    check_joins::<2>(20, 40, 1000);
+    check_joins::<3>(8, 1000, 2);
+    check_joins::<3>(8, 30, 30);
+    check_joins::<3>(8, 2, 1000);
+}
+
+#[test]
+fn searches_find_what_a_list_finds() {
+    let mut state = 77;
+    let mut twin = Twin::<3>::new(&mut state, 0, 600, 10);
+    let mut found_any = 0;
+    for _ in 0..60 {
+        twin.change(&mut state, 10, 10);
+        twin.settle();
+        let mut query = random_box(&mut state, 10);
+        if next(&mut state, 4) == 0 {
+            query.lo[1] = f32::NEG_INFINITY;
+        }
+        let mut found = Vec::new();
+        twin.tree.visit_overlapping(&query, |id| found.push(id));
+        found.sort_unstable();
+        let hits = twin.objects().filter(|(_, (now, _))| now.overlaps(&query));
+        let expected: Vec<u32> = hits.map(|(id, _)| id).collect();
+        found_any += usize::from(!expected.is_empty());
+        assert_eq!(found, expected, "{query:?}");
+    }
+    assert!(found_any > 20, "{found_any} searches found something");
+}
+
+#[test]
+fn the_nearest_come_first() {
+    let mut state = 78;
+    let mut twin = Twin::<2>::new(&mut state, 0, 900, 40);
+    twin.tree.refit();
+    for _ in 0..50 {
+        let point: [f64; 2] = [next(&mut state, 40).into(), next(&mut state, 40).into()];
+        let point = Point::<f64, 2>::from(point);
+        let distance = |id: u32| {
+            let (now, _) = twin.list[id as usize]?;
+            let corner = |x: [f32; 2]| Point::<f64, 2>::from(x.map(f64::from));
+            Some(Aabb::new(corner(now.lo), corner(now.hi)).distance_to_point(&point))
+        };
+        let mut expected: Vec<(f64, u32)> =
+            twin.objects().filter_map(|(id, _)| Some((distance(id)?, id))).collect();
+        expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+        let mut found = Vec::new();
+        let block = |block: &_| Lanes::detect().distance_of_block(block, &point);
+        let keys = Keys { block, object: distance };
+        Frontier::new().search(&[&twin.tree], f64::MAX, &keys, |id, key| {
+            found.push((key, id));
+            if found.len() < 20 { f64::MAX } else { -1.0 }
+        });
+        assert_eq!(found, expected[..20], "the twenty nearest of {point}");
+    }
+}
+
+/// A tree that shrinks to nothing and grows again keeps its invariants.
+#[test]
+fn emptied_and_filled() {
+    let mut state = 5;
+    let mut twin = Twin::<2>::new(&mut state, 0, 300, 10);
+    twin.tree.refit();
+    twin.settle();
+    for round in 0..3 {
+        for id in 0..300 {
+            twin.tree.remove(id);
+        }
+        twin.tree.refit();
+        twin.tree.settle();
+        twin.tree.maintain();
+        twin.tree.validate().expect("sound");
+        assert!(twin.tree.is_empty(), "round {round}");
+        twin.tree.visit_overlapping(&random_box(&mut state, 10), |_| panic!("it is empty"));
+        for id in 0..300 {
+            twin.tree.insert(id, &random_box(&mut state, 10), &Bounds::NOWHERE);
+        }
+        twin.tree.refit();
+        assert_eq!(twin.tree.changed(), 300, "all are new");
+        twin.tree.settle();
+        twin.tree.validate().expect("sound");
+    }
+}

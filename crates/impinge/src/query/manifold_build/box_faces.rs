@@ -1,0 +1,359 @@
+//! The common case of two boxes in space, face to face, in one go.
+//!
+//! What the separating axis test found, the general builder would find again through supports and
+//! features. Here the face that faces the other box is a rectangle along two axes of its own box, and
+//! the most aligned face of the other box is seen as a parallelogram above it: the corners of their
+//! common area come out of fixed loops. Names, order and numbers are those of the general builder,
+//! which is the definition of this one, and which takes over wherever this one declines: edges across
+//! edges, faces that lean too far, flat boxes, angular prediction, nearest points off the face.
+
+use super::frame::{Candidate, ROUNDING_ERRORS};
+use super::overlap::Candidates;
+use super::{ManifoldRequest, Pair, RawManifold, deepest, names, reduce};
+use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
+use crate::query::separation::cuboid_axes::{AxisKind, BoxAxis, Boxes};
+use crate::shape::{FeatureId, Kind};
+
+/// The largest squared sine at which a face faces a direction, as in `core_feature`.
+const MOST_LEAN: f64 = 0.2;
+
+/// Builds the manifold of two boxes; answers whether it did.
+pub(super) fn build<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) -> bool {
+    let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
+        return false;
+    };
+    let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
+    let boxes = Boxes { half1, half2, pose12: pair.pose12 };
+    let axis = boxes.best_axis();
+    if axis.gap > request.prediction + N::lit(16.0) * boxes.noise() {
+        out.points.clear();
+        return true;
+    }
+    let is_ordinary = axis.gap <= request.prediction && request.sine <= N::ZERO;
+    let faces = if is_ordinary { Faces::meeting(&boxes, &axis) } else { None };
+    faces.is_some_and(|faces| faces.build(&axis, request, out))
+}
+
+/// A face of one box, and the face of the other above it, in the frame of the first of these.
+struct Faces<'a, N: Real> {
+    boxes: &'a Boxes<N>,
+    /// The rectangle belongs to the second box of the pair.
+    is_second: bool,
+    rectangle: Rectangle<N>,
+    above: Parallelogram<N>,
+    /// Lengths below this are rounding errors, as for the general builder.
+    tolerance: N,
+}
+
+/// A face of a box: at `half` on the axis `w`, on the side of `sign`, between `±across`.
+struct Rectangle<N: Real> {
+    axes: [usize; 3],
+    sign: N,
+    half: N,
+    across: [N; 2],
+}
+
+/// The face of the other box, seen along the axis of the rectangle.
+struct Parallelogram<N: Real> {
+    /// Its normal's axis in its own box, and the two axes along its sides.
+    axes: [usize; 3],
+    /// Its normal is on the positive side.
+    is_positive: bool,
+    center: Vector<N, 2>,
+    /// Half of its sides.
+    arms: [Vector<N, 2>; 2],
+    /// The height of the centre above the rectangle, and what the arms add to it.
+    height: N,
+    climbs: [N; 2],
+    /// Twice the signed area of the arms' triangle.
+    area: N,
+    /// For each arm, the distance of the sides at its ends from the centre.
+    widths: [N; 2],
+}
+
+impl<'a, N: Real> Faces<'a, N> {
+    /// The two faces, if the axis is the normal of one and the other does not lean too far.
+    fn meeting(boxes: &'a Boxes<N>, axis: &BoxAxis<N>) -> Option<Self> {
+        let (w, is_second) = match axis.kind {
+            AxisKind::Face1(axis) => (axis, false),
+            AxisKind::Face2(axis) => (axis, true),
+            AxisKind::Edges(..) => return None,
+        };
+        let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+        let outward = if is_second { -axis.normal.dot(&boxes.axis2(w)) } else { axis.normal[w] };
+        let sign = if outward < N::ZERO { -N::ONE } else { N::ONE };
+        let (half, other) =
+            if is_second { (boxes.half2, boxes.half1) } else { (boxes.half1, boxes.half2) };
+        let pose = if is_second { boxes.pose12.inverse() } else { boxes.pose12 };
+        let rectangle =
+            Rectangle { axes: [u, v, w], sign, half: half[w], across: [half[u], half[v]] };
+        let size = boxes.half1.norm() + boxes.half2.norm() + boxes.pose12.translation.norm();
+        let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
+        let above = Parallelogram::facing(&rectangle, &other, &pose)?;
+        let is_wide = min(rectangle.across[0], rectangle.across[1]) > N::lit(4.0) * tolerance
+            && min(above.widths[0], above.widths[1]) > N::lit(4.0) * tolerance;
+        is_wide.then_some(Self { boxes, is_second, rectangle, above, tolerance })
+    }
+
+    fn build(
+        &self,
+        axis: &BoxAxis<N>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, 3>,
+    ) -> bool {
+        let mut candidates = Candidates::new();
+        self.corners_above(&mut candidates);
+        self.corners_below(&mut candidates);
+        self.crossings(&mut candidates);
+        let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
+        let is_found = (lowest - axis.gap).abs() <= self.tolerance;
+        if !is_found {
+            return false;
+        }
+        candidates.retain(|candidate| {
+            let distance = max(candidate.distance, axis.gap);
+            candidate.distance = min(distance, request.prediction);
+            distance <= request.prediction + self.tolerance
+        });
+        names::inherit(&out.points, &mut candidates);
+        let deepest = deepest(&candidates, axis.gap + self.tolerance);
+        candidates[deepest].distance = axis.gap;
+        let chosen =
+            reduce::chosen(&candidates, deepest, request.max_points.max(1), self.tolerance);
+        out.normal = axis.normal;
+        names::settle(&candidates, &chosen, out);
+        true
+    }
+
+    /// Corners of the parallelogram above the rectangle.
+    fn corners_above(&self, out: &mut Candidates<N, 3>) {
+        for signs in CORNERS {
+            let (place, height) = self.above.corner(signs);
+            if let Some(below) = self.rectangle.locate(&place, self.tolerance) {
+                self.push(place, height, [below, self.above.vertex(signs)], out);
+            }
+        }
+    }
+
+    /// Corners of the rectangle below the parallelogram.
+    fn corners_below(&self, out: &mut Candidates<N, 3>) {
+        for signs in CORNERS {
+            let place = self.rectangle.corner(signs);
+            if let Some((above, height)) = self.above.locate(&place, self.tolerance) {
+                self.push(place, height, [self.rectangle.vertex(signs), above], out);
+            }
+        }
+    }
+
+    /// Crossings of a side of each.
+    fn crossings(&self, out: &mut Candidates<N, 3>) {
+        for (arm, sign) in [(0, true), (0, false), (1, true), (1, false)] {
+            let (from, low) = self.above.corner(ends(arm, sign, false));
+            let (to, high) = self.above.corner(ends(arm, sign, true));
+            for (side, far) in [(0, true), (0, false), (1, true), (1, false)] {
+                let Some(along) = self.rectangle.crossed(&from, &to, (side, far), self.tolerance)
+                else {
+                    continue;
+                };
+                let place = from + (to - from) * along;
+                let features = [self.rectangle.side(side, far), self.above.side(arm, sign)];
+                self.push(place, low + (high - low) * along, features, out);
+            }
+        }
+    }
+
+    /// Adds a place of the common area, once for each pair of names.
+    fn push(
+        &self,
+        flat: Vector<N, 2>,
+        height: N,
+        [below, above]: [FeatureId; 2],
+        out: &mut Candidates<N, 3>,
+    ) {
+        let features = if self.is_second { [above, below] } else { [below, above] };
+        if out.iter().any(|old| old.features == features) {
+            return;
+        }
+        let [u, v, w] = self.rectangle.axes;
+        let rise = if self.is_second { height } else { N::ZERO };
+        let mut point = Point::<N, 3>::origin();
+        (point[u], point[v]) = (flat.x, flat.y);
+        point[w] = self.rectangle.sign * (self.rectangle.half + rise);
+        let point1 = if self.is_second { self.boxes.pose12.point(&point) } else { point };
+        out.push(Candidate { point1, distance: height, flat, features, kept_id: None });
+    }
+}
+
+/// The corners of a rectangle: whether each of the two coordinates is positive.
+const CORNERS: [[bool; 2]; 4] = [[true, true], [false, true], [false, false], [true, false]];
+
+/// The end of the side that lies at `sign` of `arm`: the lower or the upper one.
+const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
+    if arm == 0 { [sign, upper] } else { [upper, sign] }
+}
+
+fn signed<N: Real>(value: N, is_positive: bool) -> N {
+    if is_positive { value } else { -value }
+}
+
+/// The number of the vertex with these positive coordinates.
+fn vertex(coordinates: [(usize, bool); 3]) -> FeatureId {
+    let bits = coordinates.iter().map(|&(axis, is_positive)| u32::from(is_positive) << axis);
+    FeatureId::Vertex(bits.sum())
+}
+
+/// The number of the edge along an axis, given the signs of the next axis and the one after.
+fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 4, 8];
+    FeatureId::Edge(FIRST[axis] + u32::from(next) + 2 * u32::from(after))
+}
+
+/// The number of the face on one side of an axis.
+fn face(axis: usize, is_positive: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 2, 4];
+    FeatureId::Face(FIRST[axis] + u32::from(!is_positive))
+}
+
+impl<N: Real> Rectangle<N> {
+    fn is_positive(&self) -> bool {
+        self.sign > N::ZERO
+    }
+
+    fn corner(&self, signs: [bool; 2]) -> Vector<N, 2> {
+        Vector::<N, 2>::new(signed(self.across[0], signs[0]), signed(self.across[1], signs[1]))
+    }
+
+    fn vertex(&self, signs: [bool; 2]) -> FeatureId {
+        let [u, v, w] = self.axes;
+        vertex([(u, signs[0]), (v, signs[1]), (w, self.is_positive())])
+    }
+
+    /// The side at one end of an axis of the rectangle.
+    fn side(&self, axis: usize, is_positive: bool) -> FeatureId {
+        let [u, v, _] = self.axes;
+        match axis {
+            0 => edge(v, self.is_positive(), is_positive),
+            _ => edge(u, is_positive, self.is_positive()),
+        }
+    }
+
+    /// The smallest part that contains a place; `None` outside.
+    fn locate(&self, place: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
+        let inside = [self.across[0] - place.x.abs(), self.across[1] - place.y.abs()];
+        if min(inside[0], inside[1]) < -tolerance {
+            return None;
+        }
+        let signs = [place.x > N::ZERO, place.y > N::ZERO];
+        Some(match inside.map(|depth| depth <= tolerance) {
+            [false, false] => face(self.axes[2], self.is_positive()),
+            [true, false] => self.side(0, signs[0]),
+            [false, true] => self.side(1, signs[1]),
+            [true, true] => self.vertex(signs),
+        })
+    }
+
+    /// How far along a segment crosses a side of the rectangle, away from the ends of both.
+    fn crossed(
+        &self,
+        from: &Vector<N, 2>,
+        to: &Vector<N, 2>,
+        (axis, is_positive): (usize, bool),
+        tolerance: N,
+    ) -> Option<N> {
+        let at = signed(self.across[axis], is_positive);
+        let (before, after) = (from[axis] - at, to[axis] - at);
+        let leaves = before > tolerance && after < -tolerance;
+        let enters = before < -tolerance && after > tolerance;
+        if !(leaves || enters) {
+            return None;
+        }
+        let along = before / (before - after);
+        let other = from[1 - axis] + (to[1 - axis] - from[1 - axis]) * along;
+        (other.abs() < self.across[1 - axis] - tolerance).then_some(along)
+    }
+}
+
+impl<N: Real> Parallelogram<N> {
+    /// The face of a box, placed at `pose`, that is most aligned with the rectangle's; `None` if it
+    /// leans too far.
+    fn facing(rectangle: &Rectangle<N>, half: &Vector<N, 3>, pose: &Pose<N, 3>) -> Option<Self> {
+        let ([u, v, w], sign) = (rectangle.axes, rectangle.sign);
+        let leaning = |axis: usize| pose.rotation[(w, axis)].abs();
+        let mut m = if leaning(1) > leaning(0) { 1 } else { 0 };
+        m = if leaning(2) > leaning(m) { 2 } else { m };
+        let (k1, k2) = ((m + 1) % 3, (m + 2) % 3);
+        let lean = leaning(k1) * leaning(k1) + leaning(k2) * leaning(k2);
+        if lean > N::lit(MOST_LEAN) {
+            return None;
+        }
+        let is_positive = sign * pose.rotation[(w, m)] < N::ZERO;
+        let flat = |axis: usize, length: N| {
+            Vector::<N, 2>::new(pose.rotation[(u, axis)], pose.rotation[(v, axis)]) * length
+        };
+        let climb = |axis: usize, length: N| sign * pose.rotation[(w, axis)] * length;
+        let toward = signed(half[m], is_positive);
+        let arms = [flat(k1, half[k1]), flat(k2, half[k2])];
+        let area = cross2(&arms[0], &arms[1]);
+        let place = Vector::<N, 2>::new(pose.translation[u], pose.translation[v]);
+        Some(Self {
+            axes: [m, k1, k2],
+            is_positive,
+            center: place + flat(m, toward),
+            arms,
+            height: sign * pose.translation[w] - rectangle.half + climb(m, toward),
+            climbs: [climb(k1, half[k1]), climb(k2, half[k2])],
+            area,
+            widths: [area.abs() / arms[1].norm(), area.abs() / arms[0].norm()],
+        })
+    }
+
+    /// Where a corner is seen, and its height.
+    fn corner(&self, signs: [bool; 2]) -> (Vector<N, 2>, N) {
+        let place = self.center
+            + self.arms[0] * signed(N::ONE, signs[0])
+            + self.arms[1] * signed(N::ONE, signs[1]);
+        let height =
+            self.height + signed(self.climbs[0], signs[0]) + signed(self.climbs[1], signs[1]);
+        (place, height)
+    }
+
+    fn vertex(&self, signs: [bool; 2]) -> FeatureId {
+        let [m, k1, k2] = self.axes;
+        vertex([(m, self.is_positive), (k1, signs[0]), (k2, signs[1])])
+    }
+
+    /// The side at one end of an arm.
+    fn side(&self, arm: usize, is_positive: bool) -> FeatureId {
+        let [_, k1, k2] = self.axes;
+        match arm {
+            0 => edge(k2, self.is_positive, is_positive),
+            _ => edge(k1, is_positive, self.is_positive),
+        }
+    }
+
+    /// The smallest part seen at a place and its height there; `None` outside.
+    fn locate(&self, place: &Vector<N, 2>, tolerance: N) -> Option<(FeatureId, N)> {
+        let arm = place - self.center;
+        let along =
+            [cross2(&arm, &self.arms[1]) / self.area, cross2(&self.arms[0], &arm) / self.area];
+        let inside = [
+            (N::ONE - along[0].abs()) * self.widths[0],
+            (N::ONE - along[1].abs()) * self.widths[1],
+        ];
+        if min(inside[0], inside[1]) < -tolerance {
+            return None;
+        }
+        let signs = along.map(|part| part > N::ZERO);
+        let id = match inside.map(|depth| depth <= tolerance) {
+            [false, false] => face(self.axes[0], self.is_positive),
+            [true, false] => self.side(0, signs[0]),
+            [false, true] => self.side(1, signs[1]),
+            [true, true] => self.vertex(signs),
+        };
+        Some((id, self.height + along[0] * self.climbs[0] + along[1] * self.climbs[1]))
+    }
+}

@@ -1,0 +1,87 @@
+//! The fused algorithm of boxes against the general builder, which defines it.
+
+use super::super::{box_faces, build3};
+use super::scene::Random;
+use crate::math::{Isometry3, Pose, Real, Vector};
+use crate::query::separation::separation_in_space;
+use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use crate::shape::{Cuboid, Shape};
+
+/// A box upon, beside or below another; on half of the draws turned by multiples of a quarter only
+/// and shifted on a grid, so that sides and corners coincide.
+fn draw(random: &mut Random) -> ([Vector<f64, 3>; 2], Isometry3<f64>) {
+    let on_grid = random.between(0.0, 1.0) < 0.5;
+    let snap = |x: f64| if on_grid { (x * 4.0).round() / 4.0 } else { x };
+    let mut half = || Vector::<f64, 3>::from_fn(|_, _| snap(random.between(0.3, 1.2)).max(0.25));
+    let halves = [half(), half()];
+    let pick = random.between(0.0, 3.0);
+    let axis = usize::from(pick > 1.0) + usize::from(pick > 2.0);
+    let mut shift = Vector::<f64, 3>::from_fn(|_, _| snap(random.between(-1.0, 1.0)));
+    let depth = snap(random.between(-0.05, 0.25));
+    let side = if random.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+    shift[axis] = side * (halves[0][axis] + halves[1][axis] - depth);
+    let lean = if random.between(0.0, 1.0) < 0.5 { 0.01 } else { 0.3 };
+    let most = |index: usize| if index == axis { 0.8 } else { lean };
+    let turn = Vector::<f64, 3>::from_fn(|index, _| random.between(-most(index), most(index)));
+    let turn = if on_grid { Vector::<f64, 3>::zeros() } else { turn };
+    (halves, Isometry3::new(shift, turn))
+}
+
+fn sorted<N: Real>(raw: &RawManifold<N, 3>) -> Vec<RawPoint<N, 3>> {
+    let mut points: Vec<_> = raw.points.to_vec();
+    points.sort_by_key(|point| (point.feature1, point.feature2));
+    points
+}
+
+fn check<N: Real>(tolerance: f64) {
+    let mut random = Random(7);
+    let (mut built, mut touching, mut crossings) = (0, 0, 0);
+    for round in 0..4000 {
+        let (halves, isometry) = draw(&mut random);
+        let [cuboid1, cuboid2] = halves.map(|half| Cuboid::new(half.map(N::lit)));
+        let exact = Pose::from_isometry(&isometry);
+        let pose12 = Pose {
+            rotation: exact.rotation.map(N::lit),
+            translation: exact.translation.map(N::lit),
+        };
+        let pair = Pair { first: cuboid1.geometry().0, second: cuboid2.geometry().0, pose12 };
+        let request = ManifoldRequest { prediction: N::lit(0.02), sine: N::ZERO, max_points: 16 };
+        let (mut fused, mut general) = (RawManifold::default(), RawManifold::default());
+        if !box_faces::build(&pair, &request, &mut fused) {
+            continue;
+        }
+        built += 1;
+        let Some(separation) = separation_in_space(&pair, request.prediction) else {
+            assert!(fused.points.is_empty(), "round {round}: nothing is that near");
+            continue;
+        };
+        touching += 1;
+        build3(&pair, &separation, &request, &mut general);
+        assert_eq!(fused.normal, separation.normal, "round {round}");
+        let least =
+            fused.points.iter().fold(N::INFINITY, |least, p| crate::math::min(p.distance, least));
+        assert_eq!(
+            least, separation.distance,
+            "round {round}: the deepest point is the separation"
+        );
+        let (fused, general) = (sorted(&fused), sorted(&general));
+        let names = |points: &[RawPoint<N, 3>]| -> Vec<_> {
+            points.iter().map(|p| (p.feature1, p.feature2)).collect()
+        };
+        assert_eq!(names(&fused), names(&general), "round {round}: {pair:?}", pair = pair.pose12);
+        for (one, other) in fused.iter().zip(&general) {
+            let beside = (one.point1 - other.point1).norm().as_f64();
+            let deeper = (one.distance - other.distance).as_f64().abs();
+            assert!(beside < tolerance && deeper < tolerance, "round {round}: {one:?} {other:?}");
+        }
+        crossings += usize::from(fused.len() > 4);
+    }
+    assert!(touching * 2 > 4000 && built > touching, "{built} built, {touching} touching");
+    assert!(crossings > 200, "{crossings} with more than four corners");
+}
+
+#[test]
+fn fused_boxes_are_what_the_general_builder_makes() {
+    check::<f64>(1e-13);
+    check::<f32>(1e-5);
+}
