@@ -23,14 +23,13 @@ use crate::query::{
     contacts2, contacts3,
 };
 use crate::shape::{Kind, ShapeHandle};
-use crate::world::{Bodies, WorldBroadPhase};
+use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
-    pub(crate) separation_in_world:
-        fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>,
+    pub(crate) separation_in_world: InWorldFn<N, D>,
     /// The time at which two moving solids touch.
     pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
     /// When the line of a ray is inside a solid.
@@ -49,6 +48,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) world: WorldTables<N, D>,
 }
 
+type InWorldFn<N, const D: usize> =
+    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FindPairsFn<N, const D: usize> =
@@ -57,7 +58,7 @@ type FindPairsFn<N, const D: usize> =
 /// What a world asks of the floors below it, and of its own part that knows no users' data.
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
-    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry),
+    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry) -> Result<(), WorldError>,
     pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),

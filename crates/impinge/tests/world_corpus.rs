@@ -1,6 +1,5 @@
 //! The scripts of the corpus: what went wrong in the worlds of others.
 
-#[macro_use]
 mod world_stage;
 
 use std::collections::BTreeMap;

@@ -9,7 +9,7 @@ use impinge::broad_phase::DBVTBroadPhase;
 use impinge::math::Point;
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::query::Ray;
-use impinge::world::{CollisionGroups, CollisionWorld, WorldError};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, WorldError};
 use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step, vector};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
@@ -103,7 +103,7 @@ fn uids_are_dense_and_in_order<N: Stage<D>, const D: usize>() {
     world.remove(&[handles[7], handles[3]]);
     let again = [add(&mut world, 0.0, &shape, near(0.0)), add(&mut world, 0.0, &shape, near(0.0))];
     assert_eq!(again.map(|handle| handle.uid()), [3, 7], "the last freed one first");
-    let seen: Vec<_> = world.collision_objects().map(|object| object.handle()).collect();
+    let seen: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
     assert!(seen.is_sorted() && seen.len() == 40, "iteration is in order");
 }
 
@@ -188,7 +188,7 @@ fn boxes_are_exact<N: Stage<D>, const D: usize>() {
         let count = |low: f64, high: f64| {
             let aabb = Aabb::new(vector::<N, D>([low; D]).into(), vector::<N, D>([high; D]).into());
             let found = world.interferences_with_aabb(&aabb, &CollisionGroups::new());
-            found.map(|object| object.handle()).collect::<Vec<_>>()
+            found.map(CollisionObject::handle).collect::<Vec<_>>()
         };
         assert_eq!(count(1.0, 2.0), [handle], "the box touches, though the ball does not");
         assert_eq!(count(1.0625, 2.0), [], "neither margin nor prediction counts");

@@ -12,7 +12,7 @@ use impinge::dim2;
 use impinge::dim3;
 use impinge::math::{Real, Space};
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, ProximityEvent};
-use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_reference::random::Random;
 use world_stage::{Stage, ball, contacts, cube, near, step};
 
@@ -177,7 +177,7 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     for _ in 0..20 {
         add(&mut world, CollisionGroups::new());
     }
-    let gone: Vec<_> = world.collision_objects().map(|o| o.handle()).step_by(3).collect();
+    let gone: Vec<_> = world.collision_objects().map(CollisionObject::handle).step_by(3).collect();
     world.update();
     world.remove(&gone);
     for _ in 0..5 {

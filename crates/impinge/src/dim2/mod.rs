@@ -145,6 +145,11 @@ pub mod shape {
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
 }
 
+/// Shapes from points.
+pub mod transformation {
+    pub use crate::transformation::convex_hull2 as convex_hull;
+}
+
 /// Numbers, vectors and poses.
 pub mod math {
     use crate::math::na;

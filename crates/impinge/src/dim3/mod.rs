@@ -146,6 +146,11 @@ pub mod shape {
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }
 
+/// Shapes from points.
+pub mod transformation {
+    pub use crate::transformation::{IndexedHull, convex_hull3 as convex_hull};
+}
+
 /// Numbers, vectors and poses.
 pub mod math {
     use crate::math::na;

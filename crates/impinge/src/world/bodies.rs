@@ -1,10 +1,11 @@
 //! What a step reads and writes of the objects, apart from the users' data, and what has changed
 //! since the last update.
 
-use super::CollisionGroups;
+use super::error::finite_pose;
+use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
-use crate::math::{Real, Space, max};
+use crate::math::{Pose, Real, Space, max};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
@@ -57,7 +58,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         groups: CollisionGroups,
         proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
     ) -> Self {
-        let aabb = aabb_at(&row.shape, &row.isometry);
+        let aabb = aabb_at(&row.shape, &N::pose(&row.isometry));
         let proxy = proxy(volume(&aabb, row.query));
         let ObjectRow { handle, isometry, shape, query } = row;
         let changes = Changes::default();
@@ -87,9 +88,9 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
 /// The box of a placed shape; the box of everything where the numbers go beyond the scalar's range.
 fn aabb_at<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
-    isometry: &N::Isometry,
+    pose: &Pose<N, D>,
 ) -> Aabb<N, D> {
-    let aabb = shape.aabb(&N::pose(isometry));
+    let aabb = shape.aabb(pose);
     let usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
     if usable { aabb } else { Aabb::unbounded() }
 }
@@ -134,16 +135,23 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
             Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
     }
 
-    pub(crate) fn set_isometry(&mut self, index: u32, isometry: N::Isometry) {
+    /// Moves an object, unless a number of the position is not finite.
+    pub(crate) fn set_isometry(
+        &mut self,
+        index: u32,
+        isometry: N::Isometry,
+    ) -> Result<(), WorldError> {
         let body = &mut self.bodies[index as usize];
+        let pose = finite_pose(N::pose(&isometry), Some(body.handle))?;
         body.isometry = isometry;
-        body.aabb = aabb_at(&body.shape, &isometry);
+        body.aabb = aabb_at(&body.shape, &pose);
         self.note(index).volume = true;
+        Ok(())
     }
 
     pub(crate) fn set_shape(&mut self, index: u32, shape: ShapeHandle<N, D>) {
         let body = &mut self.bodies[index as usize];
-        body.aabb = aabb_at(&shape, &body.isometry);
+        body.aabb = aabb_at(&shape, &N::pose(&body.isometry));
         body.shape = shape;
         self.note_row(index);
     }

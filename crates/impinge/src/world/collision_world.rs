@@ -188,10 +188,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         position: N::Isometry,
     ) -> Result<(), WorldError> {
-        let object = self.objects.fresh(handle)?;
-        finite_pose(N::pose(&position), Some(handle))?;
-        object.position = position;
-        (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), position);
+        self.objects.fresh(handle)?;
+        (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), position)?;
+        self.objects.fresh(handle)?.position = position;
         Ok(())
     }
 
@@ -219,8 +218,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             finite_pose(N::pose(position), Some(*handle))?;
         }
         for (handle, position) in positions {
-            self.objects.fresh(*handle)?.position = *position;
-            (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), *position);
+            self.try_set_position(*handle, *position)?;
         }
         Ok(())
     }

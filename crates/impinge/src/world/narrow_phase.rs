@@ -91,7 +91,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
 
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase<N, D> {
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events) {
-        (N::tables().update_pairs)(self, objects.table(), events);
+        self.update_pairs(objects.table(), events);
     }
 
     fn handle_interaction(

@@ -17,6 +17,7 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     slots: Vec<Slot<N, D, T>>,
     /// Indices without an object, the next one to be used at the end.
     free: Vec<u32>,
+    count: usize,
     pub(super) bodies: Bodies<N, D>,
     pub(super) table: ObjectTable<N, D>,
 }
@@ -42,6 +43,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Self {
             slots: Vec::new(),
             free: Vec::new(),
+            count: 0,
             bodies: Bodies::new(),
             table: ObjectTable::new(),
         }
@@ -75,14 +77,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// How many objects there are.
     #[must_use]
-    pub fn len(&self) -> usize {
-        self.slots.len() - self.slots.iter().filter(|slot| slot.object.is_none()).count()
+    pub const fn len(&self) -> usize {
+        self.count
     }
 
     /// There is no object.
     #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.iter().next().is_none()
+    pub const fn is_empty(&self) -> bool {
+        self.count == 0
     }
 
     /// The poses, shapes and query types as of the last update (within an update: of this one).
@@ -133,6 +135,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             query_type,
             data,
         };
+        self.count += 1;
         if self.free.pop().is_some() {
             self.slots[handle.uid()].object = Some(object);
         } else {
@@ -144,6 +147,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) {
         let slot = &mut self.slots[handle.uid()];
         slot.object = None;
+        self.count -= 1;
         self.bodies.remove(handle.index());
         if let Some(next) = slot.generation.checked_add(1) {
             slot.generation = next;
@@ -160,6 +164,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// What is wrong with the bookkeeping, if anything.
     pub(super) fn validate(&self) -> Result<(), String> {
+        if self.iter().count() != self.count {
+            return Err(format!("the count of objects, {}, is wrong", self.count));
+        }
         if self.slots.len() != self.bodies.len() {
             return Err(format!("{} slots, {} copies", self.slots.len(), self.bodies.len()));
         }
@@ -180,8 +187,21 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             if !same {
                 return Err(format!("the record of {handle:?} and its copy differ"));
             }
+            if !body.is_astray() && !self.is_row_of(body) {
+                return Err(format!("the row of {handle:?} is out of date"));
+            }
         }
         self.validate_free()
+    }
+
+    /// The table's row is that of an object.
+    fn is_row_of(&self, body: &Body<N, D>) -> bool {
+        let index = body.handle.index();
+        body.handle.uid() < self.table.len()
+            && self.table.handle(index) == body.handle
+            && self.table.isometry(index) == &body.isometry
+            && self.table.shape(index).is_same(&body.shape)
+            && self.table.query(index) == body.query
     }
 
     fn validate_free(&self) -> Result<(), String> {

@@ -81,9 +81,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             latest = meet(body);
         }
         self.broad_phase.visit_ray(ray, latest, &mut |&handle| {
-            match self.settled(handle) {
-                Some(body) => latest = meet(body),
-                None => {}
+            if let Some(body) = self.settled(handle) {
+                latest = meet(body);
             }
             latest
         });

@@ -6,7 +6,7 @@ use impinge::math::na::{
     UnitQuaternion,
 };
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::shape::{Ball, Capsule, Cuboid, Plane, ShapeHandle};
+use impinge::shape::{Ball, Capsule, Cuboid, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge::{dim2, dim3};
 use impinge_reference::geometry::{Pose, Solid};

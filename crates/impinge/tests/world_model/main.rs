@@ -5,7 +5,6 @@
 //! rounding excuses no difference.
 
 #[path = "../world_stage/mod.rs"]
-#[macro_use]
 mod world_stage;
 
 mod both;
@@ -23,7 +22,6 @@ fn run<N: Grid<D>, const D: usize>(seed: u64, operations: usize) {
     }
     both.finish();
     let tally = both.tally;
-    println!("{D} dimensions, seed {seed}: {tally:?}");
     assert!(tally.updates > operations / 8, "updates: {tally:?}");
     assert!(tally.started > operations / 100, "contacts start: {tally:?}");
     assert!(tally.transitions > operations / 50, "proximities change: {tally:?}");

@@ -85,6 +85,7 @@ pub(crate) fn step<N: Space<D>, const D: usize, T>(
 }
 
 /// Runs each check for both scalars and dimensions.
+#[allow(unused_macros, reason = "each test uses a part")]
 macro_rules! in_tests {
     ($($check:ident),* $(,)?) => {
         mod both_scalars_and_dimensions {
