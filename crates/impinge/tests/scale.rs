@@ -6,7 +6,7 @@ mod scene_stage;
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Vector};
 use impinge::query::{ContactManifold, Ray, TrackedContact};
-use impinge::world::CollisionGroups;
+use impinge::world::{CollisionGroups, CollisionObject};
 use impinge_scenes::{Scene, mixed_shapes, mixed_sizes, pile, sparse_drift, tower};
 use scene_stage::{Play, Player, World};
 
@@ -109,7 +109,7 @@ fn check_queries<N: Play<D>, const D: usize>(
             let boxes = world.interferences_with_aabb(&aabb, &all);
             let point = Point::from((at + direction * N::lit(0.25)) * scale);
             let held = world.interferences_with_point(&point, &all);
-            boxes.chain(held).map(|object| object.handle()).collect::<Vec<_>>()
+            boxes.chain(held).map(CollisionObject::handle).collect::<Vec<_>>()
         };
         assert_eq!(near(usual, N::ONE), near(scaled, scale), "{place}: points and boxes");
         hits += found.len();

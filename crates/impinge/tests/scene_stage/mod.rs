@@ -143,6 +143,11 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
     /// Removes, adds and moves what the next step says, and updates the world.
     pub(crate) fn step(&mut self) {
         self.apply();
+        self.update();
+    }
+
+    /// Updates the world and goes on to the next step.
+    pub(crate) fn update(&mut self) {
         self.world.update();
         self.step += 1;
     }
