@@ -1,7 +1,5 @@
 //! Boxes (rectangles in the plane).
 
-use smallvec::SmallVec;
-
 use super::error::{finite, or_panic, size};
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
@@ -113,21 +111,19 @@ impl<const D: usize> Part<D> {
         Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
     }
 
+    /// How many axes are free.
     fn dimension(self) -> usize {
-        self.free.count_ones() as usize
-    }
-
-    /// A point has no side, a segment one and a rectangle four.
-    fn side_count(self) -> usize {
-        self.dimension() * self.dimension()
+        (0..D).filter(|&axis| has(self.free, axis)).count()
     }
 
     /// The number documented at [`Cuboid`].
     fn name(self) -> FeatureId {
-        let sign = |axis: usize| u32::from(has(self.corner, axis % D));
-        let index = match self.dimension() {
+        let sign =
+            |axis: usize| u32::from(has(self.corner, if axis < D { axis } else { axis - D }));
+        let dimension = self.dimension();
+        let index = match dimension {
             0 => self.corner,
-            dimension if dimension + 1 == D => {
+            _ if dimension + 1 == D => {
                 let axis = (!self.free).trailing_zeros();
                 2 * axis + u32::from(!has(self.corner, axis as usize))
             }
@@ -137,7 +133,7 @@ impl<const D: usize> Part<D> {
                 4 * axis + sign(next) + 2 * sign(next + 1)
             }
         };
-        FeatureId::flat::<D>(self.dimension(), index)
+        FeatureId::flat::<D>(dimension, index)
     }
 
     /// The part of a name, if there is one.
@@ -162,21 +158,21 @@ impl<const D: usize> Part<D> {
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
     /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
-    fn corners(self) -> SmallVec<[u32; 4]> {
+    fn corners(self) -> Corners {
         let axis = (!self.free & Self::ALL).trailing_zeros() as usize;
         let is_face = self.dimension() + 1 == D;
         let first = if is_face { axis + 1 } else { 0 };
         let is_odd = (D - 1) * axis % 2 == 1;
         let is_reversed = is_face && is_odd == has(self.corner, axis);
-        let fixed = self.corner & !self.free;
-        let mut corners = SmallVec::from_slice(&[fixed]);
-        for axis in (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.free, axis)) {
-            for at in (0..corners.len()).rev() {
-                corners.push(corners[at] | 1 << axis);
+        let mut corners = Corners { at: [self.corner & !self.free; 4], count: 1 };
+        for axis in first..first + D {
+            let axis = if axis < D { axis } else { axis - D };
+            if has(self.free, axis) {
+                corners.reflect(1 << axis);
             }
         }
         if is_reversed {
-            corners.reverse();
+            corners.at[..corners.count].reverse();
         }
         corners
     }
@@ -188,6 +184,22 @@ impl<const D: usize> Part<D> {
             normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
         }
         normal / normal.norm()
+    }
+}
+
+/// The corners of a part that is not the whole box, as sets of axes: four at most.
+struct Corners {
+    at: [u32; 4],
+    count: usize,
+}
+
+impl Corners {
+    /// Appends the corners there are, moved to the positive side of an axis, the last one first.
+    fn reflect(&mut self, axis: u32) {
+        for back in 0..self.count {
+            self.at[self.count + back] = self.at[self.count - 1 - back] | axis;
+        }
+        self.count *= 2;
     }
 }
 
@@ -217,15 +229,21 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         out.clear();
         out.id = part.name();
         let corners = part.corners();
-        for (at, &from) in corners.iter().enumerate() {
-            out.push(FeatureId::Vertex(from), self.corner(from));
-            if at < part.side_count() {
-                let to = corners[(at + 1) % corners.len()];
-                out.side_ids.push(Part::<D> { free: from ^ to, corner: from }.name());
-            }
-        }
+        let corners = &corners.at[..corners.count];
+        out.vertices.extend(corners.iter().map(|&corner| self.corner(corner)));
+        out.vertex_ids.extend(corners.iter().map(|&corner| FeatureId::Vertex(corner)));
+        // A point has no side, a segment one and a rectangle four.
+        let side_count = if corners.len() > 2 { 4 } else { corners.len() - 1 };
+        out.side_ids.extend((0..side_count).map(|at| {
+            let (from, to) =
+                (corners[at], corners[if at + 1 < corners.len() { at + 1 } else { 0 }]);
+            Part::<D> { free: from ^ to, corner: from }.name()
+        }));
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
-        out.drop_repeated();
+        // Only a box that is flat along a free axis has corners in one place.
+        if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
+            out.drop_repeated();
+        }
     }
 
     #[track_caller]
@@ -243,8 +261,8 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        let corners = Self::part(id, 1).corners();
-        [corners[0], corners[1]].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+        let [from, to, ..] = Self::part(id, 1).corners().at;
+        [from, to].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
