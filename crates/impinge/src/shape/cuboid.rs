@@ -112,11 +112,13 @@ impl<const D: usize> Part<D> {
     }
 
     /// How many axes are free.
+    #[inline]
     fn dimension(self) -> usize {
         (0..D).filter(|&axis| has(self.free, axis)).count()
     }
 
     /// The number documented at [`Cuboid`].
+    #[inline]
     fn name(self) -> FeatureId {
         let sign =
             |axis: usize| u32::from(has(self.corner, if axis < D { axis } else { axis - D }));
@@ -158,6 +160,7 @@ impl<const D: usize> Part<D> {
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
     /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
+    #[inline]
     fn corners(self) -> Corners {
         let axis = (!self.free & Self::ALL).trailing_zeros() as usize;
         let is_face = self.dimension() + 1 == D;
@@ -178,12 +181,16 @@ impl<const D: usize> Part<D> {
     }
 
     /// The outward unit vector in the middle of the normals of the faces around the part.
+    #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
         let mut normal = Vector::<N, D>::zeros();
-        for axis in (0..D).filter(|&axis| !has(self.free, axis)) {
-            normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+        for axis in 0..D {
+            if !has(self.free, axis) {
+                normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+            }
         }
-        normal / normal.norm()
+        // That of a face has its length already.
+        if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
     }
 }
 
@@ -210,17 +217,24 @@ fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
 
 /// The axis, not yet taken, along which a direction has its least component.
 fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
-    let mut axes = (0..D).filter(|&axis| !has(taken, axis));
-    let first = axes.next()?;
-    let weaker = |a: usize, b: usize| if direction[b].abs() < direction[a].abs() { b } else { a };
-    Some(axes.fold(first, weaker))
+    let mut weakest = None;
+    for axis in 0..D {
+        let is_weaker = |best: usize| direction[axis].abs() < direction[best].abs();
+        if !has(taken, axis) && weakest.is_none_or(is_weaker) {
+            weakest = Some(axis);
+        }
+    }
+    weakest
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
+    #[inline]
     fn corner(&self, corner: u32) -> Point<N, D> {
         let mut point = Point::from(self.half_extents);
-        for axis in (0..D).filter(|&axis| !has(corner, axis)) {
-            point[axis] = -point[axis];
+        for axis in 0..D {
+            if !has(corner, axis) {
+                point[axis] = -point[axis];
+            }
         }
         point
     }
@@ -230,15 +244,15 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         out.id = part.name();
         let corners = part.corners();
         let corners = &corners.at[..corners.count];
-        out.vertices.extend(corners.iter().map(|&corner| self.corner(corner)));
-        out.vertex_ids.extend(corners.iter().map(|&corner| FeatureId::Vertex(corner)));
         // A point has no side, a segment one and a rectangle four.
         let side_count = if corners.len() > 2 { 4 } else { corners.len() - 1 };
-        out.side_ids.extend((0..side_count).map(|at| {
-            let (from, to) =
-                (corners[at], corners[if at + 1 < corners.len() { at + 1 } else { 0 }]);
-            Part::<D> { free: from ^ to, corner: from }.name()
-        }));
+        for (at, &from) in corners.iter().enumerate() {
+            out.push(FeatureId::Vertex(from), self.corner(from));
+            if at < side_count {
+                let to = corners[if at + 1 < corners.len() { at + 1 } else { 0 }];
+                out.side_ids.push(Part::<D> { free: from ^ to, corner: from }.name());
+            }
+        }
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
         // Only a box that is flat along a free axis has corners in one place.
         if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {

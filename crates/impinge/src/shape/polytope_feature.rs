@@ -62,13 +62,15 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         let face = &self.faces[index as usize];
         out.clear();
         out.id = FeatureId::Face(index);
-        let ring = self.face_vertices(face);
-        out.vertices.extend(ring.iter().map(|&vertex| self.vertices[vertex as usize]));
-        out.vertex_ids.extend(ring.iter().map(|&vertex| FeatureId::Vertex(vertex)));
+        for &vertex in self.face_vertices(face) {
+            out.push(FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
+        }
         let sides = self.face_sides(face);
         // A side of the plane is one segment, not a loop of two.
         let count = if sides.len() == 2 { 1 } else { sides.len() };
-        out.side_ids.extend(sides[..count].iter().map(|&side| Self::side_id(side)));
+        for &side in &sides[..count] {
+            out.side_ids.push(Self::side_id(side));
+        }
         out.normal = Some(face.normal);
     }
 

@@ -84,12 +84,11 @@ impl<N: Real, const D: usize> Facet<N, D> {
         pose: Option<&Pose<N, D>>,
         frame: &Frame<N, D>,
     ) {
-        let named = feature.vertices.iter().zip(&feature.vertex_ids).enumerate();
-        self.corners.extend(named.map(|(index, (vertex, &id))| {
+        for (index, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
             let point = pose.map_or(*vertex, |pose| pose.point(vertex));
             let side = feature.side_ids.get(index).copied().unwrap_or(feature.id);
-            Corner { point, flat: frame.flat(&point), id, side }
-        }));
+            self.corners.push(Corner { point, flat: frame.flat(&point), id, side });
+        }
     }
 
     /// Finds the corner that is nearest to the other solid, the first of equals.
@@ -191,45 +190,54 @@ impl<N: Real, const D: usize> Facet<N, D> {
     }
 
     /// A point without any extent across the normal.
+    #[inline]
     pub(super) fn is_point(&self) -> bool {
         self.corners.len() < 2
     }
 
     /// Two corners: one side, which is looked at from both hands.
+    #[inline]
     pub(super) fn is_segment(&self) -> bool {
         self.corners.len() == 2
     }
 
     /// None for a point, one for a segment, else one for each corner.
+    #[inline]
     pub(super) fn side_count(&self) -> usize {
         self.inward.len()
     }
 
     /// The index of the corner after a corner.
+    #[inline]
     pub(super) fn next(&self, index: usize) -> usize {
         if index + 1 < self.corners.len() { index + 1 } else { 0 }
     }
 
     /// From a corner to the next, seen along the normal.
+    #[inline]
     pub(super) fn side(&self, index: usize) -> Vector<N, 2> {
         self.corners[self.next(index)].flat - self.corners[index].flat
     }
 
-    /// How far inside the line of a side a place is; negative outside.
-    pub(super) fn inside(&self, side: usize, flat: &Vector<N, 2>) -> N {
-        self.inward[side].dot(&(flat - self.corners[side].flat))
+    /// How far inside the line of each side a place is; negative outside.
+    #[inline]
+    pub(super) fn measure_inside(&self, flat: &Vector<N, 2>, insides: &mut [N]) {
+        for ((inside, inward), from) in insides.iter_mut().zip(&self.inward).zip(&self.corners) {
+            *inside = inward.dot(&(flat - from.flat));
+        }
     }
 
     /// The smallest part of the facet that contains a place: a corner, a side, the whole.
     ///
     /// `None` if the place is outside by more than the tolerance.
     pub(super) fn locate(&self, flat: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
-        let insides: SmallVec<[N; 8]> =
-            (0..self.side_count()).map(|side| self.inside(side, flat)).collect();
+        let mut insides: SmallVec<[N; 8]> = SmallVec::from_elem(N::ZERO, self.side_count());
+        self.measure_inside(flat, &mut insides);
         self.locate_inside(&insides, flat, tolerance)
     }
 
     /// [`Self::locate`] where it is known how far inside of each side the place is.
+    #[inline]
     pub(super) fn locate_inside(
         &self,
         insides: &[N],
@@ -263,6 +271,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     }
 
     /// The point of the core that is seen at the same place as `point`.
+    #[inline]
     pub(super) fn under(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> Point<N, D> {
         let Some(normal) = self.normal else {
             return self.along_side(0, self.parameter(&frame.flat(point)));
@@ -279,6 +288,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     }
 
     /// The point of a side at a parameter between 0 and 1.
+    #[inline]
     pub(super) fn along_side(&self, side: usize, parameter: N) -> Point<N, D> {
         let (from, to) = (&self.corners[side].point, &self.corners[self.next(side)].point);
         from + (to - from) * parameter
@@ -289,6 +299,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     /// Above the flat part that is `rounding / cosine`; above the end nearest to the other solid the
     /// ball around that end. Nothing rises above the witness. Exact for capsules, and wherever the
     /// surface is parallel to the facet; between the two a rounded polygon may lie a little lower.
+    #[inline]
     pub(super) fn lift(&self, core: &Point<N, D>, frame: &Frame<N, D>) -> N {
         if self.rounding <= N::ZERO {
             return N::ZERO;

@@ -77,10 +77,14 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     /// Sides that cross well inside both.
     fn crossings(&self, insides: &[Insides<N>; 2], out: &mut Candidates<N, D>) {
         for side1 in 0..self.first.side_count() {
-            for side2 in 0..self.second.side_count() {
-                let ends1 = insides[0].of_ends(self.first, side1, side2);
-                let ends2 = insides[1].of_ends(self.second, side2, side1);
-                if self.are_apart(ends1) && self.are_apart(ends2) {
+            let [from1, to1] = insides[0].at_ends(self.first, side1);
+            for (side2, ends1) in from1.iter().zip(to1).enumerate() {
+                let ends1 = [*ends1.0, *ends1.1];
+                if !self.are_apart(ends1) {
+                    continue;
+                }
+                let ends2 = insides[1].at_ends(self.second, side2).map(|row| row[side1]);
+                if self.are_apart(ends2) {
                     let at = |[from, to]: [N; 2]| from / (from - to);
                     let core1 = self.first.along_side(side1, at(ends1));
                     let core2 = self.second.along_side(side2, at(ends2));
@@ -93,6 +97,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
 
     /// The ends of a side lie on different hands of a line, and neither on it: a side that ends on
     /// the line crosses nothing, its corner lies on the other facet or outside.
+    #[inline]
     fn are_apart(&self, [from, to]: [N; 2]) -> bool {
         let tolerance = self.frame.tolerance;
         from > tolerance && to < -tolerance || from < -tolerance && to > tolerance
@@ -186,20 +191,24 @@ struct Insides<N: Real> {
 
 impl<N: Real> Insides<N> {
     fn of<const D: usize>(corners: &Facet<N, D>, sides: &Facet<N, D>) -> Self {
+        // Facets that are no points have sides.
         let side_count = sides.side_count().max(1);
-        let mut numbers = SmallVec::new();
-        for corner in &corners.corners {
-            numbers.extend((0..sides.side_count()).map(|side| sides.inside(side, &corner.flat)));
+        let mut numbers = SmallVec::from_elem(N::ZERO, side_count * corners.corners.len());
+        for (row, corner) in numbers.chunks_exact_mut(side_count).zip(&corners.corners) {
+            sides.measure_inside(&corner.flat, row);
         }
         Self { numbers, side_count }
     }
 
+    #[inline]
     fn rows(&self) -> impl Iterator<Item = &[N]> {
         self.numbers.chunks_exact(self.side_count)
     }
 
-    /// For the two ends of a side of the facet whose corners these are, and a line of the other.
-    fn of_ends<const D: usize>(&self, facet: &Facet<N, D>, side: usize, line: usize) -> [N; 2] {
-        [side, facet.next(side)].map(|corner| self.numbers[corner * self.side_count + line])
+    /// The rows of the two ends of a side of the facet whose corners these are.
+    #[inline]
+    fn at_ends<const D: usize>(&self, facet: &Facet<N, D>, side: usize) -> [&[N]; 2] {
+        let row = |corner: usize| &self.numbers[corner * self.side_count..][..self.side_count];
+        [row(side), row(facet.next(side))]
     }
 }
