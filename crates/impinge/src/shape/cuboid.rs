@@ -1,7 +1,5 @@
 //! Boxes (rectangles in the plane).
 
-use smallvec::SmallVec;
-
 use super::error::{finite, or_panic, size};
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -114,21 +112,21 @@ impl<const D: usize> Part<D> {
         Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
     }
 
+    /// How many axes are free.
+    #[inline]
     fn dimension(self) -> usize {
-        self.free.count_ones() as usize
-    }
-
-    /// A point has no side, a segment one and a rectangle four.
-    fn side_count(self) -> usize {
-        self.dimension() * self.dimension()
+        (0..D).filter(|&axis| has(self.free, axis)).count()
     }
 
     /// The number documented at [`Cuboid`].
+    #[inline]
     fn name(self) -> FeatureId {
-        let sign = |axis: usize| u32::from(has(self.corner, axis % D));
-        let index = match self.dimension() {
+        let sign =
+            |axis: usize| u32::from(has(self.corner, if axis < D { axis } else { axis - D }));
+        let dimension = self.dimension();
+        let index = match dimension {
             0 => self.corner,
-            dimension if dimension + 1 == D => {
+            _ if dimension + 1 == D => {
                 let axis = (!self.free).trailing_zeros();
                 2 * axis + u32::from(!has(self.corner, axis as usize))
             }
@@ -138,7 +136,7 @@ impl<const D: usize> Part<D> {
                 4 * axis + sign(next) + 2 * sign(next + 1)
             }
         };
-        FeatureId::flat::<D>(self.dimension(), index)
+        FeatureId::flat::<D>(dimension, index)
     }
 
     /// The part of a name, if there is one.
@@ -163,32 +161,53 @@ impl<const D: usize> Part<D> {
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
     /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
-    fn corners(self) -> SmallVec<[u32; 4]> {
+    #[inline]
+    fn corners(self) -> Corners {
         let axis = (!self.free & Self::ALL).trailing_zeros() as usize;
         let is_face = self.dimension() + 1 == D;
         let first = if is_face { axis + 1 } else { 0 };
         let is_odd = (D - 1) * axis % 2 == 1;
         let is_reversed = is_face && is_odd == has(self.corner, axis);
-        let fixed = self.corner & !self.free;
-        let mut corners = SmallVec::from_slice(&[fixed]);
-        for axis in (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.free, axis)) {
-            for at in (0..corners.len()).rev() {
-                corners.push(corners[at] | 1 << axis);
+        let mut corners = Corners { at: [self.corner & !self.free; 4], count: 1 };
+        for axis in first..first + D {
+            let axis = if axis < D { axis } else { axis - D };
+            if has(self.free, axis) {
+                corners.reflect(1 << axis);
             }
         }
         if is_reversed {
-            corners.reverse();
+            corners.at[..corners.count].reverse();
         }
         corners
     }
 
     /// The outward unit vector in the middle of the normals of the faces around the part.
+    #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
         let mut normal = Vector::<N, D>::zeros();
-        for axis in (0..D).filter(|&axis| !has(self.free, axis)) {
-            normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+        for axis in 0..D {
+            if !has(self.free, axis) {
+                normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+            }
         }
-        normal / normal.norm()
+        // That of a face has its length already.
+        if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
+    }
+}
+
+/// The corners of a part that is not the whole box, as sets of axes: four at most.
+struct Corners {
+    at: [u32; 4],
+    count: usize,
+}
+
+impl Corners {
+    /// Appends the corners there are, moved to the positive side of an axis, the last one first.
+    fn reflect(&mut self, axis: u32) {
+        for back in 0..self.count {
+            self.at[self.count + back] = self.at[self.count - 1 - back] | axis;
+        }
+        self.count *= 2;
     }
 }
 
@@ -199,17 +218,24 @@ fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
 
 /// The axis, not yet taken, along which a direction has its least component.
 fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
-    let mut axes = (0..D).filter(|&axis| !has(taken, axis));
-    let first = axes.next()?;
-    let weaker = |a: usize, b: usize| if direction[b].abs() < direction[a].abs() { b } else { a };
-    Some(axes.fold(first, weaker))
+    let mut weakest = None;
+    for axis in 0..D {
+        let is_weaker = |best: usize| direction[axis].abs() < direction[best].abs();
+        if !has(taken, axis) && weakest.is_none_or(is_weaker) {
+            weakest = Some(axis);
+        }
+    }
+    weakest
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
+    #[inline]
     fn corner(&self, corner: u32) -> Point<N, D> {
         let mut point = Point::from(self.half_extents);
-        for axis in (0..D).filter(|&axis| !has(corner, axis)) {
-            point[axis] = -point[axis];
+        for axis in 0..D {
+            if !has(corner, axis) {
+                point[axis] = -point[axis];
+            }
         }
         point
     }
@@ -218,15 +244,21 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         out.clear();
         out.id = part.name();
         let corners = part.corners();
+        let corners = &corners.at[..corners.count];
+        // A point has no side, a segment one and a rectangle four.
+        let side_count = if corners.len() > 2 { 4 } else { corners.len() - 1 };
         for (at, &from) in corners.iter().enumerate() {
             out.push(FeatureId::Vertex(from), self.corner(from));
-            if at < part.side_count() {
-                let to = corners[(at + 1) % corners.len()];
+            if at < side_count {
+                let to = corners[if at + 1 < corners.len() { at + 1 } else { 0 }];
                 out.side_ids.push(Part::<D> { free: from ^ to, corner: from }.name());
             }
         }
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
-        out.drop_repeated();
+        // Only a box that is flat along a free axis has corners in one place.
+        if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
+            out.drop_repeated();
+        }
     }
 
     #[track_caller]
@@ -244,8 +276,8 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        let corners = Self::part(id, 1).corners();
-        [corners[0], corners[1]].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+        let [from, to, ..] = Self::part(id, 1).corners().at;
+        [from, to].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {

@@ -4,7 +4,8 @@
 //! with the part of their core that faces the other; seen along the normal these are points, segments
 //! and convex polygons of the plane (module [`mod@facet`]), and the corners of what they have in common
 //! ([`overlap`]) are the candidates. [`half_space`] is the case of a face without end. The witness is
-//! always represented, so the smallest distance of a manifold is that of the separation exactly.
+//! always represented, so the smallest distance of a manifold is that of the separation exactly; with
+//! a ball it is all there is.
 //! At last [`reduce`] chooses a few candidates and [`names`] numbers them.
 //!
 //! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
@@ -98,40 +99,50 @@ fn build<N: Real, const D: usize>(
         out.points.clear();
         return;
     }
-    let mut candidates = candidates(pair, frame);
+    out.normal = frame.normal();
+    if let Kind::Ball(_) = pair.first {
+        return names::settle_alone(&of_ball(pair, frame), out);
+    }
+    let mut candidates = Candidates::new();
+    fill(pair, frame, &mut candidates);
     names::inherit(&out.points, &mut candidates);
     let deepest = deepest(&candidates, distance + frame.tolerance);
     candidates[deepest].distance = distance;
     let chosen = reduce::chosen(&candidates, deepest, limit.max(1), frame.tolerance);
-    out.normal = frame.normal();
     names::settle(&candidates, &chosen, out);
 }
 
+/// The only point of a ball and another solid: the witness.
+fn of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>, frame: &Frame<N, D>) -> Candidate<N, D> {
+    let second = facet(Which::Second, pair.second, Some(&pair.pose12), frame);
+    at_witness_between(frame, [FeatureId::Face(0), at_witness(second.as_ref(), frame)])
+}
+
 /// The corners of the common area, and the witness if it is none of them.
-fn candidates<N: Real, const D: usize>(
+fn fill<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
-) -> Candidates<N, D> {
-    let first = facet(Which::First, pair.first, &Pose::identity(), frame);
-    let second = facet(Which::Second, pair.second, &pair.pose12, frame);
-    let mut out = match (&first, &second) {
-        (Some(first), Some(second)) => Overlap { frame, first, second }.candidates(),
-        (Some(first), None) => half_space::candidates(pair.first, first, frame),
-        _ => Candidates::new(),
-    };
+    out: &mut Candidates<N, D>,
+) {
+    let first = facet(Which::First, pair.first, None, frame);
+    let second = facet(Which::Second, pair.second, Some(&pair.pose12), frame);
+    match (&first, &second) {
+        (Some(first), Some(second)) => Overlap { frame, first, second }.candidates(out),
+        (Some(first), None) => half_space::candidates(pair.first, first, frame, out),
+        _ => {}
+    }
     let limit = frame.witness.distance + frame.tolerance;
     if !out.iter().any(|candidate| candidate.distance <= limit) {
         let features = [at_witness(first.as_ref(), frame), at_witness(second.as_ref(), frame)];
-        add_witness(frame, features, &mut out);
+        add_witness(frame, features, out);
     }
-    out
 }
 
 /// What a solid shows of itself; `None` for a half-space.
 fn facet<N: Real, const D: usize>(
     which: Which,
     kind: Kind<'_, N, D>,
-    pose: &Pose<N, D>,
+    pose: Option<&Pose<N, D>>,
     frame: &Frame<N, D>,
 ) -> Option<Facet<N, D>> {
     Geometry(kind).as_support_map().map(|map| Facet::facing(which, map, pose, frame))
@@ -157,9 +168,17 @@ fn add_witness<N: Real, const D: usize>(
 ) {
     let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
     out.retain(|candidate| is_shared || candidate.features != features);
+    out.push(at_witness_between(frame, features));
+}
+
+/// The witness as a candidate between two parts.
+fn at_witness_between<N: Real, const D: usize>(
+    frame: &Frame<N, D>,
+    features: [FeatureId; 2],
+) -> Candidate<N, D> {
     let (point1, distance) = (frame.witness.point1, frame.witness.distance);
     let flat = Vector::<N, 2>::zeros();
-    out.push(Candidate { point1, distance, flat, features, kept_id: None });
+    Candidate { point1, distance, flat, features, kept_id: None }
 }
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
