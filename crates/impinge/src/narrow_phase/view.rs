@@ -129,6 +129,17 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
+    /// All manifolds that hold a contact, sorted by the handle indices of their pairs.
+    pub(crate) fn contact_manifolds<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+    ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
+        let touching = self.contact_pairs(table).filter(|(_, _, pair)| pair.num_contacts() > 0);
+        touching.flat_map(|(first, second, pair)| {
+            pair.manifolds().into_iter().map(move |manifold| (first, second, manifold))
+        })
+    }
+
     /// All pairs whose proximity is asked for, sorted by handle index.
     pub(crate) fn proximity_pairs(&self) -> impl Iterator<Item = (u32, u32, ProximityPair)> + '_ {
         self.sorted().filter_map(move |index| {
