@@ -152,8 +152,26 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         if is_flat(self.geometry1) || is_flat(self.geometry2) {
             return false;
         }
+        if self.is_steep() {
+            return false;
+        }
         let normal = self.normal(&pose12.point(&self.local2), self.geometry2.moved(pose12), pose12);
         (normal - self.normal1).norm() <= least_angle()
+    }
+
+    /// A line leans so much along the manifold's normal that no normal perpendicular to it comes
+    /// near: a quick and one-sided test. Of two lines that are nearly parallel only the first counts.
+    fn is_steep(&self) -> bool {
+        let leans = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
+            match geometry {
+                NeighborhoodGeometry::Line(along) => along.dot(normal).abs() > least,
+                _ => false,
+            }
+        };
+        let least = N::TWO * least_angle();
+        let nearly_parallel = N::lit(LEAST_SINE_SQUARED).sqrt();
+        leans(self.geometry1, &self.normal1, least)
+            || leans(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
     }
 
     fn normal(

@@ -2,7 +2,7 @@
 
 use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
-use crate::shape::{Cylinder, Feature, FeatureId, Geometry, Kind, SupportMap};
+use crate::shape::{Cylinder, FacingPart, Feature, FeatureId, Geometry, Kind, SupportMap};
 
 /// A cylinder that leans by no more than this sine touches along its side: its axis is the core.
 const LYING_SINE: f64 = 0.05;
@@ -23,6 +23,8 @@ enum Facing<N: Real, const D: usize> {
     Center,
     /// A cylinder that lies on its side.
     Axis,
+    /// A part of a box.
+    Part(FacingPart<N, D>),
     /// The general case: the feature that faces the other solid is asked for once more and the named
     /// part is looked up in it. A curved face counts as its tangent plane.
     Feature(Feature<N, D>),
@@ -37,6 +39,10 @@ impl<N: Real, const D: usize> Side<N, D> {
             Kind::Cylinder(cylinder, _) if is_lying(cylinder, &outward) => {
                 (Facing::Axis, cylinder.radius())
             }
+            Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
+                Some(part) => (Facing::Part(part), N::ZERO),
+                None => return Self::of_core(kind, outward),
+            },
             other => return Self::of_core(other, outward),
         };
         Self { rounding, outward, facing }
@@ -60,12 +66,20 @@ impl<N: Real, const D: usize> Side<N, D> {
         match (&self.facing, id) {
             (Facing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
             (Facing::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
+            (Facing::Part(_), FeatureId::Edge(index)) => {
+                NeighborhoodGeometry::Line(FacingPart::edge_direction(index))
+            }
+            (Facing::Part(part), FeatureId::Face(_)) => {
+                NeighborhoodGeometry::Plane(part.normal.unwrap_or(self.outward))
+            }
             (Facing::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
             (Facing::Feature(feature), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
             }
             // The ends of a lying cylinder are on the rims.
-            (Facing::Center | Facing::Axis | Facing::Feature(_), _) => NeighborhoodGeometry::Point,
+            (Facing::Center | Facing::Axis | Facing::Part(_) | Facing::Feature(_), _) => {
+                NeighborhoodGeometry::Point
+            }
         }
     }
 
@@ -74,6 +88,7 @@ impl<N: Real, const D: usize> Side<N, D> {
     pub(super) fn lean(&self) -> N {
         let normal = match &self.facing {
             Facing::Boundary(normal) => Some(*normal),
+            Facing::Part(part) => part.normal,
             Facing::Feature(feature) => feature.normal,
             Facing::Center | Facing::Axis => None,
         };
@@ -83,6 +98,9 @@ impl<N: Real, const D: usize> Side<N, D> {
     /// An edge of what faces the other solid that is perpendicular to the contact's normal.
     pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
         match &self.facing {
+            Facing::Part(part) => {
+                part.most_level_side(&self.outward).filter(|side| is_level(side, &self.outward))
+            }
             Facing::Feature(feature) => level_edge(feature, &self.outward),
             _ => None,
         }
@@ -97,7 +115,12 @@ fn level_edge<N: Real, const D: usize>(
     let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
     let lean = |side: &Vector<N, D>| side.dot(outward).abs();
     let level = sides.reduce(|best, side| if lean(&side) < lean(&best) { side } else { best });
-    level.filter(|side| lean(side) <= super::least_angle())
+    level.filter(|side| is_level(side, outward))
+}
+
+/// Perpendicular up to rounding.
+fn is_level<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
+    side.dot(outward).abs() <= super::least_angle()
 }
 
 /// The direction of a side of a feature, along its outline; `None` for a side of no length.

@@ -45,35 +45,43 @@ pub(super) struct Facet<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Facet<N, D> {
-    /// The facet of a solid that is placed at `pose` in the frame of the first; `None` for the first
-    /// itself.
-    pub(super) fn facing(
-        which: Which,
+    /// The facet of a half-space, which has no corners.
+    #[inline]
+    pub(super) fn boundary(which: Which) -> Self {
+        Self {
+            which,
+            id: FeatureId::Face(0),
+            corners: SmallVec::new(),
+            inward: SmallVec::new(),
+            normal: None,
+            rounding: N::ZERO,
+            cosine: N::ONE,
+            top: (N::ZERO, Vector::<N, 2>::zeros()),
+        }
+    }
+
+    /// Makes it the facet of a solid that is placed at `pose` in the frame of the first; `None` for
+    /// the first itself.
+    pub(super) fn face(
+        &mut self,
         map: &dyn SupportMap<N, D>,
         pose: Option<&Pose<N, D>>,
         frame: &Frame<N, D>,
-    ) -> Self {
-        let outward = which.outward(frame);
-        let turned = |pose: &Pose<N, D>| pose.inverse_vector(&outward);
+    ) {
+        let outward = self.which.outward(frame);
         let mut feature = Feature::default();
-        map.core_feature(&pose.map_or(outward, turned), &mut feature);
-        let place = |normal| pose.map_or(normal, |pose| pose.vector(&normal));
-        let mut facet = Self {
-            which,
-            id: feature.id,
-            corners: SmallVec::new(),
-            inward: SmallVec::new(),
-            normal: feature.normal.map(place),
-            rounding: map.rounding(),
-            cosine: N::ONE,
-            top: (N::ZERO, Vector::<N, 2>::zeros()),
-        };
-        facet.take_corners(&feature, pose, frame);
-        facet.settle(&outward, frame.tolerance);
-        if facet.rounding > N::ZERO {
-            facet.find_top(frame);
+        match pose {
+            None => map.core_feature(&outward, &mut feature),
+            Some(pose) => map.core_feature(&pose.inverse_vector(&outward), &mut feature),
         }
-        facet
+        self.id = feature.id;
+        self.normal = feature.normal.map(|normal| pose.map_or(normal, |pose| pose.vector(&normal)));
+        self.rounding = map.rounding();
+        self.take_corners(&feature, pose, frame);
+        self.settle(&outward, frame.tolerance);
+        if self.rounding > N::ZERO {
+            self.find_top(frame);
+        }
     }
 
     /// Takes the corners of a feature to the frame of the first solid. Where a feature names fewer

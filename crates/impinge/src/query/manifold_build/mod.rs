@@ -114,8 +114,9 @@ fn build<N: Real, const D: usize>(
 
 /// The only point of a ball and another solid: the witness.
 fn of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>, frame: &Frame<N, D>) -> Candidate<N, D> {
-    let second = facet(Which::Second, pair.second, Some(&pair.pose12), frame);
-    at_witness_between(frame, [FeatureId::Face(0), at_witness(second.as_ref(), frame)])
+    let mut second = Facet::boundary(Which::Second);
+    face(&mut second, pair.second, Some(&pair.pose12), frame);
+    at_witness_between(frame, [FeatureId::Face(0), at_witness(&second, frame)])
 }
 
 /// The corners of the common area, and the witness if it is none of them.
@@ -124,39 +125,38 @@ fn fill<N: Real, const D: usize>(
     frame: &Frame<N, D>,
     out: &mut Candidates<N, D>,
 ) {
-    let first = facet(Which::First, pair.first, None, frame);
-    let second = facet(Which::Second, pair.second, Some(&pair.pose12), frame);
-    match (&first, &second) {
-        (Some(first), Some(second)) => Overlap { frame, first, second }.candidates(out),
-        (Some(first), None) => half_space::candidates(pair.first, first, frame, out),
-        _ => {}
+    let mut first = Facet::boundary(Which::First);
+    let mut second = Facet::boundary(Which::Second);
+    face(&mut first, pair.first, None, frame);
+    face(&mut second, pair.second, Some(&pair.pose12), frame);
+    if let Kind::Plane(_) = pair.second {
+        half_space::candidates(pair.first, &first, frame, out);
+    } else {
+        Overlap { frame, first: &first, second: &second }.candidates(out);
     }
     let limit = frame.witness.distance + frame.tolerance;
     if !out.iter().any(|candidate| candidate.distance <= limit) {
-        let features = [at_witness(first.as_ref(), frame), at_witness(second.as_ref(), frame)];
+        let features = [at_witness(&first, frame), at_witness(&second, frame)];
         add_witness(frame, features, out);
     }
 }
 
-/// What a solid shows of itself; `None` for a half-space.
-fn facet<N: Real, const D: usize>(
-    which: Which,
+/// Makes a facet what a solid shows of itself; that of a half-space stays its boundary.
+#[inline]
+fn face<N: Real, const D: usize>(
+    facet: &mut Facet<N, D>,
     kind: Kind<'_, N, D>,
     pose: Option<&Pose<N, D>>,
     frame: &Frame<N, D>,
-) -> Option<Facet<N, D>> {
-    Geometry(kind).as_support_map().map(|map| Facet::facing(which, map, pose, frame))
+) {
+    if let Some(map) = Geometry(kind).as_support_map() {
+        facet.face(map, pose, frame);
+    }
 }
 
 /// The part of a solid that the witness lies on.
-fn at_witness<N: Real, const D: usize>(
-    facet: Option<&Facet<N, D>>,
-    frame: &Frame<N, D>,
-) -> FeatureId {
-    let place = Vector::<N, 2>::zeros();
-    facet.map_or(half_space::BOUNDARY, |facet| {
-        facet.locate(&place, frame.tolerance).unwrap_or(facet.id)
-    })
+fn at_witness<N: Real, const D: usize>(facet: &Facet<N, D>, frame: &Frame<N, D>) -> FeatureId {
+    facet.locate(&Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(facet.id)
 }
 
 /// Adds the witness, in place of any candidate with the same name unless the name is that of two
