@@ -1,9 +1,11 @@
 //! How a contact moves with its solids, to first order and without a new query.
 
+mod own;
 mod side;
 #[cfg(test)]
 mod tests;
 
+pub use self::own::ContactSide;
 use self::side::Side;
 use super::{Contact, Pair, RawPoint};
 use crate::convex::Separation;

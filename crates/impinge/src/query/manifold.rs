@@ -17,6 +17,16 @@ pub struct ContactId {
     pub(crate) number: u32,
 }
 
+impl ContactId {
+    /// The name of a contact by an algorithm of one's own: `pair` is a number that
+    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) gave to the pair, `number` one that the
+    /// pair gives to no other contact.
+    #[must_use]
+    pub const fn new(pair: u64, number: u32) -> Self {
+        Self { pair, number }
+    }
+}
+
 /// A contact, how it moves, and its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackedContact<N: Real, const D: usize> {
@@ -41,6 +51,19 @@ pub struct ContactManifold<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ContactManifold<N, D> {
+    /// The manifold that an algorithm of one's own has found; the order of the contacts is kept.
+    #[must_use]
+    pub fn from_contacts(contacts: impl IntoIterator<Item = TrackedContact<N, D>>) -> Self {
+        let contacts: SmallVec<[TrackedContact<N, D>; 4]> = contacts.into_iter().collect();
+        let mut deepest = 0;
+        for (index, tracked) in contacts.iter().enumerate() {
+            if tracked.contact.depth > contacts[deepest].contact.depth {
+                deepest = index;
+            }
+        }
+        Self { contacts, deepest }
+    }
+
     /// How many contacts it holds.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -18,7 +18,7 @@ pub use crate::bounding_volume::Ray;
 pub use closest_points::{ClosestPoints, closest_points};
 pub use contact::{Contact, contact};
 pub use distance::distance;
-pub use kinematic::{ContactKinematic, NeighborhoodGeometry};
+pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{contacts2, contacts3};
