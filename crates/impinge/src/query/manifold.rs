@@ -54,14 +54,7 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
     /// The manifold that an algorithm of one's own has found; the order of the contacts is kept.
     #[must_use]
     pub fn from_contacts(contacts: impl IntoIterator<Item = TrackedContact<N, D>>) -> Self {
-        let contacts: SmallVec<[TrackedContact<N, D>; 4]> = contacts.into_iter().collect();
-        let mut deepest = 0;
-        for (index, tracked) in contacts.iter().enumerate() {
-            if tracked.contact.depth > contacts[deepest].contact.depth {
-                deepest = index;
-            }
-        }
-        Self { contacts, deepest }
+        Self { contacts: contacts.into_iter().collect() }
     }
 
     /// How many contacts it holds.
