@@ -25,7 +25,7 @@ pub(crate) use manifold_build::{contacts2, contacts3};
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
-pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
+pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
 pub use ray::{RayCast, RayIntersection};
 pub use time_of_impact::time_of_impact;
 pub(crate) use time_of_impact::{Moving, advance};

@@ -1,8 +1,6 @@
 //! Names of contacts that last while their features do.
 
-use smallvec::SmallVec;
-
-use super::super::{PairIds, RawManifold, RawPoint};
+use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
 use super::overlap::Candidates;
 use crate::math::Real;
@@ -31,12 +29,24 @@ pub(super) fn settle<N: Real, const D: usize>(
     chosen: &[usize],
     out: &mut RawManifold<N, D>,
 ) {
-    let ids: &mut PairIds = &mut out.ids;
-    let mut points: SmallVec<[RawPoint<N, D>; 4]> = SmallVec::new();
+    out.points.clear();
     for &index in chosen {
-        let id = candidates[index].kept_id.unwrap_or_else(|| ids.next());
-        points.push(candidates[index].named(id));
+        let id = candidates[index].kept_id.unwrap_or_else(|| out.ids.next());
+        out.points.push(candidates[index].named(id));
     }
-    points.sort_by_key(|point| point.id);
-    out.points = points;
+    if !out.points.is_sorted_by_key(|point| point.id) {
+        out.points.sort_by_key(|point| point.id);
+    }
+}
+
+/// Makes a point the only one of a manifold. It has the number of the old point on its features.
+pub(super) fn settle_alone<N: Real, const D: usize>(
+    alone: &Candidate<N, D>,
+    out: &mut RawManifold<N, D>,
+) {
+    let is_old = |old: &&RawPoint<N, D>| [old.feature1, old.feature2] == alone.features;
+    let kept_id = out.points.iter().find(is_old).map(|old| old.id);
+    let id = kept_id.unwrap_or_else(|| out.ids.next());
+    out.points.clear();
+    out.points.push(alone.named(id));
 }

@@ -22,12 +22,16 @@ pub(super) fn chosen<N: Real, const D: usize>(
     limit: usize,
     tolerance: N,
 ) -> SmallVec<[usize; 8]> {
+    if candidates.len() <= limit {
+        let mut all = SmallVec::new();
+        for index in 0..candidates.len() {
+            all.push(index);
+        }
+        return all;
+    }
     // From a point to a segment to a triangle and on: each addition keeps the outline convex enough
     // for the area that a further point adds to be that beyond one side.
     let mut outline = Outline { candidates, corners: SmallVec::from_slice(&[deepest]) };
-    if candidates.len() <= limit {
-        return (0..candidates.len()).collect();
-    }
     let order = by_depth(candidates);
     while outline.corners.len() < limit {
         let Some((index, place)) = outline.best_addition(&order, tolerance) else { break };

@@ -11,6 +11,7 @@ use super::segments::nearest_of_ends;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, perp, unit};
 use crate::query::Pair;
+use crate::shape::Kind;
 
 /// The separation of two outlines.
 ///
@@ -22,7 +23,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     let outline2 = Outline::of(pair, &pair.second).placed(&pair.pose12);
     let rounding = outline1.rounding + outline2.rounding;
     let noise = N::lit(4.0) * N::EPSILON * max(outline1.reach(), outline2.reach());
-    let best = best_axis(&outline1, &outline2);
+    let best = match (&pair.first, &pair.second) {
+        (Kind::Cuboid(_), Kind::Cuboid(_)) => best_axis_of_boxes(&outline1, &outline2),
+        _ => best_axis(&outline1, &outline2),
+    };
     // A lower bound: what it rejects by more than rounding is out of reach.
     if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
         return None;
@@ -71,6 +75,32 @@ fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
     })
 }
 
+/// [`best_axis`] of two boxes: they have no tips, and the two ranges along a normal tell the gap along
+/// its opposite too.
+fn best_axis_of_boxes<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
+    let mut best: Option<Axis<N>> = None;
+    for (owner, is_second) in [(outline1, false), (outline2, true)] {
+        let lines = [0, 1].map(|side| {
+            let normal = owner.normals[side].unwrap_or_else(Vector::<N, 2>::zeros);
+            (normal, outline1.range(&normal), outline2.range(&normal))
+        });
+        // The sides in their order: the third and the fourth are opposite to the first two.
+        for is_opposite in [false, true] {
+            for (normal, range1, range2) in lines {
+                let tried = if is_opposite == is_second {
+                    Axis { gap: range2.0 - range1.1, normal }
+                } else {
+                    Axis { gap: range1.0 - range2.1, normal: -normal }
+                };
+                if best.is_none_or(|best| tried.gap > best.gap) {
+                    best = Some(tried);
+                }
+            }
+        }
+    }
+    best.expect("a box has sides")
+}
+
 /// Outlines that touch or overlap: the points are in the middle of what the two features that face
 /// each other have in common.
 fn overlapping<N: Real>(
@@ -112,8 +142,7 @@ fn apart<N: Real>(
 
 /// The two sides that meet at a vertex.
 fn around<N: Real>(vertex: usize, outline: &Outline<N>) -> [usize; 2] {
-    let count = outline.vertices.len();
-    [(vertex + count - 1) % count, vertex]
+    [outline.previous(vertex), vertex]
 }
 
 /// The nearest points of some sides of one outline and some of another.

@@ -35,7 +35,7 @@ fn sorted<N: Real>(raw: &RawManifold<N, 3>) -> Vec<RawPoint<N, 3>> {
 
 fn check<N: Real>(tolerance: f64) {
     let mut random = Random(7);
-    let (mut built, mut touching, mut crossings) = (0, 0, 0);
+    let (mut built, mut touching, mut crossings, mut between_edges) = (0, 0, 0, 0);
     for round in 0..4000 {
         let (halves, isometry) = draw(&mut random);
         let [cuboid1, cuboid2] = halves.map(|half| Cuboid::new(half.map(N::lit)));
@@ -75,13 +75,21 @@ fn check<N: Real>(tolerance: f64) {
             assert!(beside < tolerance && deeper < tolerance, "round {round}: {one:?} {other:?}");
         }
         crossings += usize::from(fused.len() > 4);
+        let straight = |axis: Vector<N, 3>| axis.amax() > N::ONE - N::lit(1e-6);
+        let normal = separation.normal;
+        let is_face = straight(normal) || straight(pair.pose12.inverse_vector(&normal));
+        between_edges += usize::from(!is_face);
     }
     assert!(touching * 2 > 4000 && built > touching, "{built} built, {touching} touching");
-    assert!(crossings > 200, "{crossings} with more than four corners");
+    assert!(
+        crossings > 200 && between_edges > 50,
+        "{crossings} with more than four corners, {between_edges} between edges"
+    );
 }
 
 #[test]
 fn fused_boxes_are_what_the_general_builder_makes() {
-    check::<f64>(1e-13);
-    check::<f32>(1e-5);
+    check::<f64>(1e-12);
+    // Where two sides cross at a small angle, rounding moves the crossing along them.
+    check::<f32>(1e-4);
 }
