@@ -79,16 +79,6 @@ impl<N: Real> Outline<N> {
         self
     }
 
-    /// How far the outline reaches from the origin against and along `direction`.
-    #[inline]
-    pub(super) fn range(&self, direction: &Vector<N, 2>) -> (N, N) {
-        let first = direction.dot(&self.vertices[0].coords);
-        self.vertices[1..].iter().fold((first, first), |(low, high), vertex| {
-            let along = direction.dot(&vertex.coords);
-            (min(along, low), max(along, high))
-        })
-    }
-
     /// The index of the vertex farthest along `direction`, the first of equals.
     #[inline]
     pub(super) fn support(&self, direction: &Vector<N, 2>) -> usize {
