@@ -153,7 +153,7 @@ fn at_witness_between<N: Real, const D: usize>(
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
 /// rounding, one that the previous manifold held, then the deepest.
-fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, frame: &Frame<N, D>) -> usize {
+fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], frame: &Frame<N, D>) -> usize {
     let limit = frame.witness.distance + frame.tolerance;
     let rank = |index: usize| {
         let candidate = &candidates[index];

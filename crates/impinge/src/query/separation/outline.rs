@@ -79,14 +79,13 @@ impl<N: Real> Outline<N> {
         self
     }
 
-    /// How far the outline reaches from the origin against and along `direction`.
+    /// The lowest and the highest of the first four vertices along `direction`: of all, for a box.
     #[inline]
-    pub(super) fn range(&self, direction: &Vector<N, 2>) -> (N, N) {
-        let first = direction.dot(&self.vertices[0].coords);
-        self.vertices[1..].iter().fold((first, first), |(low, high), vertex| {
-            let along = direction.dot(&vertex.coords);
-            (min(along, low), max(along, high))
-        })
+    pub(super) fn range_of_box(&self, direction: &Vector<N, 2>) -> (N, N) {
+        let along = |at: usize| direction.dot(&self.vertices[at].coords);
+        let (first, second, third, fourth) = (along(0), along(1), along(2), along(3));
+        let low = min(fourth, min(third, min(second, first)));
+        (low, max(fourth, max(third, max(second, first))))
     }
 
     /// The index of the vertex farthest along `direction`, the first of equals.

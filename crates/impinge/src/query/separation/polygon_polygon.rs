@@ -80,10 +80,11 @@ fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
 fn best_axis_of_boxes<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
     let mut best: Option<Axis<N>> = None;
     for (owner, is_second) in [(outline1, false), (outline2, true)] {
-        let lines = [0, 1].map(|side| {
+        let line = |side: usize| {
             let normal = owner.normals[side].unwrap_or_else(Vector::<N, 2>::zeros);
-            (normal, outline1.range(&normal), outline2.range(&normal))
-        });
+            (normal, outline1.range_of_box(&normal), outline2.range_of_box(&normal))
+        };
+        let lines = [line(0), line(1)];
         // The sides in their order: the third and the fourth are opposite to the first two.
         for is_opposite in [false, true] {
             for (normal, range1, range2) in lines {
