@@ -187,7 +187,7 @@ fn at_witness_between<N: Real, const D: usize>(
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
 /// rounding, at most `limit`, one that the previous manifold held, then the deepest.
-fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, limit: N) -> usize {
+fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     let rank = |index: usize| {
         let candidate = &candidates[index];
         let is_level = candidate.distance <= limit;

@@ -3,7 +3,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::wrong_kinds;
-use crate::math::{Point, Pose, Real, Vector, cross2, max, min, unit};
+use crate::math::{Point, Pose, Real, Vector, cross2, max, unit};
 use crate::query::Pair;
 use crate::shape::{Kind, Polytope};
 
