@@ -11,7 +11,7 @@ use crate::shape::ShapeHandle;
 /// before; between updates the rows stand still, so that manifolds read then are those of the last
 /// update. A row outlives its object until the index is given to another.
 ///
-/// The table also knows which rows were written since [`Self::begin_update`]: pairs of rows that
+/// The table also knows which rows were written since the last update began: pairs of rows that
 /// stand still need no new query.
 #[derive(Clone, Debug)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {
@@ -92,12 +92,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// The rows written since [`Self::begin_update`].
+    /// The rows written since the last update began.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
     }
 
-    /// The row was written since [`Self::begin_update`].
+    /// The row was written since the last update began.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
         self.written[index as usize] == self.update

@@ -51,6 +51,7 @@ pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, SupportMap};
 pub use triangle::Triangle;
 
+use core::any::Any;
 use core::fmt::Debug;
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
@@ -60,7 +61,7 @@ use crate::math::{Pose, Real};
 ///
 /// Implement it for a type of your own to put that type into a world: give its box and say through
 /// [`Shape::geometry`] how queries shall see it.
-pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
+pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
     /// geometry of a built-in shape that yours stands for.
     fn geometry(&self) -> Geometry<'_, N, D>;
@@ -78,5 +79,29 @@ pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
         let aabb = self.local_aabb();
         let radius = segment::length_of(&aabb.half_extents());
         BoundingSphere::try_new(aabb.center(), radius).unwrap_or(BoundingSphere::unbounded())
+    }
+}
+
+/// Finding out which type a shape has: for dispatchers that treat a type of their own.
+///
+/// ```
+/// use impinge::dim2::na::Vector2;
+/// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+///
+/// let handle = ShapeHandle::new(Ball::new(2.0_f32));
+/// assert_eq!(handle.as_shape::<Ball<f32>>().map(Ball::radius), Some(2.0));
+/// assert!(!handle.is_shape::<Cuboid<f32>>());
+/// ```
+impl<N: Real, const D: usize> dyn Shape<N, D> {
+    /// The shape is of the type `S`.
+    #[must_use]
+    pub fn is_shape<S: Shape<N, D>>(&self) -> bool {
+        self.as_shape::<S>().is_some()
+    }
+
+    /// The shape as one of the type `S`; `None` if it is of another.
+    #[must_use]
+    pub fn as_shape<S: Shape<N, D>>(&self) -> Option<&S> {
+        (self as &dyn Any).downcast_ref()
     }
 }
