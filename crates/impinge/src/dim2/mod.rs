@@ -45,10 +45,15 @@ pub mod bounding_volume {
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
-    pub use crate::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
+    pub use crate::broad_phase::{
+        BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle, TreeVolume,
+    };
 }
 
 /// Exact answers for the pairs that the broad phase proposes.
+///
+/// Traits to implement name the dimension: `ContactDispatcher<N, 2>`, `Shape<N, 2>`,
+/// `NarrowPhase<N, 2, T>`.
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
@@ -56,9 +61,8 @@ pub mod narrow_phase {
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
-    /// Pairs with their contacts, as a narrow phase iterates over them.
+    /// Pairs with their contacts, as a narrow phase gives them.
     pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 2>;
-
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 2>;
     /// Chooses the library's own contact algorithm for every two solids.
@@ -99,6 +103,7 @@ pub mod world {
 
 /// Questions about one solid or two.
 pub mod query {
+    pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
         ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
         time_of_impact,
