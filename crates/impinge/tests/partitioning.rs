@@ -44,7 +44,9 @@ fn place<const D: usize>(random: &mut Random, side: usize) -> [f64; D] {
 
 /// Boxes of up to two units on a grid on which a few overlap; flat ones and copies are among them.
 fn scene<const D: usize>(random: &mut Random, count: usize) -> (usize, Vec<Corners<D>>) {
-    let side = (2..).find(|side: &usize| side.pow(u32::try_from(D).unwrap()) >= count).unwrap();
+    let dimension = u32::try_from(D).expect("small");
+    let holds = |side: &usize| side.pow(dimension) >= count;
+    let side = (2..).find(holds).expect("one is large enough");
     let mut boxes: Vec<Corners<D>> = Vec::new();
     for index in 0..count {
         let lo: [f64; D] = place(random, side);
@@ -127,7 +129,7 @@ fn rays<N: Space<D>, const D: usize>() {
                 .collect();
             let indices: Vec<usize> = expected.iter().map(|&(_, index)| index).collect();
             assert_eq!(tree.hit_by(&ray), indices, "{from:?} along {dir:?} of {count}");
-            expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
             let mut found = Vec::new();
             tree.visit_ray(&ray, N::INFINITY, |index, time| {
                 found.push((time.as_f64(), index));
@@ -185,7 +187,7 @@ fn nearest<N: Space<D>, const D: usize>() {
             // Squares are exact, so distances round from the same number in both scalars.
             let mut expected: Vec<(f64, usize)> =
                 (0..count).map(|index| (distance_squared(&boxes[index], &p), index)).collect();
-            expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
             let expected: Vec<(N, usize)> =
                 expected.iter().map(|&(squared, index)| (N::lit(squared).sqrt(), index)).collect();
             let mut found = Vec::new();
@@ -232,7 +234,7 @@ fn anywhere<N: Space<D>, const D: usize>() {
         let mut expected: Vec<(N, usize)> = (0..700)
             .filter_map(|index| Some((boxes[index].ray_interval(&ray)?.0, index)))
             .collect();
-        expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
         let mut found = Vec::new();
         tree.visit_ray(&ray, N::INFINITY, |index, time| {
             found.push((time, index));
@@ -242,7 +244,7 @@ fn anywhere<N: Space<D>, const D: usize>() {
         proposed += found.len();
         let mut expected: Vec<(N, usize)> =
             (0..700).map(|index| (boxes[index].distance_to_point(&origin), index)).collect();
-        expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
         let mut found = Vec::new();
         tree.visit_nearest(&origin, N::INFINITY, |index, distance| {
             found.push((distance, index));
@@ -267,7 +269,10 @@ fn unbounded<N: Space<D>, const D: usize>() {
         let found = tree.nearest(&point(p), N::INFINITY).map(|(_, d)| (d * d).as_f64());
         let squares = boxes.iter().map(|corners| distance_squared(corners, &p));
         let least = squares.fold(f64::INFINITY, f64::min);
-        assert!((found.unwrap() - least).abs() <= 4.0 * N::EPSILON.as_f64() * least, "{p:?}");
+        assert!(
+            (found.expect("there are boxes") - least).abs() <= 4.0 * N::EPSILON.as_f64() * least,
+            "{p:?}"
+        );
         let everything = tree.overlapping(&Aabb::unbounded());
         assert_eq!(everything, (0..60).collect::<Vec<_>>(), "all boxes lie in all of space");
     }
@@ -320,7 +325,7 @@ fn not_a_number<N: Space<D>, const D: usize>() {
                 assert_eq!(tree.first_hit(&ray, N::INFINITY), None, "{ray:?}");
             }
             assert_eq!(tree.nearest(&p, N::INFINITY), None, "{p}");
-            let everywhere: &[usize] = if bad == bad { &[1] } else { &[] };
+            let everywhere: &[usize] = if bad.partial_cmp(&N::ZERO).is_some() { &[1] } else { &[] };
             assert_eq!(tree.containing(&p), everywhere, "{p}");
         }
     }

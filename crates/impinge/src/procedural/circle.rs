@@ -40,6 +40,7 @@ pub(super) fn direction<N: Real>(index: u32, count: u32) -> Vector<N, 2> {
 mod tests {
     use super::*;
 
+    #[expect(clippy::disallowed_methods, reason = "another source to compare with")]
     fn check<N: Real>() {
         let quarters = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]];
         for (index, expected) in (0..).zip(quarters) {
@@ -62,7 +63,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::disallowed_methods, reason = "another source to compare with")]
     fn directions_are_those_of_the_library() {
         check::<f32>();
         #[cfg(feature = "f64")]

@@ -64,7 +64,8 @@ fn capsules<N: Real>() {
     let mut random = Random::new(7);
     for count in COUNTS {
         let [a, b] = [0, 1].map(|_| [0, 1].map(|_| random.range(-3.0, 3.0)));
-        let capsule = Capsule::try_from_ends(point::<N>(a), point(b), N::lit(0.75)).unwrap();
+        let capsule =
+            Capsule::try_from_ends(point::<N>(a), point(b), N::lit(0.75)).expect("good numbers");
         // Rounded to the scalar, as the capsule sees its ends.
         let ends = doubles(&[*capsule.segment().a(), *capsule.segment().b()]);
         let outline = plane::capsule(&capsule, count);
@@ -116,7 +117,7 @@ fn powers_of_two_scale<N: Real>() {
         let outlines = |scale: N| {
             let [a, b] =
                 [[0.3, 0.7], [-1.1, 0.4]].map(|p| Point::from(point::<N>(p).coords * scale));
-            let capsule = Capsule::try_from_ends(a, b, N::lit(0.6) * scale).unwrap();
+            let capsule = Capsule::try_from_ends(a, b, N::lit(0.6) * scale).expect("good numbers");
             [
                 plane::ball(&Ball::new(N::lit(1.3) * scale), 11).points,
                 plane::capsule(&capsule, 9).points,
@@ -131,9 +132,9 @@ fn powers_of_two_scale<N: Real>() {
 
 fn nothing_is_no_trouble<N: Real>() {
     let middle = point::<N>([1.0, 2.0]);
-    let dot = Capsule::try_from_ends(middle, middle, N::ZERO).unwrap();
+    let dot = Capsule::try_from_ends(middle, middle, N::ZERO).expect("good numbers");
     assert!(plane::capsule(&dot, 6).points.iter().all(|p| *p == middle), "a point eight times");
-    let disk = Capsule::try_from_ends(middle, middle, N::ONE).unwrap();
+    let disk = Capsule::try_from_ends(middle, middle, N::ONE).expect("good numbers");
     let points = doubles(&plane::capsule(&disk, 6).points);
     let noise = 4.0 * epsilon::<N>();
     let is_on = |p: &[f64; 2]| ((p[0] - 1.0).hypot(p[1] - 2.0) - 1.0).abs() <= noise;

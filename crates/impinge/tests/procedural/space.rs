@@ -109,7 +109,8 @@ fn capsules<N: Real>() {
     let mut random = Random::new(11);
     for count in COUNTS {
         let [a, b] = [0, 1].map(|_| [0, 1, 2].map(|_| random.range(-3.0, 3.0)));
-        let capsule = Capsule::try_from_ends(point::<N>(a), point(b), N::lit(0.75)).unwrap();
+        let capsule =
+            Capsule::try_from_ends(point::<N>(a), point(b), N::lit(0.75)).expect("good numbers");
         let [a, b] =
             [capsule.segment().a(), capsule.segment().b()].map(|end| end.coords.map(N::as_f64));
         let surface = space::capsule(&capsule, count);
@@ -159,6 +160,18 @@ fn cones<N: Real>() {
         };
         let gap = widest_gap(&surface, 3.0, depth);
         assert_gap::<N>(gap, 3.0 * (1.0 - (PI / f64::from(n)).cos()), 3.0);
+        let at_tip =
+            surface.triangles.iter().zip(&surface.normals).flat_map(|(triangle, normals)| {
+                let [a, b, c] = triangle.map(|index| surface.vertices[index as usize]);
+                let sides = [c - b, a - c, b - a];
+                (0..3)
+                    .filter(|&k| triangle[k] == 0)
+                    .map(move |k| sides[k].dot(&normals[k]).as_f64())
+            });
+        let leans: Vec<f64> = at_tip.collect();
+        assert_eq!(leans.len(), n as usize, "each side has a normal at the tip");
+        let is_middle = |lean: &f64| lean.abs() <= 32.0 * epsilon::<N>();
+        assert!(leans.iter().all(is_middle), "square to the rim: {leans:?}");
         let slope = surface.normals[0][0].map(N::as_f64);
         assert!((slope.y - 0.6).abs() <= 4.0 * epsilon::<N>(), "by hand: {slope}");
     }
@@ -218,7 +231,7 @@ fn powers_of_two_scale<N: Real>() {
                 .map(|p| Point::from(point::<N>(p).coords * scale));
             [
                 space::ball(&Ball::new(size(1.3)), 11),
-                space::capsule(&Capsule::try_from_ends(a, b, size(0.6)).unwrap(), 9),
+                space::capsule(&Capsule::try_from_ends(a, b, size(0.6)).expect("good numbers"), 9),
                 space::cylinder(&Cylinder::new(size(0.7), size(0.3)), 7),
                 space::cone(&Cone::new(size(0.7), size(0.3)), 7),
             ]
@@ -236,7 +249,10 @@ fn nothing_is_no_trouble<N: Real>() {
     let middle = Point::<N, 3>::new(one, one, one);
     let surfaces = [
         (space::ball(&Ball::new(zero), 8), 2 + 8 * 3),
-        (space::capsule(&Capsule::try_from_ends(middle, middle, zero).unwrap(), 8), 2 + 8 * 4),
+        (
+            space::capsule(&Capsule::try_from_ends(middle, middle, zero).expect("good numbers"), 8),
+            2 + 8 * 4,
+        ),
         (space::cylinder(&Cylinder::new(zero, one), 8), 18),
         (space::cylinder(&Cylinder::new(one, zero), 8), 18),
         (space::cone(&Cone::new(zero, one), 8), 10),
