@@ -83,7 +83,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 /// What a world asks of the floors below it, and of its own part that knows no users' data.
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
-    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry) -> Result<(), WorldError>,
+    pub(crate) set_isometry: SetIsometryFn<N, D>,
     pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
@@ -93,6 +93,8 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, &mut Events),
 }
 
+type SetIsometryFn<N, const D: usize> =
+    fn(&mut Bodies<N, D>, u32, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
     fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
 

@@ -54,7 +54,10 @@ pub mod narrow_phase {
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
         IdAllocator, PairProximityDetector, ProximityDetector, ProximityDispatcher, ProximityPair,
     };
-    pub use crate::world::NarrowPhase;
+    pub use crate::world::{NarrowPhase, ProximityPairs};
+
+    /// Pairs with their contacts, as a narrow phase iterates over them.
+    pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 2>;
 
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 2>;
@@ -113,6 +116,8 @@ pub mod query {
     pub type Contact<N> = crate::query::Contact<N, 2>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 2>;
+    /// One solid's share of a contact, for algorithms of one's own.
+    pub type ContactSide<N> = crate::query::ContactSide<N, 2>;
     /// What a solid looks like near a contact.
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 2>;
     /// A contact, how it moves, and its name.

@@ -39,6 +39,7 @@ pub use cone::Cone;
 pub use convex_hull::ConvexHull;
 pub use convex_polygon::ConvexPolygon;
 pub use cuboid::Cuboid;
+pub(crate) use cuboid::FacingPart;
 pub use cylinder::Cylinder;
 pub use error::ShapeError;
 pub use feature::{Feature, FeatureId};
@@ -51,6 +52,7 @@ pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, SupportMap};
 pub use triangle::Triangle;
 
+use core::any::Any;
 use core::fmt::Debug;
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
@@ -60,7 +62,7 @@ use crate::math::{Pose, Real};
 ///
 /// Implement it for a type of your own to put that type into a world: give its box and say through
 /// [`Shape::geometry`] how queries shall see it.
-pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
+pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
     /// geometry of a built-in shape that yours stands for.
     fn geometry(&self) -> Geometry<'_, N, D>;
@@ -78,5 +80,14 @@ pub trait Shape<N: Real, const D: usize>: Debug + Send + Sync + 'static {
         let aabb = self.local_aabb();
         let radius = segment::length_of(&aabb.half_extents());
         BoundingSphere::try_new(aabb.center(), radius).unwrap_or(BoundingSphere::unbounded())
+    }
+}
+
+impl<N: Real, const D: usize> dyn Shape<N, D> {
+    /// The shape as the type that it was made as, if it is one of type `S`: a dispatcher tells by
+    /// this which shapes it has an algorithm for.
+    #[must_use]
+    pub fn as_shape<S: Shape<N, D>>(&self) -> Option<&S> {
+        (self as &dyn Any).downcast_ref()
     }
 }
