@@ -5,7 +5,7 @@ use core::fmt;
 use crate::bounding_volume::AabbError;
 
 /// Why [`BoxTree::try_from_boxes`](super::BoxTree::try_from_boxes) refused its boxes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BoxTreeError {
     /// A box is inverted or holds a NaN, as arithmetic on good boxes may yield.
