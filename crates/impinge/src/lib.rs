@@ -1,4 +1,57 @@
-//! Collision detection for the plane and for space.
+//! Collision detection for the plane and for space: who touches whom, where, and since when.
+//!
+//! You move your objects by your own rules; there are no forces here. A world tells you, at each
+//! update, which pairs came to touch or parted, where their contact points are, how deep and along
+//! which direction. It also answers rays, points and boxes, and [`query`] any question about two
+//! shapes on their own.
+//!
+//! ```
+//! use impinge::dim3::na::{Isometry3, Vector3};
+//! use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle};
+//! use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+//!
+//! let mut world = CollisionWorld::new(0.02_f32);
+//! let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+//! let floor = ShapeHandle::new(Cuboid::new(Vector3::new(10.0, 1.0, 10.0)));
+//! let ball = ShapeHandle::new(Ball::new(0.5));
+//! world.add(Isometry3::identity(), floor, everybody, contacts, "floor");
+//! world.add(Isometry3::translation(0.0, 1.25, 0.0), ball, everybody, contacts, "ball");
+//! world.update();
+//! for (object1, object2, manifold) in world.contact_manifolds() {
+//!     let contact = manifold.deepest_contact().expect("not empty").contact;
+//!     assert_eq!((*object1.data(), *object2.data()), ("floor", "ball"));
+//!     assert_eq!((contact.depth, *contact.normal), (0.25, Vector3::y()));
+//! }
+//! ```
+//!
+//! # Where to begin
+//!
+//! * [`dim2`] and [`dim3`] hold the names to type: everything with the dimension filled in. The
+//!   modules beside them hold the same things for every dimension `D`; write code against those only
+//!   where it shall serve both.
+//! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
+//!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
+//! * [`shape`] has the solids. Positions are nalgebra's isometries, re-exported as `na`.
+//!
+//! # What holds everywhere
+//!
+//! * Intersecting, a distance of zero, and a contact with a depth of zero or more are one fact (of
+//!   half-spaces that overlap without bound alone there is no contact). Touching counts, and so does
+//!   a distance equal to a prediction or margin.
+//! * A depth is positive inside. Normals are unit vectors from the first solid to the second. Angles
+//!   are in radians. Lengths and times have the units that you give them.
+//! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
+//! * The same calls give the same bits, on every run, machine and number of threads. Pairs, events
+//!   and answers come in order of the handles.
+//! * Methods that panic on misuse have a `try_` twin that returns the error; either way nothing was
+//!   changed.
+//!
+//! # Features
+//!
+//! * `f64` (default): the library compiled for `f64` too.
+//! * `parallel`: an update on several threads, with the same bits.
+//! * `serde`: `Serialize` and `Deserialize` for plain values.
+//! * `mint`: conversions to and from other vector libraries, through nalgebra.
 #![forbid(unsafe_code)]
 
 pub mod bounding_volume;
@@ -12,6 +65,8 @@ mod guide;
 pub mod math;
 pub mod narrow_phase;
 pub mod pairs;
+pub mod partitioning;
+pub mod procedural;
 pub mod query;
 pub mod shape;
 #[doc(hidden)]

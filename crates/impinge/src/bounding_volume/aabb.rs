@@ -15,21 +15,39 @@ pub struct Aabb<N: Real, const D: usize> {
     maxs: Point<N, D>,
 }
 
-/// Why two corners make no box. The number is the axis at fault: 0 for x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Why two corners make no box. Values are given as `f64`, exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AabbError {
-    /// A coordinate on this axis is NaN.
-    NotANumber(usize),
-    /// On this axis the first corner lies beyond the second.
-    Inverted(usize),
+    /// A coordinate is NaN.
+    NotANumber {
+        /// The axis at fault: 0 for x.
+        axis: usize,
+        /// The coordinate of the first corner on this axis.
+        min: f64,
+        /// The coordinate of the second corner on this axis.
+        max: f64,
+    },
+    /// The first corner lies beyond the second.
+    Inverted {
+        /// The axis at fault: 0 for x.
+        axis: usize,
+        /// The coordinate of the first corner on this axis.
+        min: f64,
+        /// The coordinate of the second corner on this axis.
+        max: f64,
+    },
 }
 
 impl fmt::Display for AabbError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotANumber(axis) => write!(f, "a box coordinate on axis {axis} is not a number"),
-            Self::Inverted(axis) => write!(f, "the box is inverted on axis {axis}"),
+            Self::NotANumber { axis, min, max } => {
+                write!(f, "the box is not a number on axis {axis}: from {min} to {max}")
+            }
+            Self::Inverted { axis, min, max } => {
+                write!(f, "the box is inverted on axis {axis}: from {min} to {max}")
+            }
         }
     }
 }
@@ -42,10 +60,11 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// # Panics
     /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis; [`Aabb::try_new`] returns these.
     #[must_use]
+    #[track_caller]
     pub fn new(mins: Point<N, D>, maxs: Point<N, D>) -> Self {
         match Self::try_new(mins, maxs) {
             Ok(aabb) => aabb,
-            Err(error) => panic!("{error}: mins {mins}, maxs {maxs}"),
+            Err(error) => panic!("{error}"),
         }
     }
 
@@ -56,12 +75,13 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     pub fn try_new(mins: Point<N, D>, maxs: Point<N, D>) -> Result<Self, AabbError> {
         for axis in 0..D {
             let (low, high) = (mins[axis], maxs[axis]);
+            let (min, max) = (low.as_f64(), high.as_f64());
             if low > high {
-                return Err(AabbError::Inverted(axis));
+                return Err(AabbError::Inverted { axis, min, max });
             }
             let ordered = low <= high;
             if !ordered {
-                return Err(AabbError::NotANumber(axis));
+                return Err(AabbError::NotANumber { axis, min, max });
             }
         }
         Ok(Self { mins, maxs })
@@ -228,9 +248,11 @@ mod tests {
     #[test]
     fn bad_corners_are_refused() {
         let nan = Aabb::try_new(P::new(0.0, f64::NAN), P::new(1.0, 1.0));
-        assert_eq!(nan, Err(AabbError::NotANumber(1)), "NaN on y");
+        assert!(matches!(nan, Err(AabbError::NotANumber { axis: 1, .. })), "NaN on y");
         let inverted = Aabb::try_new(P::new(2.0, 0.0), P::new(1.0, 1.0));
-        assert_eq!(inverted, Err(AabbError::Inverted(0)), "inverted on x");
+        let error = inverted.expect_err("inverted on x");
+        assert_eq!(error, AabbError::Inverted { axis: 0, min: 2.0, max: 1.0 }, "inverted on x");
+        assert_eq!(error.to_string(), "the box is inverted on axis 0: from 2 to 1", "in words");
     }
 
     #[test]

@@ -41,6 +41,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
     /// # Panics
     /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns these.
     #[must_use]
+    #[track_caller]
     pub fn new(center: Point<N, D>, radius: N) -> Self {
         match Self::try_new(center, radius) {
             Ok(sphere) => sphere,

@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 
+use super::error::or_panic;
 use super::handle::Handles;
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
@@ -65,8 +66,9 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     /// # Panics
     /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns these.
     #[must_use]
+    #[track_caller]
     pub fn new(margin: N) -> Self {
-        Self::try_new(margin).unwrap_or_else(|error| panic!("{error}"))
+        or_panic(Self::try_new(margin))
     }
 
     /// A broad phase without objects, whose volumes are loosened by `margin`.

@@ -30,9 +30,20 @@ impl fmt::Display for BroadPhaseError {
             Self::BadVolume(None) => {
                 f.write_str("the volume of the new proxy is inverted or not a number")
             }
-            Self::BadMargin(margin) => write!(f, "the margin {margin} is not finite and positive"),
+            Self::BadMargin(margin) => {
+                write!(f, "the margin is {margin}: it must be finite and not negative")
+            }
         }
     }
 }
 
 impl std::error::Error for BroadPhaseError {}
+
+/// The value, or a panic with the error's text: the end of every panicking method.
+#[track_caller]
+pub(super) fn or_panic<S>(result: Result<S, BroadPhaseError>) -> S {
+    match result {
+        Ok(value) => value,
+        Err(error) => panic!("{error}"),
+    }
+}

@@ -1,5 +1,6 @@
 //! The interface of every broad phase.
 
+use super::error::or_panic;
 use super::{BroadPhaseError, ProxyHandle};
 use crate::bounding_volume::BoundingVolume;
 use crate::math::Real;
@@ -96,8 +97,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     ///
     /// # Panics
     /// If the volume is inverted or NaN.
+    #[track_caller]
     fn create_proxy(&mut self, bv: BV, data: T) -> ProxyHandle {
-        self.try_create_proxy(bv, data).unwrap_or_else(|error| panic!("{error}"))
+        or_panic(self.try_create_proxy(bv, data))
     }
 
     /// Removes a set of objects at once.
@@ -107,17 +109,18 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     ///
     /// # Panics
     /// If a handle is stale or occurs twice. Nothing is removed then.
+    #[track_caller]
     fn remove(&mut self, handles: &[ProxyHandle], callback: &mut dyn FnMut(&T, &T)) {
-        self.try_remove(handles, callback).unwrap_or_else(|error| panic!("{error}"));
+        or_panic(self.try_remove(handles, callback));
     }
 
     /// Replaces the volume of an object at the next update; the last of several calls counts.
     ///
     /// # Panics
     /// If the handle is stale, or the volume inverted or NaN.
+    #[track_caller]
     fn deferred_set_bounding_volume(&mut self, handle: ProxyHandle, bv: BV) {
-        let done = self.try_deferred_set_bounding_volume(handle, bv);
-        done.unwrap_or_else(|error| panic!("{error}"));
+        or_panic(self.try_deferred_set_bounding_volume(handle, bv));
     }
 
     /// At the next update, the filter is asked again about every object whose volume overlaps this
@@ -126,9 +129,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     ///
     /// # Panics
     /// If the handle is stale.
+    #[track_caller]
     fn deferred_recompute_all_proximities_with(&mut self, handle: ProxyHandle) {
-        let done = self.try_deferred_recompute_all_proximities_with(handle);
-        done.unwrap_or_else(|error| panic!("{error}"));
+        or_panic(self.try_deferred_recompute_all_proximities_with(handle));
     }
 
     /// Calls `visit` for the objects whose exact volumes the ray meets at or before `max_time`,

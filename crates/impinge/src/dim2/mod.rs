@@ -45,10 +45,15 @@ pub mod bounding_volume {
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
-    pub use crate::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
+    pub use crate::broad_phase::{
+        BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle, TreeVolume,
+    };
 }
 
 /// Exact answers for the pairs that the broad phase proposes.
+///
+/// Traits to implement name the dimension: `ContactDispatcher<N, 2>`, `Shape<N, 2>`,
+/// `NarrowPhase<N, 2, T>`.
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
@@ -56,9 +61,8 @@ pub mod narrow_phase {
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
-    /// Pairs with their contacts, as a narrow phase iterates over them.
+    /// Pairs with their contacts, as a narrow phase gives them.
     pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 2>;
-
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 2>;
     /// Chooses the library's own contact algorithm for every two solids.
@@ -99,6 +103,7 @@ pub mod world {
 
 /// Questions about one solid or two.
 pub mod query {
+    pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
         ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
         time_of_impact,
@@ -153,6 +158,40 @@ pub mod shape {
 /// Shapes from points.
 pub mod transformation {
     pub use crate::transformation::convex_hull2 as convex_hull;
+}
+
+/// The outlines of the shapes, as points.
+///
+/// ```
+/// use impinge::dim2::math::Vector;
+/// use impinge::dim2::procedural;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let outline = procedural::cuboid(&Cuboid::new(Vector::new(2.0_f32, 1.0)));
+/// assert_eq!(outline.points.len(), 4);
+/// assert_eq!(outline.points[1], [2.0, 1.0].into());
+/// ```
+pub mod procedural {
+    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
+}
+
+/// Searches among boxes of the user's own.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::partitioning::BoxTree;
+///
+/// let boxes = [0.0_f32, 2.0, 4.0].map(|x| Aabb::new(Point::new(x, 0.0), Point::new(x + 1.0, 1.0)));
+/// let tree = BoxTree::from_boxes(&boxes);
+/// assert_eq!(tree.containing(&Point::new(2.9, 0.5)), [1]);
+/// ```
+pub mod partitioning {
+    pub use crate::partitioning::BoxTreeError;
+
+    /// A tree over boxes that do not move.
+    pub type BoxTree<N> = crate::partitioning::BoxTree<N, 2>;
 }
 
 /// Numbers, vectors and poses.

@@ -45,10 +45,15 @@ pub mod bounding_volume {
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
-    pub use crate::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
+    pub use crate::broad_phase::{
+        BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle, TreeVolume,
+    };
 }
 
 /// Exact answers for the pairs that the broad phase proposes.
+///
+/// Traits to implement name the dimension: `ContactDispatcher<N, 3>`, `Shape<N, 3>`,
+/// `NarrowPhase<N, 3, T>`.
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
@@ -56,9 +61,8 @@ pub mod narrow_phase {
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
-    /// Pairs with their contacts, as a narrow phase iterates over them.
+    /// Pairs with their contacts, as a narrow phase gives them.
     pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 3>;
-
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 3>;
     /// Chooses the library's own contact algorithm for every two solids.
@@ -99,6 +103,7 @@ pub mod world {
 
 /// Questions about one solid or two.
 pub mod query {
+    pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
         ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
         time_of_impact,
@@ -154,6 +159,40 @@ pub mod shape {
 /// Shapes from points.
 pub mod transformation {
     pub use crate::transformation::{IndexedHull, convex_hull3 as convex_hull};
+}
+
+/// The surfaces of the shapes, as triangles.
+///
+/// ```
+/// use impinge::dim3::procedural;
+/// use impinge::dim3::shape::Cylinder;
+///
+/// let surface = procedural::cylinder(&Cylinder::new(1.0_f32, 0.5), 24);
+/// assert_eq!((surface.vertices.len(), surface.triangles.len()), (50, 96));
+/// ```
+pub mod procedural {
+    pub use crate::procedural::space::{
+        ball, capsule, cone, convex_hull, cuboid, cylinder, triangle,
+    };
+    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
+}
+
+/// Searches among boxes of the user's own.
+///
+/// ```
+/// use impinge::dim3::bounding_volume::Aabb;
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::partitioning::BoxTree;
+///
+/// let boxes = [0.0_f32, 2.0, 4.0].map(|x| Aabb::new(Point::new(x, 0.0, 0.0), Point::new(x + 1.0, 1.0, 1.0)));
+/// let tree = BoxTree::from_boxes(&boxes);
+/// assert_eq!(tree.containing(&Point::new(2.9, 0.5, 0.5)), [1]);
+/// ```
+pub mod partitioning {
+    pub use crate::partitioning::BoxTreeError;
+
+    /// A tree over boxes that do not move.
+    pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
 /// Numbers, vectors and poses.

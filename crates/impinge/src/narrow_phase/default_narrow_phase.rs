@@ -149,7 +149,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
                 let (mut entry, moved) = self.lanes.contacts[usize::from(old)].swap_remove(place);
                 self.note_move(moved, place);
-                entry.request = request(linear, angular, max_points);
+                entry.request = ManifoldRequest::new(linear, angular, max_points);
                 let place = self.lanes.contacts[usize::from(new)].push(key, entry);
                 self.locations[index] = Location { lane: new_lane, place };
             }
@@ -194,7 +194,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let Lane::Contacts(group) = lane else { unreachable!("the query asks for contacts") };
             let (touch, change) = carried.into_touch();
             let number = self.ids.allocate();
-            let entry = ContactEntry::new(request(linear, angular, max_points), number, touch);
+            let entry =
+                ContactEntry::new(ManifoldRequest::new(linear, angular, max_points), number, touch);
             let place = self.lanes.contacts[usize::from(group)].push(key, entry);
             return (Location { lane, place }, change);
         }
@@ -252,15 +253,6 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
 /// Where pairs without an algorithm are.
 const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
-
-/// What a pair's contacts are asked for.
-fn request<N: Space<D>, const D: usize>(
-    linear: N,
-    angular: N,
-    max_points: usize,
-) -> ManifoldRequest<N> {
-    ManifoldRequest { prediction: linear, sine: angular.sine_cosine().0, max_points }
-}
 
 /// Puts what happened to a pair into events.
 pub(super) fn push_change<N: Space<D>, const D: usize>(

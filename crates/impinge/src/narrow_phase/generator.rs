@@ -63,11 +63,7 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         let (pose1, pose2) = (N::pose(ma), N::pose(mb));
         let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b };
         let angle = prediction.angular1() + prediction.angular2();
-        let request = ManifoldRequest {
-            prediction: prediction.linear(),
-            sine: angle.sine_cosine().0,
-            max_points: self.max_points,
-        };
+        let request = ManifoldRequest::new(prediction.linear(), angle, self.max_points);
         let number = *self.number.get_or_insert_with(|| ids.allocate());
         let tables = N::tables();
         (tables.update_contacts)(&mut self.state, &posed, &request);

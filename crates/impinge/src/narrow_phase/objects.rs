@@ -92,12 +92,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// The rows written since [`Self::begin_update`].
+    /// The rows written since the last update began.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
     }
 
-    /// The row was written since [`Self::begin_update`].
+    /// The row was written since the last update began.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
         self.written[index as usize] == self.update

@@ -12,7 +12,8 @@ pub enum GeometricQueryType<N: Real> {
     ///
     /// Contact points exist while the solids penetrate or are no farther apart than the *sum* of the
     /// linear predictions of both objects. The sum of the angular predictions adds the points that
-    /// would come that near if the solids were turned by that angle.
+    /// would come that near if the solids were turned by that angle; above a right angle it counts
+    /// as one.
     Contacts(N, N),
     /// Proximity, given the margin: farther apart than the *sum* of the margins is disjoint.
     ///

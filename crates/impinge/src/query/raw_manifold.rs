@@ -17,6 +17,21 @@ pub(crate) struct ManifoldRequest<N: Real> {
     pub(crate) max_points: usize,
 }
 
+impl<N: Real> ManifoldRequest<N> {
+    /// For solids that may turn by `angle` radians: above a right angle no point comes nearer than
+    /// at a right angle, and a negative angle or NaN counts as zero.
+    pub(crate) fn new(prediction: N, angle: N, max_points: usize) -> Self {
+        let sine = if angle > N::frac_pi_2() {
+            N::ONE
+        } else if angle > N::ZERO {
+            angle.sine_cosine().0
+        } else {
+            N::ZERO
+        };
+        Self { prediction, sine, max_points }
+    }
+}
+
 /// One point of a manifold: `point1` on the first solid, `point1 + normal · distance` on the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RawPoint<N: Real, const D: usize> {

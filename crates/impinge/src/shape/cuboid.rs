@@ -350,7 +350,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     fn part(id: FeatureId, dimension: usize) -> Part<D> {
         match Part::named(id) {
             Some(part) if part.dimension() == dimension => part,
-            _ => panic!("a cuboid has no part of dimension {dimension} named {id:?}"),
+            _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
         }
     }
 }

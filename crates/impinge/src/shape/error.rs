@@ -56,7 +56,12 @@ impl fmt::Display for ShapeError {
             }
             Self::PointNotFinite { index } => write!(f, "point {index} is not finite"),
             Self::Degenerate { dimension } => {
-                write!(f, "the points only span something of dimension {dimension}")
+                let where_they_are = match dimension {
+                    0 => "coincide",
+                    1 => "lie on one line",
+                    _ => "lie in one plane",
+                };
+                write!(f, "the points span no solid: they {where_they_are}")
             }
             Self::NotConvex { index } => write!(f, "the outline is not convex at point {index}"),
         }

@@ -31,6 +31,15 @@ impl FeatureId {
             Self::Edge(index)
         }
     }
+
+    /// What [`Self::flat`] calls a part of `dimension`, for messages.
+    pub(super) const fn word<const D: usize>(dimension: usize) -> &'static str {
+        match Self::flat::<D>(dimension, 0) {
+            Self::Vertex(_) => "vertex",
+            Self::Edge(_) => "edge",
+            Self::Face(_) => "face",
+        }
+    }
 }
 
 /// The part of a core that faces some direction, as a point, a segment or a flat convex polygon.

@@ -83,9 +83,24 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     }
 }
 
+/// Finding out which type a shape has: for dispatchers that treat a type of their own.
+///
+/// ```
+/// use impinge::dim2::na::Vector2;
+/// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+///
+/// let handle = ShapeHandle::new(Ball::new(2.0_f32));
+/// assert_eq!(handle.as_shape::<Ball<f32>>().map(Ball::radius), Some(2.0));
+/// assert!(!handle.is_shape::<Cuboid<f32>>());
+/// ```
 impl<N: Real, const D: usize> dyn Shape<N, D> {
-    /// The shape as the type that it was made as, if it is one of type `S`: a dispatcher tells by
-    /// this which shapes it has an algorithm for.
+    /// The shape is of the type `S`.
+    #[must_use]
+    pub fn is_shape<S: Shape<N, D>>(&self) -> bool {
+        self.as_shape::<S>().is_some()
+    }
+
+    /// The shape as one of the type `S`; `None` if it is of another.
     #[must_use]
     pub fn as_shape<S: Shape<N, D>>(&self) -> Option<&S> {
         (self as &dyn Any).downcast_ref()

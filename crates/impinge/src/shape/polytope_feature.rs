@@ -91,7 +91,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     fn place(id: FeatureId, dimension: usize, count: usize) -> u32 {
         let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
         let is_there = (index as usize) < count && id == FeatureId::flat::<D>(dimension, index);
-        assert!(is_there, "the solid has no part of dimension {dimension} named {id:?}");
+        assert!(is_there, "the solid has no {} named {id:?}", FeatureId::word::<D>(dimension));
         index
     }
 

@@ -194,7 +194,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     fn index(id: FeatureId, dimension: usize) -> usize {
         let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
         let fits = index < 3 && id == FeatureId::flat::<D>(dimension, index);
-        assert!(fits, "a triangle has no part of dimension {dimension} named {id:?}");
+        assert!(fits, "a triangle has no {} named {id:?}", FeatureId::word::<D>(dimension));
         index as usize
     }
 

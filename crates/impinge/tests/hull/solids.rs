@@ -114,7 +114,7 @@ fn features_of_polygons_are_consistent() {
 }
 
 #[test]
-#[should_panic(expected = "no part of dimension 0 named Vertex(8)")]
+#[should_panic(expected = "no vertex named Vertex(8)")]
 fn a_feature_that_is_not_there_is_named() {
     let _ = ConvexHull::<f32>::from_points(&cast(&cube())).vertex(FeatureId::Vertex(8));
 }

@@ -135,10 +135,10 @@ impl<N: Real, const D: usize> Facet<N, D> {
             return self.keep_farthest(outward);
         }
         let turn = if area < N::ZERO { -N::ONE } else { N::ONE };
-        for index in 0..self.corners.len() {
-            let side = self.side(index);
-            let inward = Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm());
-            self.inward.push(inward);
+        self.inward = SmallVec::from_elem(Vector::<N, 2>::zeros(), self.corners.len());
+        for ((from, to), inward) in sides(&self.corners).zip(&mut self.inward) {
+            let side = to.flat - from.flat;
+            *inward = Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm());
         }
     }
 
@@ -186,8 +186,8 @@ impl<N: Real, const D: usize> Facet<N, D> {
     fn area_and_longest_side(&self) -> (N, usize) {
         let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.corners[0].flat;
-        for index in 0..self.corners.len() {
-            let (arm, side) = (self.corners[index].flat - origin, self.side(index));
+        for (index, (from, to)) in sides(&self.corners).enumerate() {
+            let (arm, side) = (from.flat - origin, to.flat - from.flat);
             area += cross2(&arm, &side);
             let squared = side.norm_squared();
             if squared > most {
@@ -345,12 +345,24 @@ impl Which {
     }
 }
 
+/// Each corner and the one after it.
+#[inline]
+fn sides<N: Real, const D: usize>(
+    corners: &[Corner<N, D>],
+) -> impl Iterator<Item = (&Corner<N, D>, &Corner<N, D>)> {
+    let last = corners.last().zip(corners.first());
+    corners.windows(2).map(|pair| (&pair[0], &pair[1])).chain(last)
+}
+
 /// Merges each corner with those that follow it at the same place; the last one's side leads on.
 fn merge_coincident<N: Real, const D: usize>(
     corners: &mut SmallVec<[Corner<N, D>; 8]>,
     tolerance: N,
 ) {
     let apart = |a: &Corner<N, D>, b: &Corner<N, D>| max_component(&(a.flat - b.flat)) > tolerance;
+    if sides(corners.as_slice()).all(|(a, b)| apart(a, b)) {
+        return;
+    }
     let mut kept = 0;
     for index in 1..corners.len() {
         if apart(&corners[kept], &corners[index]) {

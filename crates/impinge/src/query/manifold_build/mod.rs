@@ -12,6 +12,7 @@
 //! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
 mod box_faces;
+mod box_sides;
 mod facet;
 mod frame;
 mod half_space;
@@ -76,12 +77,15 @@ pub(crate) fn contacts3<N: Real>(
     }
 }
 
-/// The manifold of a pair in the plane, from nothing.
+/// The manifold of a pair in the plane, from nothing; as [`contacts3`].
 pub(crate) fn contacts2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
+    if box_sides::build(pair, request, out) {
+        return;
+    }
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
@@ -183,7 +187,7 @@ fn at_witness_between<N: Real, const D: usize>(
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
 /// rounding, at most `limit`, one that the previous manifold held, then the deepest.
-fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, limit: N) -> usize {
+fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     let rank = |index: usize| {
         let candidate = &candidates[index];
         let is_level = candidate.distance <= limit;

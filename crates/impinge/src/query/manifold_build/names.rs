@@ -2,14 +2,13 @@
 
 use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
-use super::overlap::Candidates;
 use crate::math::Real;
 
 /// Gives candidates the numbers of the old points on the same pair of features: each number to one
 /// candidate, the nearest if several share the features, as they do on curved surfaces.
 pub(super) fn inherit<N: Real, const D: usize>(
     old: &[RawPoint<N, D>],
-    candidates: &mut Candidates<N, D>,
+    candidates: &mut [Candidate<N, D>],
 ) {
     for point in old {
         let features = [point.feature1, point.feature2];
@@ -25,7 +24,7 @@ pub(super) fn inherit<N: Real, const D: usize>(
 
 /// Replaces the points of a manifold, in the order of their numbers; those without one get the next.
 pub(super) fn settle<N: Real, const D: usize>(
-    candidates: &Candidates<N, D>,
+    candidates: &[Candidate<N, D>],
     chosen: &[usize],
     out: &mut RawManifold<N, D>,
 ) {

@@ -3,7 +3,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::wrong_kinds;
-use crate::math::{Point, Pose, Real, Vector, cross2, max, min, unit};
+use crate::math::{Point, Pose, Real, Vector, cross2, max, unit};
 use crate::query::Pair;
 use crate::shape::{Kind, Polytope};
 
@@ -77,16 +77,6 @@ impl<N: Real> Outline<N> {
             *normal = pose.vector(normal);
         }
         self
-    }
-
-    /// How far the outline reaches from the origin against and along `direction`.
-    #[inline]
-    pub(super) fn range(&self, direction: &Vector<N, 2>) -> (N, N) {
-        let first = direction.dot(&self.vertices[0].coords);
-        self.vertices[1..].iter().fold((first, first), |(low, high), vertex| {
-            let along = direction.dot(&vertex.coords);
-            (min(along, low), max(along, high))
-        })
     }
 
     /// The index of the vertex farthest along `direction`, the first of equals.

@@ -7,6 +7,7 @@
 //! best normal.
 
 use super::outline::Outline;
+use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, perp, unit};
@@ -24,7 +25,11 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     let rounding = outline1.rounding + outline2.rounding;
     let noise = N::lit(4.0) * N::EPSILON * max(outline1.reach(), outline2.reach());
     let best = match (&pair.first, &pair.second) {
-        (Kind::Cuboid(_), Kind::Cuboid(_)) => best_axis_of_boxes(&outline1, &outline2),
+        (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) => {
+            let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
+            let best = Rectangles { half1, half2, pose12: pair.pose12 }.best_axis();
+            Axis { gap: best.gap, normal: best.normal }
+        }
         _ => best_axis(&outline1, &outline2),
     };
     // A lower bound: what it rejects by more than rounding is out of reach.
@@ -73,32 +78,6 @@ fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
         let between = unit(&(outline2.vertices[0] - outline1.vertices[0]));
         axis(outline1, outline2, between.map_or_else(Vector::<N, 2>::x, |(along, _)| along))
     })
-}
-
-/// [`best_axis`] of two boxes: they have no tips, and the two ranges along a normal tell the gap along
-/// its opposite too.
-fn best_axis_of_boxes<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
-    let mut best: Option<Axis<N>> = None;
-    for (owner, is_second) in [(outline1, false), (outline2, true)] {
-        let lines = [0, 1].map(|side| {
-            let normal = owner.normals[side].unwrap_or_else(Vector::<N, 2>::zeros);
-            (normal, outline1.range(&normal), outline2.range(&normal))
-        });
-        // The sides in their order: the third and the fourth are opposite to the first two.
-        for is_opposite in [false, true] {
-            for (normal, range1, range2) in lines {
-                let tried = if is_opposite == is_second {
-                    Axis { gap: range2.0 - range1.1, normal }
-                } else {
-                    Axis { gap: range1.0 - range2.1, normal: -normal }
-                };
-                if best.is_none_or(|best| tried.gap > best.gap) {
-                    best = Some(tried);
-                }
-            }
-        }
-    }
-    best.expect("a box has sides")
 }
 
 /// Outlines that touch or overlap: the points are in the middle of what the two features that face
