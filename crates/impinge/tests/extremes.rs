@@ -17,7 +17,7 @@ use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Segment, ShapeHandle,
     Triangle,
 };
-use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use scene_stage::{Digest, digest_state};
 use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step, vector};
 
@@ -66,8 +66,10 @@ fn bad_shapes_are_refused<N: Stage<D>, const D: usize>() {
         assert!(Capsule::<N, D>::try_new(N::ONE, x).is_err(), "{number}");
         assert!(Capsule::try_from_ends(good, good, x).is_err(), "{number}");
         panics(|| Capsule::<N, D>::new(N::ONE, x), "capsule");
-        assert!(Cylinder::try_new(x, N::ONE).is_err() && Cylinder::try_new(N::ONE, x).is_err());
-        assert!(Cone::try_new(x, N::ONE).is_err() && Cone::try_new(N::ONE, x).is_err());
+        assert!(Cylinder::try_new(x, N::ONE).is_err(), "{number}");
+        assert!(Cylinder::try_new(N::ONE, x).is_err(), "{number}");
+        assert!(Cone::try_new(x, N::ONE).is_err(), "{number}");
+        assert!(Cone::try_new(N::ONE, x).is_err(), "{number}");
         assert!(BoundingSphere::try_new(good, x).is_err() || number == f64::INFINITY, "{number}");
     }
     for number in BAD {
@@ -97,10 +99,10 @@ fn bad_hulls_are_refused<N: Real>() {
         let points: Vec<_> = points.iter().map(|p| Point::from(vector::<N, 3>(*p))).collect();
         ConvexHull::try_from_points(&points).is_err()
     };
-    assert!(flat(&[]) && flat(&[[0.0, 0.0]; 5]) && flat(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]));
-    assert!(
-        solid(&[]) && solid(&[[1.0; 3]; 9]) && solid(&[[0.0; 3], [1.0; 3], [2.0; 3], [4.0; 3]])
-    );
+    assert!(flat(&[]) && flat(&[[0.0, 0.0]; 5]), "no points and a point");
+    assert!(flat(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), "a line");
+    assert!(solid(&[]) && solid(&[[1.0; 3]; 9]), "no points and a point");
+    assert!(solid(&[[0.0; 3], [1.0; 3], [2.0; 3], [4.0; 3]]), "a line");
     let square = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0]];
     assert!(solid(&square), "flat");
     for number in BAD {
@@ -162,10 +164,10 @@ fn refusals_change_nothing<N: Stage<D>, const D: usize>() {
     panics(|| world.remove(&[first, second, first]), "twice");
     let (_, [.., other]) = busy::<N, D>();
     panics(|| world.remove(&[other]), "of another world, and gone there too");
-    assert!(world.collision_object(stale).is_none() && world.collision_object_mut(stale).is_none());
-    assert!(
-        world.contact_pair(first, stale).is_none() && world.contact_pair(stale, stale).is_none()
-    );
+    assert!(world.collision_object(stale).is_none(), "stale");
+    assert!(world.collision_object_mut(stale).is_none(), "stale");
+    assert!(world.contact_pair(first, stale).is_none(), "stale");
+    assert!(world.contact_pair(stale, stale).is_none(), "stale");
     assert!(world.proximity_pair(stale, area).is_none() && !world.contains(stale), "stale");
     assert!(world.contact_pair(first, first).is_none(), "no pair with itself");
     assert_eq!(state(&world), before, "stale handles");
@@ -262,7 +264,7 @@ fn enormous<N: Stage<D>, const D: usize>() {
     for round in 0..3 {
         world.update();
         world.validate().expect("the parts agree");
-        let handles: Vec<_> = world.collision_objects().map(|object| object.handle()).collect();
+        let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
         for (index, handle) in handles.into_iter().enumerate() {
             world.set_position(handle, N::on_x(places[(index + round) % places.len()]));
         }
