@@ -335,11 +335,10 @@ fn not_a_number<N: Space<D>, const D: usize>() {
     use impinge::bounding_volume::BoundingVolume;
     let inverted = good.loosened(-N::ONE);
     let error = BoxTree::try_from_boxes(&[good, inverted]).map(|tree| tree.len());
-    let expected = BoxTreeError::BadBox { index: 1, error: AabbError::Inverted(0) };
-    assert_eq!(error, Err(expected), "arithmetic can invert a box");
+    let is_bad = |error: BoxTreeError, index: usize| matches!(error, BoxTreeError::BadBox { index: at, .. } if at == index);
+    assert!(error.is_err_and(|error| is_bad(error, 1)), "arithmetic can invert a box");
     let error = BoxTree::try_from_boxes(&[good.loosened(nan)]).map(|tree| tree.len());
-    let expected = BoxTreeError::BadBox { index: 0, error: AabbError::NotANumber(0) };
-    assert_eq!(error, Err(expected), "and spoil it");
+    assert!(error.is_err_and(|error| is_bad(error, 0)), "and spoil it");
 }
 
 #[test]
