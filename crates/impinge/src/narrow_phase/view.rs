@@ -35,6 +35,20 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         }
     }
 
+    /// The manifolds that hold a contact.
+    pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
+        let mut others = Vec::new();
+        let own = match self.0 {
+            // The common case allocates nothing.
+            Contacts::BuiltIn(manifold) => Some(manifold).filter(|manifold| !manifold.is_empty()),
+            Contacts::Custom(algorithm) => {
+                algorithm.contacts(&mut others);
+                None
+            }
+        };
+        own.into_iter().chain(others)
+    }
+
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {

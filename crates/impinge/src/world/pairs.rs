@@ -75,9 +75,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, &ContactManifold<N, D>)> {
         self.contact_pairs().flat_map(|(object1, object2, pair)| {
-            let mut manifolds = Vec::new();
-            pair.contacts(&mut manifolds);
-            manifolds.into_iter().map(move |manifold| (object1, object2, manifold))
+            pair.manifolds().map(move |manifold| (object1, object2, manifold))
         })
     }
 
