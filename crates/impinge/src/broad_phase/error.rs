@@ -32,7 +32,7 @@ impl fmt::Display for BroadPhaseError {
             }
             Self::BadMargin(margin) => {
                 write!(f, "the margin is {margin}: it must be finite and not negative")
-            },
+            }
         }
     }
 }

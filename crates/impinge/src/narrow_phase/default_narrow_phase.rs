@@ -194,7 +194,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let Lane::Contacts(group) = lane else { unreachable!("the query asks for contacts") };
             let (touch, change) = carried.into_touch();
             let number = self.ids.allocate();
-            let entry = ContactEntry::new(ManifoldRequest::new(linear, angular, max_points), number, touch);
+            let entry =
+                ContactEntry::new(ManifoldRequest::new(linear, angular, max_points), number, touch);
             let place = self.lanes.contacts[usize::from(group)].push(key, entry);
             return (Location { lane, place }, change);
         }
