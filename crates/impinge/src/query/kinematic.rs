@@ -92,8 +92,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// features: ask again when the motion is not small. A corner stays on the plane or line of the
     /// other solid, two crossing lines give their nearest points, two points or a point and a line
     /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. Of a contact on a
-    /// round rim the distance and normal are that good, the place on the rim is of first order only.
+    /// points and the normal at the last update move with their solids. Of the
+    /// deepest contact on a round rim the distance and normal are that good, its place on the rim is
+    /// of first order only; so are the other contacts on that rim, which follow the deepest round it.
     /// Poses that are not finite give a contact that is not.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
