@@ -3,7 +3,7 @@
 //! Coordinates are whole numbers or halves, so that touching is common and the tests here, done in `f64`
 //! without rounding, are exact.
 
-use impinge::bounding_volume::{Aabb, AabbError, Ray};
+use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Real, Space, Vector};
 use impinge::partitioning::{BoxTree, BoxTreeError};
 use impinge_reference::random::Random;

@@ -1,6 +1,8 @@
 //! Names of objects.
 
-/// The name of a collision object; it never comes to mean another object.
+/// The name of a collision object; it never comes to mean another object of its world.
+///
+/// Worlds count each for itself: a handle means something only to the world that gave it.
 ///
 /// Ordered by the index in the handle table, then by generation: this is the canonical order of
 /// pairs, events and query results.

@@ -2,8 +2,6 @@
 
 use core::fmt;
 
-use smallvec::SmallVec;
-
 use super::entry::{ContactEntry, posed};
 use super::lanes::Lane;
 use super::state::Posed;
@@ -39,27 +37,29 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         }
     }
 
+    /// The manifolds that hold a contact.
+    pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
+        let mut others = Vec::new();
+        let own = match self.0 {
+            // The common case allocates nothing.
+            Contacts::BuiltIn(entry, posed) => {
+                let touches = entry.state.len() > 0;
+                touches.then(|| entry.manifold(&posed))
+            }
+            Contacts::Custom(algorithm) => {
+                algorithm.contacts(&mut others);
+                None
+            }
+        };
+        own.into_iter().chain(others)
+    }
+
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
             Contacts::BuiltIn(entry, _) if entry.state.len() == 0 => {}
             Contacts::BuiltIn(entry, posed) => out.push(entry.manifold(&posed)),
             Contacts::Custom(algorithm) => algorithm.contacts(out),
-        }
-    }
-}
-
-impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
-    /// The manifolds that hold a contact; the library's own pairs have at most one.
-    pub(crate) fn manifolds(&self) -> SmallVec<[&'a ContactManifold<N, D>; 1]> {
-        match self.0 {
-            Contacts::BuiltIn(entry, _) if entry.state.len() == 0 => SmallVec::new(),
-            Contacts::BuiltIn(entry, posed) => SmallVec::from_buf([entry.manifold(&posed)]),
-            Contacts::Custom(algorithm) => {
-                let mut manifolds = Vec::new();
-                algorithm.contacts(&mut manifolds);
-                SmallVec::from_vec(manifolds)
-            }
         }
     }
 }
@@ -136,7 +136,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
         let touching = self.contact_pairs(table).filter(|(_, _, pair)| pair.num_contacts() > 0);
         touching.flat_map(|(first, second, pair)| {
-            pair.manifolds().into_iter().map(move |manifold| (first, second, manifold))
+            pair.manifolds().map(move |manifold| (first, second, manifold))
         })
     }
 

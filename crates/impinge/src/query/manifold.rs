@@ -107,9 +107,6 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     raw: &RawManifold<N, D>,
     placement: &Placement<'_, N, D>,
 ) -> ContactManifold<N, D> {
-    if raw.points.is_empty() {
-        return ContactManifold::default();
-    }
     let mut sides = Sides::new(pair, &raw.normal);
     let normal = placement.pose1.vector(&raw.normal);
     let tracked = |point: &RawPoint<N, D>| {

@@ -98,7 +98,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactManifolds<'a, N, D> {
         Box::new(self.contact_pairs(objects).flat_map(|(handle1, handle2, pair)| {
-            pair.manifolds().into_iter().map(move |manifold| (handle1, handle2, manifold))
+            pair.manifolds().map(move |manifold| (handle1, handle2, manifold))
         }))
     }
 
