@@ -65,6 +65,8 @@ mod guide;
 pub mod math;
 pub mod narrow_phase;
 pub mod pairs;
+pub mod partitioning;
+pub mod procedural;
 pub mod query;
 pub mod shape;
 #[doc(hidden)]

@@ -15,6 +15,7 @@ use crate::narrow_phase::{
     CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
     proximity_of,
 };
+use crate::partitioning::{BoxTree, BoxTreeError, Question};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
@@ -46,6 +47,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The step of a broad phase: what is pending, the filter, and what hears of changes.
     pub(crate) find_pairs: FindPairsFn<N, D>,
     pub(crate) world: WorldTables<N, D>,
+    pub(crate) partitioning: PartitioningTables<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -55,10 +57,33 @@ type ContactsFn<N, const D: usize> =
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
+/// Making and searching a tree over a user's boxes.
+pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
+    pub(crate) build: BuildFn<N, D>,
+    pub(crate) each: AnswerFn<N, D>,
+    pub(crate) by_time: InOrderFn<N, D, Ray<N, D>>,
+    pub(crate) by_distance: InOrderFn<N, D, Point<N, D>>,
+}
+
+type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
+type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
+
+impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
+    const fn new() -> Self {
+        Self {
+            build: BoxTree::build,
+            each: BoxTree::answer,
+            by_time: BoxTree::by_time,
+            by_distance: BoxTree::by_distance,
+        }
+    }
+}
+
 /// What a world asks of the floors below it, and of its own part that knows no users' data.
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
-    pub(crate) set_isometry: fn(&mut Bodies<N, D>, u32, N::Isometry) -> Result<(), WorldError>,
+    pub(crate) set_isometry: SetIsometryFn<N, D>,
     pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
@@ -68,6 +93,8 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, &mut Events),
 }
 
+type SetIsometryFn<N, const D: usize> =
+    fn(&mut Bodies<N, D>, u32, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
     fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
 
@@ -138,6 +165,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             update_pairs: DefaultNarrowPhase::update_pairs_here,
             find_pairs: PairFinder::update,
             world: WorldTables::new(),
+            partitioning: PartitioningTables::new(),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Rays whose answers are worked out by hand.
 
+use impinge::math::na::{Complex, Translation2, UnitComplex};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
-use impinge::query::{Ray, RayCast};
+use impinge::query::{PointQuery, Ray, RayCast};
 use impinge::shape::{
     Ball, Capsule, Cone, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle, Triangle,
 };
@@ -382,4 +383,16 @@ fn rays_that_are_not_finite_hit_nothing() {
         let found = shape.cast_local_ray(&far, false);
         assert!(found.is_none_or(|hit| hit.toi.is_finite()), "{shape:?}: {found:?}");
     }
+}
+
+/// By rounding, the crossing of a line that starts on a segment may come out before the start.
+#[test]
+fn a_ray_that_starts_on_a_turned_segment_hits_it() {
+    let capsule = Capsule::<f32, 2>::new(1.0, 0.0);
+    let turn = UnitComplex::new_unchecked(Complex::new(0.0, -1.0));
+    let pose = Isometry2::from_parts(Translation2::new(-1.875, -0.5), turn);
+    let start = Point::<f32, 2>::new(-2.25, -0.5);
+    assert!(capsule.contains_point(&pose, &start), "it starts on the segment");
+    let ray = Ray::new(start, Vector::<f32, 2>::new(0.25, 0.5));
+    assert_eq!(capsule.toi_with_ray(&pose, &ray, true), Some(0.0), "so it hits at once");
 }

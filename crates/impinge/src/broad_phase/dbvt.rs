@@ -6,7 +6,7 @@ use super::error::or_panic;
 use super::handle::Handles;
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::Bounds;
+use crate::bvh::{Bounds, Lanes};
 use crate::math::{Point, Real, Space};
 use crate::pairs::unpack;
 
@@ -98,6 +98,16 @@ fn id_of(handle: ProxyHandle) -> u32 {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
+    /// A broad phase without objects that uses the given vectors; the results do not depend on
+    /// them. For tests.
+    ///
+    /// # Errors
+    /// If the margin is negative, infinite or NaN.
+    pub fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
+        let finder = PairFinder::with_lanes(margin, lanes)?;
+        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+    }
+
     /// The margin by which volumes are loosened.
     pub fn margin(&self) -> N {
         self.finder.margin()

@@ -11,6 +11,19 @@ pub struct ProxyHandle {
 }
 
 impl ProxyHandle {
+    /// The handle of the `generation`-th object at an index, for a broad phase of one's own; it must
+    /// give each pair of numbers once.
+    #[must_use]
+    pub const fn new(index: u32, generation: u32) -> Self {
+        Self { index, generation }
+    }
+
+    /// How many objects held this index before.
+    #[must_use]
+    pub const fn generation(&self) -> u32 {
+        self.generation
+    }
+
     /// The index in the table of handles: dense, and in order of creation until the first removal.
     ///
     /// Unique among the objects present at one time, but used again after a removal.

@@ -132,3 +132,16 @@ where
         Vertex { point: on2 - on1, on1, on2 }
     }
 }
+
+/// A difference moved away from the origin; the points of the cores are still where they were.
+pub(super) struct Moved<'a, N: Real, const D: usize> {
+    pub(super) inner: &'a dyn Difference<N, D>,
+    pub(super) by: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Difference<N, D> for Moved<'_, N, D> {
+    fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D> {
+        let vertex = self.inner.lowest(normal);
+        Vertex { point: vertex.point + self.by, ..vertex }
+    }
+}

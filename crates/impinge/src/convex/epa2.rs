@@ -13,7 +13,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::simplex::Simplex;
-use super::witness::locate;
+use super::witness::{Mix, locate, settle};
 use crate::math::{Real, Vector, cross2, perp, unit};
 
 /// Cap on the number of support points. Polygons need as many as they have sides near the origin.
@@ -82,7 +82,7 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Se
     let edge = b.point - a.point;
     let Some((along, _)) = unit(&edge).filter(|&(_, width)| width > noise()) else {
         let axis = Vector::<N, 2>::new(N::ONE, N::ZERO);
-        return Err(locate(&best_of(difference, &[axis]), &[a]));
+        return Err(locate(difference, &best_of(difference, &[axis]), &[a]));
     };
     let left = perp(&along);
     let (on_left, beyond_left) = farthest(difference, &left, &a.point);
@@ -94,21 +94,21 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Se
         return Ok(ring_of(&ring));
     }
     // A segment through the origin, or nearly: its depth is across it, and zero.
-    Err(locate(&best_of(difference, &[left]), &ring))
+    Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
 /// Where the polygon lies nearest to the origin, once it has grown to the difference there.
 fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separation<N, 2> {
     let mut best = Candidate::along(difference, -ring[0].outward);
-    let mut closed = false;
     for _ in 0..ROUNDS {
         let index = nearest_side(ring);
-        let side = ring[index];
+        let (side, next) = (ring[index], ring[(index + 1) % ring.len()].start);
         let candidate = Candidate::along(difference, -side.outward);
         best.improve(&candidate);
-        closed = -best.height - side.offset <= tolerance();
-        if closed {
-            break;
+        if -candidate.height - side.offset <= tolerance() {
+            best.prefer(candidate, N::TWO * tolerance());
+            let mix = Mix::nearest(&best, &[side.start, next]);
+            return settle(difference, &best, &mix, &vertices(ring, &best));
         }
         let known = ring.iter().any(|other| other.start.point == candidate.vertex.point);
         if known || -candidate.height - side.offset <= noise() {
@@ -116,16 +116,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
             ring[index].offset = -candidate.height;
             continue;
         }
-        let next = ring[(index + 1) % ring.len()].start;
         ring[index] = Side::new(side.start, &candidate.vertex);
         ring.insert(index + 1, Side::new(candidate.vertex, &next));
     }
-    if !closed {
-        climb(difference, &mut best);
-    }
-    let mut vertices: SmallVec<[Vertex<N, 2>; 16]> = ring.iter().map(|side| side.start).collect();
-    vertices.push(best.vertex);
-    locate(&best, &vertices)
+    climb(difference, &mut best);
+    locate(difference, &best, &vertices(ring, &best))
+}
+
+/// All points that are known.
+fn vertices<N: Real>(ring: &Ring<N>, best: &Candidate<N, 2>) -> SmallVec<[Vertex<N, 2>; 16]> {
+    ring.iter().map(|side| side.start).chain([best.vertex]).collect()
 }
 
 fn nearest_side<N: Real>(ring: &Ring<N>) -> usize {

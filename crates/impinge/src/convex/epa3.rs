@@ -6,8 +6,6 @@
 //! offset, are nearest of all, and grow first. Every normal it comes by is certified, and the best
 //! one is the answer however the growth ends.
 
-use smallvec::SmallVec;
-
 use super::Separation;
 use super::candidate::Candidate;
 use super::climb::climb;
@@ -15,7 +13,7 @@ use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
 use super::simplex::Simplex;
-use super::witness::locate;
+use super::witness::{Mix, locate, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the number of support points. Flat faces take about ten, curved ones up to a hundred; where
@@ -27,29 +25,49 @@ pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 3>,
     simplex: &Simplex<N, 3>,
 ) -> Separation<N, 3> {
-    match from_simplex(simplex).map_or_else(|| from_extent(difference), Ok) {
-        Ok(mut hull) => grow(difference, &mut hull),
+    match from_simplex(difference, simplex) {
+        Ok(corners) => grow(difference, &mut Hull::new(corners)),
         Err(flat) => flat,
     }
 }
 
-/// The tetrahedron that is known to hold the origin, if there is one and it is not a sliver.
-fn from_simplex<N: Real>(simplex: &Simplex<N, 3>) -> Option<Hull<N>> {
-    let &[a, b, c, d] = simplex.vertices() else { return None };
+/// The corners of a tetrahedron to start with; or the answer at once, if the difference is flat.
+type Start<N> = Result<[Vertex<N, 3>; 4], Separation<N, 3>>;
+
+/// How thick a simplex must be to be built on, in parts of its length.
+const THICK: f64 = 1.0 / 1024.0;
+
+/// The simplex that holds the origin, or nearly, brought to full dimension by extreme points; if it is
+/// a sliver a new one.
+fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N, 3>) -> Start<N> {
+    match *simplex.vertices() {
+        [a, b, c, d] if is_thick(&[a, b, c, d]) => Ok([a, b, c, d]),
+        [a, b, c] if is_wide(&[a, b, c]) => from_triangle(difference, [a, b, c]),
+        [a, b] if (b.point - a.point).norm() > N::lit(THICK) => from_segment(difference, [a, b]),
+        _ => from_segment(difference, widest_pair(difference)),
+    }
+}
+
+/// The volume is not small for the largest face and the longest edge at the first corner.
+fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, d.point - a.point);
     let (ef, fg, ge) = (cross(&e, &f), cross(&f, &g), cross(&g, &e));
     let area = max(max(ef.norm(), fg.norm()), max(ge.norm(), (ef + fg + ge).norm()));
     let length = max(max(e.norm(), f.norm()), g.norm());
-    let thick = N::lit(1.0 / 1024.0) * area * length;
-    (ef.dot(&g).abs() > thick).then(|| Hull::new([a, b, c, d]))
+    ef.dot(&g).abs() > N::lit(THICK) * area * length
 }
 
-/// A tetrahedron of extreme points; or the answer at once, if the difference is flat.
-fn from_extent<N: Real>(difference: &dyn Difference<N, 3>) -> Result<Hull<N>, Separation<N, 3>> {
-    let [a, b] = widest_pair(difference);
+/// The area is not small for the longest edge, nor that for the pair.
+fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
+    let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
+    let length = max(max(e.norm(), f.norm()), g.norm());
+    length > N::lit(THICK) && cross(&e, &f).norm() > N::lit(THICK) * length * length
+}
+
+fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
     let Some((along, _)) = unit(&(b.point - a.point)).filter(|&(_, width)| width > noise()) else {
         let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
-        return Err(locate(&best_of(difference, &[axis]), &[a]));
+        return Err(locate(difference, &best_of(difference, &[axis]), &[a]));
     };
     let (u, v) = orthonormal_basis(&along);
     let mut side = (a, noise());
@@ -58,64 +76,69 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 3>) -> Result<Hull<N>, Se
         side = if found.1 > side.1 { found } else { side };
     }
     let (c, found) = side;
-    let normal = unit(&cross(&(b.point - a.point), &(c.point - a.point)));
-    let Some((normal, _)) = normal.filter(|_| found > noise()) else {
-        // A segment through the origin, or nearly: all that is across it is as good.
-        return Err(locate(&best_of(difference, &[u, v]), &[a, b]));
+    if found > noise() {
+        return from_triangle(difference, [a, b, c]);
+    }
+    // A segment through the origin, or nearly: all that is across it is as good.
+    Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
+}
+
+fn from_triangle<N: Real>(
+    difference: &dyn Difference<N, 3>,
+    [a, b, c]: [Vertex<N, 3>; 3],
+) -> Start<N> {
+    let (e, f) = (b.point - a.point, c.point - a.point);
+    let Some((normal, _)) = unit(&cross(&e, &f)) else {
+        return from_needle(difference, [a, b]);
     };
     let (above, height) = farthest(difference, &normal, &a.point);
     let (below, depth) = farthest(difference, &-normal, &a.point);
     if max(height, depth) > noise() {
-        return Ok(Hull::new([a, b, c, if height > depth { above } else { below }]));
+        return Ok([a, b, c, if height > depth { above } else { below }]);
     }
-    Err(flat(difference, [a, b, c], &normal))
+    // A flat disk through the origin, or nearly: its depth is across it, and zero.
+    Err(locate(difference, &best_of(difference, &[normal]), &[a, b, c]))
 }
 
-/// The answer where the difference is a flat disk through the origin, or nearly: its depth is
-/// across the disk, and zero. The points come from its outline.
-fn flat<N: Real>(
-    difference: &dyn Difference<N, 3>,
-    corners: [Vertex<N, 3>; 3],
-    normal: &Vector<N, 3>,
-) -> Separation<N, 3> {
-    let mut outline: SmallVec<[Vertex<N, 3>; 16]> = SmallVec::from_slice(&corners);
-    let (u, v) = orthonormal_basis(normal);
-    for across in [u, v, u + v, u - v] {
-        outline.push(difference.lowest(&across));
-        outline.push(difference.lowest(&-across));
-    }
-    locate(&best_of(difference, &[*normal]), &outline)
+/// The answer where the points found lie on a line: across it.
+fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
+    let along = unit(&(b.point - a.point)).map(|(along, _)| along);
+    let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
+    let (u, v) = orthonormal_basis(&along.unwrap_or(axis));
+    Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
 /// Where the hull lies nearest to the origin, once it has grown to the difference there.
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = Candidate::along(difference, -hull.face(first).outward);
-    let mut closed = false;
     for _ in 0..ROUNDS {
         let Some(index) = hull.nearest() else { break };
         let face = *hull.face(index);
         let candidate = Candidate::along(difference, -face.outward);
         best.improve(&candidate);
-        closed = -best.height - face.offset <= tolerance();
-        if closed {
-            break;
+        if -candidate.height - face.offset <= tolerance() {
+            if face.settled {
+                break;
+            }
+            best.prefer(candidate, N::TWO * tolerance());
+            let mix = Mix::nearest(&best, &face.corners.map(|corner| *hull.vertex(corner)));
+            return settle(difference, &best, &mix, hull.vertices());
         }
-        if -candidate.height - face.offset <= noise() || hull.contains(&candidate.vertex) {
-            // It grows no more: what counts from now on is its certificate.
+        if hull.contains(&candidate.vertex) {
+            // Rounding has bent the hull. What counts from now on is the certificate.
             hull.settle(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);
         }
     }
-    if !closed {
-        polish(difference, hull, &mut best);
-    }
+    polish(difference, hull, &mut best);
     hull.keep(&[best.vertex]);
-    locate(&best, hull.vertices())
+    locate(difference, &best, hull.vertices())
 }
 
-/// Goes on from the best normal and from that of the nearest face, at the cap.
+/// Goes on from the best normal and from that of the nearest face, where the hull is of no more use:
+/// at the cap, or bent by rounding.
 fn polish<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &mut Hull<N>,
@@ -137,5 +160,5 @@ fn locate_any<N: Real>(difference: &dyn Difference<N, 3>, hull: &Hull<N>) -> Sep
         Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO),
         Vector::<N, 3>::new(N::ZERO, N::ZERO, N::ONE),
     ];
-    locate(&best_of(difference, &axes), hull.vertices())
+    locate(difference, &best_of(difference, &axes), hull.vertices())
 }

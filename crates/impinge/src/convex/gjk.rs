@@ -12,8 +12,8 @@ use super::candidate::Candidate;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::refine::{Bundle, refine};
 use super::simplex::{Nearest, Simplex, Simplicial};
-use super::witness::locate;
-use crate::math::{Real, Vector};
+use super::witness::{Mix, locate, settle};
+use crate::math::{Real, Vector, max};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
 /// whoever comes here is refined from the best normal so far.
@@ -33,10 +33,17 @@ struct Search<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
     /// The best normal so far; its height is a lower bound of the distance.
     best: Candidate<N, D>,
+    /// The normal of the nearest point so far.
+    last: Candidate<N, D>,
     /// The length of the nearest point so far: an upper bound.
     upper: N,
     /// The last support point, if the simplex has not taken it.
     spare: Vertex<N, D>,
+    /// The gap between the bounds at which the search stops.
+    gap: N,
+    /// The lower bound that counts is that of the last normal, across which the points lie, not that
+    /// of the best.
+    for_points: bool,
 }
 
 /// The signed distance of the difference from the origin, starting with the unit vector `start`, in
@@ -53,7 +60,7 @@ where
     let mut search = Search::new(Candidate::along(difference, *start));
     match search.run(difference, limit) {
         Outcome::Beyond => None,
-        Outcome::Overlap => Some(N::deepest(difference, &search.simplex)),
+        Outcome::Overlap => Some(search.finish_overlap(difference)),
         Outcome::Apart => Some(search.finish(difference)),
     }
 }
@@ -64,8 +71,20 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     start: &Vector<N, D>,
 ) -> Vector<N, D> {
     let mut search = Search::new(Candidate::along(difference, *start));
+    (search.gap, search.for_points) = (noise(), false);
     search.run(difference, N::INFINITY);
     search.best.normal
+}
+
+/// As [`nearest_normal`], as far as the arithmetic goes, with the points around the nearest one.
+pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
+    difference: &impl Difference<N, D>,
+    start: &Vector<N, D>,
+) -> (Vector<N, D>, Simplex<N, D>) {
+    let mut search = Search::new(Candidate::along(difference, *start));
+    search.gap = N::ZERO;
+    search.run(difference, N::INFINITY);
+    (search.last.normal, search.simplex)
 }
 
 impl<N: Simplicial<D>, const D: usize> Search<N, D> {
@@ -73,8 +92,11 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         Self {
             simplex: Simplex::new(first.vertex),
             best: first,
+            last: first,
             upper: N::INFINITY,
             spare: first.vertex,
+            gap: gap(),
+            for_points: true,
         }
     }
 
@@ -89,11 +111,12 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             self.upper = nearest.squared.sqrt();
             let candidate = Candidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
-            self.spare = candidate.vertex;
+            (self.last, self.spare) = (candidate, candidate.vertex);
             if self.best.height > limit {
                 return Outcome::Beyond;
             }
-            let closed = self.upper - self.best.height <= noise::<N>();
+            let proof = if self.for_points { &self.last } else { &self.best };
+            let closed = self.upper - proof.height <= self.gap;
             let known = closed || self.simplex.contains(&candidate.vertex);
             match if known { None } else { self.advanced(&nearest) } {
                 Some(next) => nearest = next,
@@ -130,16 +153,40 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
     /// case near touching, where the direction of the nearest point is mostly rounding errors.
     fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if !self.open() {
-            return locate(&self.best, self.simplex.vertices());
+            return self.settled(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
         bundle.extend([self.best.vertex, self.spare]);
         refine(difference, &mut bundle, &mut self.best);
-        let apart = locate(&self.best, &bundle);
+        let apart = locate(difference, &self.best, &bundle);
         if !self.open() {
             return apart;
         }
         let deep = N::deepest(difference, &self.simplex);
         if deep.distance > apart.distance { deep } else { apart }
     }
+
+    /// The answer where the origin is in the difference, or all but: at once if a normal is known
+    /// along which it lies on the boundary.
+    fn finish_overlap(self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+        if self.best.height >= -noise::<N>() {
+            return self.settled(difference);
+        }
+        N::deepest(difference, &self.simplex)
+    }
+
+    /// The answer where the bounds meet. Of normals that do, that of the nearest point is taken if
+    /// the points of the nearest point lie across from each other along no other.
+    fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+        let (mix, mut best) = (Mix::of(&self.simplex), self.best);
+        if !mix.meets(&best) {
+            best.prefer(self.last, tolerance());
+        }
+        settle(difference, &best, &mix, self.simplex.vertices())
+    }
+}
+
+/// The gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
+fn gap<N: Real>() -> N {
+    max(noise(), N::lit(1.0 / 70_368_744_177_664.0))
 }

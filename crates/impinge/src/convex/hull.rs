@@ -18,6 +18,8 @@ pub(super) struct Face<N: Real> {
     pub(super) outward: Vector<N, 3>,
     /// How far the face lies beyond the origin; infinite if it is too thin to have a normal.
     pub(super) offset: N,
+    /// Moved to where the difference is known to end; it grows no more.
+    pub(super) settled: bool,
     /// Not taken away by the growth that is under way.
     present: bool,
 }
@@ -77,6 +79,7 @@ impl<N: Real> Hull<N> {
     /// Moves a face outwards to where the difference is known to end.
     pub(super) fn settle(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
+        self.faces[index].settled = true;
     }
 
     /// Keeps points for the mixing of witnesses, without a face.
@@ -140,17 +143,12 @@ impl<N: Real> Hull<N> {
         let normal = cross(&e, &f);
         let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
         let sound = normal.norm_squared() > noise::<N>() * noise() * longest;
-        let face = match unit(&normal) {
-            Some((outward, _)) if sound => {
-                Face { corners, outward, offset: outward.dot(&a), present: true }
-            }
-            _ => Face {
-                corners,
-                outward: Vector::<N, 3>::zeros(),
-                offset: N::INFINITY,
-                present: true,
-            },
-        };
+        let direction = unit(&normal).filter(|_| sound);
+        let (outward, offset) = direction.map_or((Vector::<N, 3>::zeros(), N::INFINITY), |found| {
+            let (outward, _) = found;
+            (outward, outward.dot(&a))
+        });
+        let face = Face { corners, outward, offset, settled: false, present: true };
         self.faces.push(face);
     }
 }

@@ -96,16 +96,17 @@ pub(crate) struct Simplex<N: Real, const D: usize> {
     vertices: [Vertex<N, D>; 4],
     /// The points of `vertices` again, in a row.
     points: [Vector<N, D>; 4],
+    /// What they contribute to the nearest point; as given to [`Self::keep`].
+    weights: [N; 4],
     len: usize,
 }
 
 impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
     /// One point.
     pub(super) fn new(vertex: Vertex<N, D>) -> Self {
-        let mut simplex =
-            Self { vertices: [Vertex::zero(); 4], points: [Vector::<N, D>::zeros(); 4], len: 0 };
-        simplex.push(vertex);
-        simplex
+        let zero = Vector::<N, D>::zeros();
+        let weights = [N::ONE, N::ZERO, N::ZERO, N::ZERO];
+        Self { vertices: [vertex; 4], points: [vertex.point, zero, zero, zero], weights, len: 1 }
     }
 
     /// The points with what they came from.
@@ -118,6 +119,11 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         &self.points[..self.len]
     }
 
+    /// The weights of the points.
+    pub(super) fn weights(&self) -> &[N] {
+        &self.weights[..self.len]
+    }
+
     /// Whether the simplex has this very point already.
     pub(super) fn contains(&self, vertex: &Vertex<N, D>) -> bool {
         self.points().contains(&vertex.point)
@@ -127,16 +133,18 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
     pub(super) fn push(&mut self, vertex: Vertex<N, D>) {
         self.vertices[self.len] = vertex;
         self.points[self.len] = vertex.point;
+        self.weights[self.len] = N::ZERO;
         self.len += 1;
     }
 
-    /// Drops the points without weight.
+    /// Drops the points without weight, and remembers the weights of the others.
     pub(super) fn keep(&mut self, weights: &[N; 4]) {
         let mut kept = 0;
         for (index, &weight) in weights.iter().enumerate().take(self.len) {
             if weight > N::ZERO {
                 self.vertices[kept] = self.vertices[index];
                 self.points[kept] = self.points[index];
+                self.weights[kept] = weight;
                 kept += 1;
             }
         }

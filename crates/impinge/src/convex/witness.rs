@@ -1,27 +1,97 @@
 //! Which points of the two cores a normal and its height belong to.
+//!
+//! A mix of points of the difference, in some proportions, is the difference of the mixes of the two
+//! points that each is made of; these lie in the cores, as cores are convex. If the mix is the point
+//! `height · normal`, both lie on the supporting planes of the normal: none of the points mixed lies
+//! lower than the height, so none lies higher. So all depends on how near a mix comes to that point.
 
 use super::Separation;
 use super::candidate::Candidate;
-use super::difference::{Vertex, noise};
+use super::difference::{Difference, Moved, Vertex, noise, tolerance};
+use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
-use crate::math::{Point, Real, Vector};
+use crate::math::{Point, Real, Vector, max, unit};
 
 /// Cap on the number of corners tried.
 const ROUNDS: usize = 32;
+/// Cap on the number of searches for a pair of points.
+const SEARCHES: usize = 16;
 
-/// The answer in units of the pair: the points whose difference is `height · normal`.
-///
-/// They are the mix of the points that made up `vertices`, in the proportions in which the vertices
-/// mix to a difference nearest to that; then moved onto the supporting planes of the normal, and
-/// sideways half way each until they lie exactly across from each other.
-pub(super) fn locate<N: Simplicial<D>, const D: usize>(
+/// Points of the cores, mixed by weights.
+#[derive(Clone, Copy)]
+pub(super) struct Mix<N: Real, const D: usize> {
+    on1: Vector<N, D>,
+    on2: Vector<N, D>,
+}
+
+impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
+    /// By the weights that the simplex was left with.
+    pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
+        Self::by(simplex, simplex.weights())
+    }
+
+    fn by(simplex: &Simplex<N, D>, weights: &[N]) -> Self {
+        let zero = Vector::<N, D>::zeros();
+        let (mut on1, mut on2) = (zero, zero);
+        for (vertex, &weight) in simplex.vertices().iter().zip(weights) {
+            on1 += vertex.on1 * weight;
+            on2 += vertex.on2 * weight;
+        }
+        Self { on1, on2 }
+    }
+
+    /// The point of the hull of up to `D + 1` points that is nearest to where `best` has it.
+    pub(super) fn nearest(best: &Candidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
+        let target = best.normal * best.height;
+        let moved = |vertex: &Vertex<N, D>| moved(vertex, &target);
+        let mut simplex = Simplex::new(moved(&vertices[0]));
+        vertices[1..].iter().for_each(|vertex| simplex.push(moved(vertex)));
+        Self::by(&simplex, &N::nearest(simplex.points()).weights)
+    }
+
+    /// The best over the facets of a simplex that holds the target, or `best`: one so flat that its
+    /// volume is mostly rounding errors has poor weights, but its facets come as near.
+    fn of_facets(simplex: &Simplex<N, D>, mut best: Self, target: &Vector<N, D>) -> Self {
+        for dropped in 0..=D {
+            let mut kept = [N::ONE; 4];
+            kept[dropped] = N::ZERO;
+            let mut facet = *simplex;
+            facet.keep(&kept);
+            let found = Self::by(&facet, &N::nearest(facet.points()).weights);
+            if found.miss(target) < best.miss(target) {
+                best = found;
+            }
+        }
+        best
+    }
+
+    /// The square of the distance of the points' difference from the target.
+    fn miss(&self, target: &Vector<N, D>) -> N {
+        (self.on2 - self.on1 - target).norm_squared()
+    }
+
+    /// Whether the points lie across from each other but for rounding, and on the supporting planes
+    /// but for the gap that answers may have.
+    pub(super) fn meets(&self, best: &Candidate<N, D>) -> bool {
+        let away = self.on2 - self.on1;
+        let along = best.normal.dot(&away);
+        let aside = (away - best.normal * along).norm_squared();
+        let rounding = N::TWO * noise::<N>();
+        aside <= rounding * rounding && (along - best.height).abs() <= N::TWO * tolerance()
+    }
+}
+
+/// The answer in units of the pair, with the points of `mix`: moved onto the supporting planes of the
+/// normal, and sideways until they lie exactly across from each other, the first by `share` of the
+/// way.
+fn placed<N: Simplicial<D>, const D: usize>(
     best: &Candidate<N, D>,
-    vertices: &[Vertex<N, D>],
+    mix: &Mix<N, D>,
+    share: N,
 ) -> Separation<N, D> {
     let (normal, across) = (best.normal, best.normal * best.height);
-    let (on1, on2) = mix(&across, vertices);
-    let middle = (on1 + (on2 - across)) * N::HALF;
-    let on1 = middle + normal * normal.dot(&(best.vertex.on1 - middle));
+    let shared = mix.on1 + (mix.on2 - across - mix.on1) * share;
+    let on1 = shared + normal * normal.dot(&(best.vertex.on1 - shared));
     Separation {
         distance: best.height,
         normal,
@@ -30,14 +100,98 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     }
 }
 
+/// The share of the first point where the points lie well aside of each other.
+///
+/// Along a surface that is curved a point may be moved: it leaves the surface by the square of the
+/// way only. At an edge it may not. A supporting plane halfway between the normal and the side that
+/// lies aside tells which is which.
+fn share<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    mix: &Mix<N, D>,
+) -> N {
+    let (normal, across) = (best.normal, best.normal * best.height);
+    let away = mix.on2 - mix.on1;
+    let Some((aside, _)) = unit(&(away - normal * normal.dot(&away))) else { return N::HALF };
+    let Some((slant, _)) = unit(&(normal + aside)) else { return N::HALF };
+    let ends = difference.lowest(&slant);
+    // How far each leaves its core if it goes all the way.
+    let beyond1 = slant.dot(&(mix.on2 - across - ends.on1));
+    let beyond2 = slant.dot(&(ends.on2 - mix.on1 - across));
+    if max(beyond1, beyond2) <= N::ZERO {
+        N::HALF
+    } else if beyond1 > beyond2 {
+        N::ZERO
+    } else {
+        N::ONE
+    }
+}
+
+/// The answer with the points of `mix`, if they fit; else with a mix of `vertices` or, where these are
+/// not enough, of points that are searched for.
+pub(super) fn settle<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    mix: &Mix<N, D>,
+    vertices: &[Vertex<N, D>],
+) -> Separation<N, D> {
+    if mix.meets(best) {
+        return placed(best, mix, N::HALF);
+    }
+    locate(difference, best, vertices)
+}
+
+/// The answer with a mix of `vertices` or, where these are not enough, of points searched for.
+pub(super) fn locate<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    vertices: &[Vertex<N, D>],
+) -> Separation<N, D> {
+    let mix = mix(&(best.normal * best.height), vertices);
+    if mix.meets(best) { placed(best, &mix, N::HALF) } else { search(difference, best, &mix) }
+}
+
+/// The answer with points that are searched for, or those of `mix` if they fit better.
+///
+/// The difference is moved along the normal until it lies well away from the origin; its nearest
+/// point then is a mix of points that lie lowest along the normal. If the normal is not quite that
+/// of the place, which takes a curved surface, the way to that point is a better one: a step of
+/// the proximal point method, as in `climb`.
+fn search<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    mix: &Mix<N, D>,
+) -> Separation<N, D> {
+    let (mut found, mut mix) = (*best, *mix);
+    let mut least = mix.miss(&(best.normal * best.height));
+    let mut normal = *best;
+    for _ in 0..SEARCHES {
+        let by = normal.normal * (N::lit(1.0 / 64.0) - normal.height);
+        let moved = Moved { inner: difference, by };
+        let (candidate, simplex) = nearest_simplex(&moved, &normal.normal);
+        let other = Mix::of(&simplex);
+        let miss = other.miss(&(normal.normal * normal.height));
+        if miss < least {
+            (found, mix, least) = (normal, other, miss);
+        }
+        normal = Candidate::along(difference, candidate);
+        let worse = normal.height < best.height - tolerance();
+        if mix.meets(&found) || worse {
+            break;
+        }
+    }
+    let share = share(difference, &found, &mix);
+    placed(&found, &mix, share)
+}
+
 /// The points on both cores, mixed so that their difference comes nearest to `target`.
 fn mix<N: Simplicial<D>, const D: usize>(
     target: &Vector<N, D>,
     vertices: &[Vertex<N, D>],
-) -> (Vector<N, D>, Vector<N, D>) {
+) -> Mix<N, D> {
     let mut simplex = Simplex::new(moved(nearest_to(target, vertices), target));
     let mut nearest = N::nearest(simplex.points());
-    let mut best = Mix::of(&simplex, &nearest.weights);
+    let mut best = Mix::by(&simplex, &nearest.weights);
     for _ in 0..ROUNDS {
         let away = nearest.squared > noise::<N>() * noise();
         if nearest.enclosed || !away {
@@ -52,54 +206,16 @@ fn mix<N: Simplicial<D>, const D: usize>(
         simplex.push(next);
         nearest = N::nearest(simplex.points());
         // Judged by what the weights make, not by what they should: slivers give poor weights.
-        let mut found = Mix::of(&simplex, &nearest.weights);
-        if nearest.enclosed && found.miss > noise::<N>() * noise() {
-            found = Mix::of_facets(&simplex, found);
+        let mut found = Mix::by(&simplex, &nearest.weights);
+        if nearest.enclosed && found.miss(target) > noise::<N>() * noise() {
+            found = Mix::of_facets(&simplex, found, target);
         }
-        if found.miss >= best.miss {
+        if found.miss(target) >= best.miss(target) {
             break;
         }
         best = found;
     }
-    (best.on1, best.on2)
-}
-
-/// Points of the cores, mixed by weights.
-struct Mix<N: Real, const D: usize> {
-    on1: Vector<N, D>,
-    on2: Vector<N, D>,
-    /// The square of the distance of their difference from the target.
-    miss: N,
-}
-
-impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
-    /// The vertices of the simplex are seen from the target.
-    fn of(simplex: &Simplex<N, D>, weights: &[N; 4]) -> Self {
-        let zero = Vector::<N, D>::zeros();
-        let (mut on1, mut on2, mut missed) = (zero, zero, zero);
-        for (vertex, &weight) in simplex.vertices().iter().zip(weights) {
-            on1 += vertex.on1 * weight;
-            on2 += vertex.on2 * weight;
-            missed += vertex.point * weight;
-        }
-        Self { on1, on2, miss: missed.norm_squared() }
-    }
-
-    /// The best over the facets of a simplex that holds the target, or `best`: one so flat that its
-    /// volume is mostly rounding errors has poor weights, but its facets come as near.
-    fn of_facets(simplex: &Simplex<N, D>, mut best: Self) -> Self {
-        for dropped in 0..=D {
-            let mut kept = [N::ONE; 4];
-            kept[dropped] = N::ZERO;
-            let mut facet = *simplex;
-            facet.keep(&kept);
-            let found = Self::of(&facet, &N::nearest(facet.points()).weights);
-            if found.miss < best.miss {
-                best = found;
-            }
-        }
-        best
-    }
+    best
 }
 
 /// The vertex as seen from `target`.

@@ -121,6 +121,8 @@ pub mod query {
     pub type Contact<N> = crate::query::Contact<N, 2>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 2>;
+    /// One solid's share of a contact, for algorithms of one's own.
+    pub type ContactSide<N> = crate::query::ContactSide<N, 2>;
     /// What a solid looks like near a contact.
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 2>;
     /// A contact, how it moves, and its name.
@@ -156,6 +158,40 @@ pub mod shape {
 /// Shapes from points.
 pub mod transformation {
     pub use crate::transformation::convex_hull2 as convex_hull;
+}
+
+/// The outlines of the shapes, as points.
+///
+/// ```
+/// use impinge::dim2::math::Vector;
+/// use impinge::dim2::procedural;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let outline = procedural::cuboid(&Cuboid::new(Vector::new(2.0_f32, 1.0)));
+/// assert_eq!(outline.points.len(), 4);
+/// assert_eq!(outline.points[1], [2.0, 1.0].into());
+/// ```
+pub mod procedural {
+    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
+}
+
+/// Searches among boxes of the user's own.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::partitioning::BoxTree;
+///
+/// let boxes = [0.0_f32, 2.0, 4.0].map(|x| Aabb::new(Point::new(x, 0.0), Point::new(x + 1.0, 1.0)));
+/// let tree = BoxTree::from_boxes(&boxes);
+/// assert_eq!(tree.containing(&Point::new(2.9, 0.5)), [1]);
+/// ```
+pub mod partitioning {
+    pub use crate::partitioning::BoxTreeError;
+
+    /// A tree over boxes that do not move.
+    pub type BoxTree<N> = crate::partitioning::BoxTree<N, 2>;
 }
 
 /// Numbers, vectors and poses.

@@ -121,6 +121,8 @@ pub mod query {
     pub type Contact<N> = crate::query::Contact<N, 3>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
+    /// One solid's share of a contact, for algorithms of one's own.
+    pub type ContactSide<N> = crate::query::ContactSide<N, 3>;
     /// What a solid looks like near a contact.
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 3>;
     /// A contact, how it moves, and its name.
@@ -157,6 +159,40 @@ pub mod shape {
 /// Shapes from points.
 pub mod transformation {
     pub use crate::transformation::{IndexedHull, convex_hull3 as convex_hull};
+}
+
+/// The surfaces of the shapes, as triangles.
+///
+/// ```
+/// use impinge::dim3::procedural;
+/// use impinge::dim3::shape::Cylinder;
+///
+/// let surface = procedural::cylinder(&Cylinder::new(1.0_f32, 0.5), 24);
+/// assert_eq!((surface.vertices.len(), surface.triangles.len()), (50, 96));
+/// ```
+pub mod procedural {
+    pub use crate::procedural::space::{
+        ball, capsule, cone, convex_hull, cuboid, cylinder, triangle,
+    };
+    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
+}
+
+/// Searches among boxes of the user's own.
+///
+/// ```
+/// use impinge::dim3::bounding_volume::Aabb;
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::partitioning::BoxTree;
+///
+/// let boxes = [0.0_f32, 2.0, 4.0].map(|x| Aabb::new(Point::new(x, 0.0, 0.0), Point::new(x + 1.0, 1.0, 1.0)));
+/// let tree = BoxTree::from_boxes(&boxes);
+/// assert_eq!(tree.containing(&Point::new(2.9, 0.5, 0.5)), [1]);
+/// ```
+pub mod partitioning {
+    pub use crate::partitioning::BoxTreeError;
+
+    /// A tree over boxes that do not move.
+    pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
 /// Numbers, vectors and poses.

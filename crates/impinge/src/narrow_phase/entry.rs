@@ -79,7 +79,7 @@ pub(crate) struct ContactEntry<N: Real, const D: usize> {
     pub(crate) touch: Touch,
     pub(crate) state: ContactState<N, D>,
     /// Made when first read after an update.
-    public: OnceLock<Box<ContactManifold<N, D>>>,
+    public: OnceLock<ContactManifold<N, D>>,
 }
 
 impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
@@ -98,7 +98,7 @@ impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
 
     /// The manifold as users see it.
     pub(crate) fn manifold(&self, posed: &Posed<'_, N, D>) -> &ContactManifold<N, D> {
-        let make = || Box::new((N::tables().public_manifold)(&self.state, posed, self.number));
+        let make = || (N::tables().public_manifold)(&self.state, posed, self.number);
         self.public.get_or_init(make)
     }
 }

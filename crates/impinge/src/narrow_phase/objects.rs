@@ -11,7 +11,7 @@ use crate::shape::ShapeHandle;
 /// before; between updates the rows stand still, so that manifolds read then are those of the last
 /// update. A row outlives its object until the index is given to another.
 ///
-/// The table also knows which rows were written since the last update began: pairs of rows that
+/// The table also knows which rows were written in the update under way: pairs of rows that
 /// stand still need no new query.
 #[derive(Clone, Debug)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {

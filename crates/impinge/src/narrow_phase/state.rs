@@ -56,6 +56,9 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         posed: &Posed<'_, N, D>,
         pair_number: u64,
     ) -> ContactManifold<N, D> {
+        if self.raw.points.is_empty() {
+            return ContactManifold::default();
+        }
         let (pair, is_swapped) = posed.canonical();
         let pose1 = if is_swapped { posed.pose2 } else { posed.pose1 };
         materialise(&pair, &self.raw, &Placement { pose1, pair: pair_number, is_swapped })

@@ -2,11 +2,13 @@
 
 use core::fmt;
 
-use super::entry::posed;
+use super::entry::{ContactEntry, posed};
 use super::lanes::Lane;
+use super::state::Posed;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;
+use crate::pairs::PairTable;
 use crate::query::{ContactManifold, Proximity};
 
 /// The contacts of a pair of objects, as of the last update.
@@ -15,7 +17,7 @@ pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
 
 #[derive(Clone, Copy)]
 enum Contacts<'a, N: Space<D>, const D: usize> {
-    BuiltIn(&'a ContactManifold<N, D>),
+    BuiltIn(&'a ContactEntry<N, D>, Posed<'a, N, D>),
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
 }
 
@@ -30,16 +32,33 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     #[must_use]
     pub fn num_contacts(&self) -> usize {
         match self.0 {
-            Contacts::BuiltIn(manifold) => manifold.len(),
+            Contacts::BuiltIn(entry, _) => entry.state.len(),
             Contacts::Custom(algorithm) => algorithm.num_contacts(),
         }
+    }
+
+    /// The manifolds that hold a contact.
+    pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
+        let mut others = Vec::new();
+        let own = match self.0 {
+            // The common case allocates nothing.
+            Contacts::BuiltIn(entry, posed) => {
+                let touches = entry.state.len() > 0;
+                touches.then(|| entry.manifold(&posed))
+            }
+            Contacts::Custom(algorithm) => {
+                algorithm.contacts(&mut others);
+                None
+            }
+        };
+        own.into_iter().chain(others)
     }
 
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
-            Contacts::BuiltIn(manifold) if manifold.is_empty() => {}
-            Contacts::BuiltIn(manifold) => out.push(manifold),
+            Contacts::BuiltIn(entry, _) if entry.state.len() == 0 => {}
+            Contacts::BuiltIn(entry, posed) => out.push(entry.manifold(&posed)),
             Contacts::Custom(algorithm) => algorithm.contacts(out),
         }
     }
@@ -69,6 +88,20 @@ impl ProximityPair {
     }
 }
 
+/// The places of the pairs, sorted by pair: object by object, each with its partners in order.
+fn sorted(pairs: &PairTable) -> Vec<u32> {
+    let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
+    let (mut order, mut partners) = (Vec::with_capacity(pairs.len()), Vec::new());
+    for object in 0..objects {
+        let later = pairs.partners(object).filter(|&(partner, _)| partner > object);
+        partners.extend(later);
+        partners.sort_unstable();
+        let places = partners.drain(..).map(|(_, place)| place);
+        order.extend(places.map(|place| u32::try_from(place).expect("a pair table is smaller")));
+    }
+    order
+}
+
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// The contacts of a pair; `None` if there is no such pair or its contacts are not asked for.
     pub(crate) fn contact_pair<'a>(
@@ -96,6 +129,17 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
+    /// All manifolds that hold a contact, sorted by the handle indices of their pairs.
+    pub(crate) fn contact_manifolds<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+    ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
+        let touching = self.contact_pairs(table).filter(|(_, _, pair)| pair.num_contacts() > 0);
+        touching.flat_map(|(first, second, pair)| {
+            pair.manifolds().map(move |manifold| (first, second, manifold))
+        })
+    }
+
     /// All pairs whose proximity is asked for, sorted by handle index.
     pub(crate) fn proximity_pairs(&self) -> impl Iterator<Item = (u32, u32, ProximityPair)> + '_ {
         self.sorted().filter_map(move |index| {
@@ -114,8 +158,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             Lane::Contacts(group) => {
                 let group = &self.lanes.contacts[usize::from(group)];
                 let entry = group.state(location.place);
-                let manifold = entry.manifold(&posed(table, group.key(location.place)));
-                Some(ContactPair(Contacts::BuiltIn(manifold)))
+                let posed = posed(table, group.key(location.place));
+                Some(ContactPair(Contacts::BuiltIn(entry, posed)))
             }
             Lane::CustomContacts => {
                 let entry = self.lanes.custom_contacts.state(location.place);
@@ -139,11 +183,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// The places of the pairs, sorted by pair.
     fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
-        let order = self.order.get_or_init(|| {
-            let mut order: Vec<u32> = (0..).take(self.pairs.len()).collect();
-            order.sort_unstable_by_key(|&index| self.pairs.pairs()[index as usize]);
-            order
-        });
+        let order = self.order.get_or_init(|| sorted(&self.pairs));
         order.iter().map(|&index| index as usize)
     }
 

@@ -1,9 +1,11 @@
 //! How a contact moves with its solids, to first order and without a new query.
 
+mod own;
 mod side;
 #[cfg(test)]
 mod tests;
 
+pub use self::own::ContactSide;
 use self::side::Side;
 use super::{Contact, Pair, RawPoint};
 use crate::convex::Separation;
@@ -62,32 +64,13 @@ type Feet<N, const D: usize> = (Point<N, D>, Point<N, D>);
 
 impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// The kinematic of a point of a manifold whose normal is given, in the frame of the first solid.
+    #[cfg(test)]
     pub(crate) fn new(
         pair: &Pair<'_, N, D>,
         normal: &Vector<N, D>,
         point: &RawPoint<N, D>,
     ) -> Self {
-        let normal2 = pair.pose12.inverse_vector(normal);
-        let point2 = pair.pose12.inverse_point(&(point.point1 + normal * point.distance));
-        let side1 = Side::new(pair.first, point.feature1, normal, &point.point1);
-        let side2 = Side::new(pair.second, point.feature2, &-normal2, &point2);
-        let mut kinematic = Self {
-            feature1: point.feature1,
-            feature2: point.feature2,
-            local1: side1.core,
-            local2: side2.core,
-            geometry1: side1.geometry,
-            geometry2: side2.geometry,
-            rounding1: side1.rounding,
-            rounding2: side2.rounding,
-            normal1: *normal,
-            normal2,
-            rule: NormalRule::Geometry,
-        };
-        if !kinematic.reproduces(&pair.pose12) {
-            kinematic.rule = NormalRule::of(&side1, &side2, pair);
-        }
-        kinematic
+        Sides::new(pair, normal).kinematic(point)
     }
 
     /// The feature of the first solid that touches.
@@ -109,8 +92,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// features: ask again when the motion is not small. A corner stays on the plane or line of the
     /// other solid, two crossing lines give their nearest points, two points or a point and a line
     /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. Of a contact on a
-    /// round rim the distance and normal are that good, the place on the rim is of first order only.
+    /// points and the normal at the last update move with their solids. Of the
+    /// deepest contact on a round rim the distance and normal are that good, its place on the rim is
+    /// of first order only; so are the other contacts on that rim, which follow the deepest round it.
     /// Poses that are not finite give a contact that is not.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
@@ -171,8 +155,26 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         if is_flat(self.geometry1) || is_flat(self.geometry2) {
             return false;
         }
-        let difference = self.predicted(pose12).normal - self.normal1;
-        difference.norm() <= least_angle()
+        if self.is_steep() {
+            return false;
+        }
+        let normal = self.normal(&pose12.point(&self.local2), self.geometry2.moved(pose12), pose12);
+        (normal - self.normal1).norm() <= least_angle()
+    }
+
+    /// A line leans so much along the manifold's normal that no normal perpendicular to it comes
+    /// near: a quick and one-sided test. Of two lines that are nearly parallel only the first counts.
+    fn is_steep(&self) -> bool {
+        let leans = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
+            match geometry {
+                NeighborhoodGeometry::Line(along) => along.dot(normal).abs() > least,
+                _ => false,
+            }
+        };
+        let least = N::TWO * least_angle();
+        let nearly_parallel = N::lit(LEAST_SINE_SQUARED).sqrt();
+        leans(self.geometry1, &self.normal1, least)
+            || leans(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
     }
 
     fn normal(
@@ -191,8 +193,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             }
             NormalRule::Geometry => {
                 let lines = Lines::along(self.geometry1, geometry2);
-                let size = self.local1.coords.norm() + point2.coords.norm();
-                lines.connection(&(point2 - self.local1), &self.normal1, size)
+                lines.connection(&self.local1, point2, &self.normal1)
             }
         }
     }
@@ -204,20 +205,80 @@ fn least_angle<N: Real>() -> N {
     N::lit(256.0) * N::EPSILON
 }
 
-impl<N: Real, const D: usize> NormalRule<N, D> {
-    /// The rule where the contact's own geometry does not give the manifold's normal: the face that
-    /// is perpendicular to it, or else the edges that are; or else the face that comes nearest.
-    fn of(side1: &Side<N, D>, side2: &Side<N, D>, pair: &Pair<'_, N, D>) -> Self {
-        let lean = |side: &Side<N, D>| side.lean.unwrap_or(N::TWO);
-        let has_face = min(lean(side1), lean(side2)) <= least_angle();
-        if let (false, Some(edge1), Some(edge2)) = (has_face, side1.level_edge, side2.level_edge) {
-            let across = edge1.dot(&pair.pose12.vector(&edge2));
-            if across * across < N::ONE - N::lit(LEAST_SINE_SQUARED) {
-                return Self::Edges(edge1, edge2);
-            }
+/// What the kinematics of all points of one manifold have in common.
+pub(super) struct Sides<'a, N: Real, const D: usize> {
+    pose12: &'a Pose<N, D>,
+    /// The manifold's normal in the frames of the two solids.
+    normal1: Vector<N, D>,
+    normal2: Vector<N, D>,
+    side1: Side<N, D>,
+    side2: Side<N, D>,
+    /// The rule of points whose own geometry does not give the normal, once it was asked for.
+    rule: Option<NormalRule<N, D>>,
+}
+
+impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
+    /// The sides of a manifold whose normal is given in the frame of the first solid.
+    pub(super) fn new(pair: &'a Pair<'_, N, D>, normal: &Vector<N, D>) -> Self {
+        let normal2 = pair.pose12.inverse_vector(normal);
+        Self {
+            pose12: &pair.pose12,
+            normal1: *normal,
+            normal2,
+            side1: Side::new(pair.first, *normal),
+            side2: Side::new(pair.second, -normal2),
+            rule: None,
         }
-        if lean(side2) < lean(side1) { Self::Second } else { Self::First }
     }
+
+    /// The kinematic of a point of the manifold.
+    pub(super) fn kinematic(&mut self, point: &RawPoint<N, D>) -> ContactKinematic<N, D> {
+        let point2 = self.pose12.inverse_point(&(point.point1 + self.normal1 * point.distance));
+        let mut kinematic = ContactKinematic {
+            feature1: point.feature1,
+            feature2: point.feature2,
+            local1: self.side1.core(&point.point1),
+            local2: self.side2.core(&point2),
+            geometry1: self.side1.geometry(point.feature1),
+            geometry2: self.side2.geometry(point.feature2),
+            rounding1: self.side1.rounding,
+            rounding2: self.side2.rounding,
+            normal1: self.normal1,
+            normal2: self.normal2,
+            rule: NormalRule::Geometry,
+        };
+        if !kinematic.reproduces(self.pose12) {
+            kinematic.rule = self.rule();
+        }
+        kinematic
+    }
+
+    /// The rule where a contact's own geometry does not give the manifold's normal: the face that
+    /// is perpendicular to it, or else the edges that are; or else the face that comes nearest.
+    fn rule(&mut self) -> NormalRule<N, D> {
+        let (side1, side2) = (&self.side1, &self.side2);
+        *self.rule.get_or_insert_with(|| {
+            let (lean1, lean2) = (side1.lean(), side2.lean());
+            let has_face = min(lean1, lean2) <= least_angle();
+            let edges = if has_face { None } else { level_edges(side1, side2, self.pose12) };
+            match edges {
+                Some((edge1, edge2)) => NormalRule::Edges(edge1, edge2),
+                None if lean2 < lean1 => NormalRule::Second,
+                None => NormalRule::First,
+            }
+        })
+    }
+}
+
+/// Edges of the two solids, each in its own frame, whose crossing gives the manifold its normal.
+fn level_edges<N: Real, const D: usize>(
+    side1: &Side<N, D>,
+    side2: &Side<N, D>,
+    pose12: &Pose<N, D>,
+) -> Option<(Vector<N, D>, Vector<N, D>)> {
+    let (edge1, edge2) = (side1.level_edge()?, side2.level_edge()?);
+    let across = edge1.dot(&pose12.vector(&edge2));
+    (across * across < N::ONE - N::lit(LEAST_SINE_SQUARED)).then_some((edge1, edge2))
 }
 
 impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
@@ -269,16 +330,24 @@ impl<N: Real, const D: usize> Lines<N, D> {
         unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright)
     }
 
-    /// The unit vector of the shortest connection, on the side of `usual`; `usual` itself, made
+    /// The unit vector of the shortest connection of two points that may slide along the lines, on
+    /// the side of `usual`; `usual` itself, made
     /// perpendicular, where the connection vanishes or two lines leave no choice of direction.
-    fn connection(&self, gap: &Vector<N, D>, usual: &Vector<N, D>, size: N) -> Vector<N, D> {
-        let upright = self.upright(usual);
+    fn connection(
+        &self,
+        point1: &Point<N, D>,
+        point2: &Point<N, D>,
+        usual: &Vector<N, D>,
+    ) -> Vector<N, D> {
         if self.are_two {
-            return upright;
+            return self.upright(usual);
         }
-        let Some((along, length)) = unit(&self.reject(gap)) else { return upright };
+        let Some((along, length)) = unit(&self.reject(&(point2 - point1))) else {
+            return self.upright(usual);
+        };
+        let size = point1.coords.norm() + point2.coords.norm();
         if length <= N::lit(16.0) * N::EPSILON * size {
-            return upright;
+            return self.upright(usual);
         }
         if along.dot(usual) < N::ZERO { -along } else { along }
     }

@@ -1,9 +1,8 @@
 //! Contact manifolds as users see them: world frame, kinematics, ids.
 
-use smallvec::SmallVec;
-
+use super::kinematic::Sides;
 use super::{Contact, ContactKinematic, Pair, RawManifold, RawPoint};
-use crate::math::{Pose, Real, Unit};
+use crate::math::{Pose, Real, Unit, Vector};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.
 ///
@@ -16,6 +15,16 @@ pub struct ContactId {
     pub(crate) pair: u64,
     /// The number of the contact within the pair, never given twice.
     pub(crate) number: u32,
+}
+
+impl ContactId {
+    /// The name of a contact by an algorithm of one's own: `pair` is a number that
+    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) gave to the pair, `number` one that the
+    /// pair gives to no other contact.
+    #[must_use]
+    pub const fn new(pair: u64, number: u32) -> Self {
+        Self { pair, number }
+    }
 }
 
 /// A contact, how it moves, and its name.
@@ -37,11 +46,17 @@ pub struct TrackedContact<N: Real, const D: usize> {
 /// are farther apart than the prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
-    pub(crate) contacts: SmallVec<[TrackedContact<N, D>; 4]>,
-    pub(crate) deepest: usize,
+    /// Exactly as much memory as there are contacts: most pairs have fewer than the most.
+    contacts: Box<[TrackedContact<N, D>]>,
 }
 
 impl<N: Real, const D: usize> ContactManifold<N, D> {
+    /// The manifold that an algorithm of one's own has found; the order of the contacts is kept.
+    #[must_use]
+    pub fn from_contacts(contacts: impl IntoIterator<Item = TrackedContact<N, D>>) -> Self {
+        Self { contacts: contacts.into_iter().collect() }
+    }
+
     /// How many contacts it holds.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -63,13 +78,15 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
     /// The index of the deepest contact, the first of equals; 0 for an empty manifold.
     #[must_use]
     pub fn deepest_contact_id(&self) -> usize {
-        self.deepest
+        let depth = |index: usize| self.contacts[index].contact.depth;
+        let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
+        (1..self.contacts.len()).fold(0, deeper)
     }
 
     /// The contact of the largest depth, the first of equals; `None` for an empty manifold.
     #[must_use]
     pub fn deepest_contact(&self) -> Option<&TrackedContact<N, D>> {
-        self.contacts.get(self.deepest)
+        self.contacts.get(self.deepest_contact_id())
     }
 }
 
@@ -90,26 +107,32 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     raw: &RawManifold<N, D>,
     placement: &Placement<'_, N, D>,
 ) -> ContactManifold<N, D> {
-    let contacts = raw.points.iter().map(|point| tracked(pair, (raw, point), placement)).collect();
-    ContactManifold { contacts, deepest: raw.deepest() }
+    let mut sides = Sides::new(pair, &raw.normal);
+    let normal = placement.pose1.vector(&raw.normal);
+    let tracked = |point: &RawPoint<N, D>| {
+        let contact = placed(raw, point, placement.pose1, normal);
+        let kinematic = sides.kinematic(point);
+        let id = ContactId { pair: placement.pair, number: point.id };
+        if placement.is_swapped {
+            let (contact, kinematic) = (contact.flipped(), kinematic.flipped());
+            return TrackedContact { contact, kinematic, id };
+        }
+        TrackedContact { contact, kinematic, id }
+    };
+    ContactManifold { contacts: raw.points.iter().map(tracked).collect() }
 }
 
-fn tracked<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    (raw, point): (&RawManifold<N, D>, &RawPoint<N, D>),
-    placement: &Placement<'_, N, D>,
-) -> TrackedContact<N, D> {
-    let pose1 = placement.pose1;
-    let contact = Contact {
+/// A point in the world; `normal` is the manifold's, in the world.
+fn placed<N: Real, const D: usize>(
+    raw: &RawManifold<N, D>,
+    point: &RawPoint<N, D>,
+    pose1: &Pose<N, D>,
+    normal: Vector<N, D>,
+) -> Contact<N, D> {
+    Contact {
         world1: pose1.point(&point.point1),
         world2: pose1.point(&(point.point1 + raw.normal * point.distance)),
-        normal: Unit::new_unchecked(pose1.vector(&raw.normal)),
+        normal: Unit::new_unchecked(normal),
         depth: -point.distance,
-    };
-    let kinematic = ContactKinematic::new(pair, &raw.normal, point);
-    let id = ContactId { pair: placement.pair, number: point.id };
-    if placement.is_swapped {
-        return TrackedContact { contact: contact.flipped(), kinematic: kinematic.flipped(), id };
     }
-    TrackedContact { contact, kinematic, id }
 }

@@ -89,6 +89,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     }
 
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.
+    #[cfg(test)]
     pub(crate) fn deepest(&self) -> usize {
         let mut deepest = 0;
         for (index, point) in self.points.iter().enumerate() {

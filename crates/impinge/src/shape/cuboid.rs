@@ -1,7 +1,5 @@
 //! Boxes (rectangles in the plane).
 
-use smallvec::SmallVec;
-
 use super::error::{finite, or_panic, size};
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -81,6 +79,39 @@ struct Part<const D: usize> {
     corner: u32,
 }
 
+/// The part of a box that faces some direction: a point, a segment or a flat face with sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacingPart<N: Real, const D: usize> {
+    part: Part<D>,
+    /// The outward normal of a face.
+    pub(crate) normal: Option<Vector<N, D>>,
+}
+
+impl<N: Real, const D: usize> FacingPart<N, D> {
+    /// The direction of an edge of boxes in space.
+    pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
+        axis_vector((index / 4) as usize)
+    }
+
+    /// The direction of the side of the part that is most nearly perpendicular to a vector, the first
+    /// of equals; `None` of a point.
+    pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
+        let axes =
+            (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
+        let lean = |axis: usize| vector[axis].abs();
+        let level = axes.reduce(|best, axis| if lean(axis) < lean(best) { axis } else { best })?;
+        Some(axis_vector(level))
+    }
+}
+
+/// The unit vector along an axis.
+fn axis_vector<N: Real, const D: usize>(axis: usize) -> Vector<N, D> {
+    let mut vector = Vector::<N, D>::zeros();
+    vector[axis] = N::ONE;
+    vector
+}
+
 const fn has(set: u32, axis: usize) -> bool {
     set >> axis & 1 == 1
 }
@@ -114,31 +145,35 @@ impl<const D: usize> Part<D> {
         Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
     }
 
-    fn dimension(self) -> usize {
-        self.free.count_ones() as usize
+    /// The first axis that is not free: that of a face.
+    const fn own_axis(self) -> usize {
+        (!self.free & Self::ALL).trailing_zeros() as usize
     }
 
-    /// A point has no side, a segment one and a rectangle four.
-    fn side_count(self) -> usize {
-        self.dimension() * self.dimension()
+    /// How many axes are free.
+    const fn dimension(self) -> usize {
+        let (mut axis, mut count) = (0, 0);
+        while axis < D {
+            count += has(self.free, axis) as usize;
+            axis += 1;
+        }
+        count
     }
 
     /// The number documented at [`Cuboid`].
-    fn name(self) -> FeatureId {
-        let sign = |axis: usize| u32::from(has(self.corner, axis % D));
-        let index = match self.dimension() {
-            0 => self.corner,
-            dimension if dimension + 1 == D => {
-                let axis = (!self.free).trailing_zeros();
-                2 * axis + u32::from(!has(self.corner, axis as usize))
-            }
-            _ => {
-                let axis = self.free.trailing_zeros();
-                let next = axis as usize + 1;
-                4 * axis + sign(next) + 2 * sign(next + 1)
-            }
+    const fn name(self) -> FeatureId {
+        let dimension = self.dimension();
+        let index = if dimension == 0 {
+            self.corner
+        } else if dimension + 1 == D {
+            let axis = (!self.free).trailing_zeros();
+            2 * axis + !has(self.corner, axis as usize) as u32
+        } else {
+            let axis = self.free.trailing_zeros();
+            let (next, last) = ((axis as usize + 1) % D, (axis as usize + 2) % D);
+            4 * axis + has(self.corner, next) as u32 + 2 * has(self.corner, last) as u32
         };
-        FeatureId::flat::<D>(self.dimension(), index)
+        FeatureId::flat::<D>(dimension, index)
     }
 
     /// The part of a name, if there is one.
@@ -163,32 +198,90 @@ impl<const D: usize> Part<D> {
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
     /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
-    fn corners(self) -> SmallVec<[u32; 4]> {
-        let axis = (!self.free & Self::ALL).trailing_zeros() as usize;
+    const fn ring(self) -> Ring {
+        let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;
-        let first = if is_face { axis + 1 } else { 0 };
-        let is_odd = (D - 1) * axis % 2 == 1;
-        let is_reversed = is_face && is_odd == has(self.corner, axis);
-        let fixed = self.corner & !self.free;
-        let mut corners = SmallVec::from_slice(&[fixed]);
-        for axis in (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.free, axis)) {
-            for at in (0..corners.len()).rev() {
-                corners.push(corners[at] | 1 << axis);
+        let first = if is_face { own + 1 } else { 0 };
+        let mut ring = Ring::of_corner(self.corner & !self.free);
+        let mut at = first;
+        while at < first + D {
+            if has(self.free, at % D) {
+                ring = ring.reflected(1 << (at % D));
             }
+            at += 1;
         }
-        if is_reversed {
-            corners.reverse();
-        }
-        corners
+        let is_odd = (D - 1) * own % 2 == 1;
+        if is_face && is_odd == has(self.corner, own) { ring.reversed() } else { ring }
     }
 
+    /// The names of the sides of a ring. A point has no side, a segment one and a rectangle four.
+    const fn side_ids(ring: &Ring) -> [FeatureId; 4] {
+        let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
+        while at < ring.count {
+            let (from, to) = (ring.corners[at], ring.corners[(at + 1) % ring.count]);
+            ids[at] = Self { free: from ^ to, corner: from }.name();
+            at += 1;
+        }
+        ids
+    }
+
+    /// The rings of all faces, in the order of their names, and the names of their sides.
+    const FACES: [(Ring, [FeatureId; 4]); 6] = {
+        let (mut faces, mut index) = ([(Ring::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
+        while index < 2 * D {
+            let axis = 1 << (index / 2);
+            let corner = if index % 2 == 0 { axis } else { 0 };
+            let ring = Self { free: Self::ALL & !axis, corner }.ring();
+            faces[index] = (ring, Self::side_ids(&ring));
+            index += 1;
+        }
+        faces
+    };
+
     /// The outward unit vector in the middle of the normals of the faces around the part.
+    #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
         let mut normal = Vector::<N, D>::zeros();
-        for axis in (0..D).filter(|&axis| !has(self.free, axis)) {
-            normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+        for axis in 0..D {
+            if !has(self.free, axis) {
+                normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+            }
         }
-        normal / normal.norm()
+        // That of a face has its length already.
+        if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
+    }
+}
+
+/// The corners of a part that is not the whole box, as sets of axes: four at most.
+#[derive(Clone, Copy)]
+struct Ring {
+    corners: [u32; 4],
+    count: usize,
+}
+
+impl Ring {
+    const fn of_corner(corner: u32) -> Self {
+        Self { corners: [corner; 4], count: 1 }
+    }
+
+    /// Appends the corners there are, moved to the positive side of an axis, the last one first.
+    const fn reflected(mut self, axis: u32) -> Self {
+        let mut back = 0;
+        while back < self.count {
+            self.corners[self.count + back] = self.corners[self.count - 1 - back] | axis;
+            back += 1;
+        }
+        self.count *= 2;
+        self
+    }
+
+    const fn reversed(self) -> Self {
+        let (mut reversed, mut at) = (self, 0);
+        while at < self.count {
+            reversed.corners[at] = self.corners[self.count - 1 - at];
+            at += 1;
+        }
+        reversed
     }
 }
 
@@ -199,34 +292,58 @@ fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
 
 /// The axis, not yet taken, along which a direction has its least component.
 fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
-    let mut axes = (0..D).filter(|&axis| !has(taken, axis));
-    let first = axes.next()?;
-    let weaker = |a: usize, b: usize| if direction[b].abs() < direction[a].abs() { b } else { a };
-    Some(axes.fold(first, weaker))
+    let mut weakest = None;
+    for axis in 0..D {
+        let is_weaker = |best: usize| direction[axis].abs() < direction[best].abs();
+        if !has(taken, axis) && weakest.is_none_or(is_weaker) {
+            weakest = Some(axis);
+        }
+    }
+    weakest
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
+    #[inline]
     fn corner(&self, corner: u32) -> Point<N, D> {
         let mut point = Point::from(self.half_extents);
-        for axis in (0..D).filter(|&axis| !has(corner, axis)) {
-            point[axis] = -point[axis];
+        for axis in 0..D {
+            if !has(corner, axis) {
+                point[axis] = -point[axis];
+            }
         }
         point
+    }
+
+    /// What [`SupportMap::core_feature`] answers, without its corners; `None` where the box is flat
+    /// along an edge of it.
+    pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
+        let part = Part::<D>::facing(direction, Tilt::usual());
+        let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
+        if (0..D).any(is_flat) {
+            return None;
+        }
+        let is_face = part.dimension() + 1 == D;
+        Some(FacingPart { part, normal: is_face.then(|| part.normal()) })
     }
 
     fn fill(&self, part: Part<D>, out: &mut Feature<N, D>) {
         out.clear();
         out.id = part.name();
-        let corners = part.corners();
-        for (at, &from) in corners.iter().enumerate() {
-            out.push(FeatureId::Vertex(from), self.corner(from));
-            if at < part.side_count() {
-                let to = corners[(at + 1) % corners.len()];
-                out.side_ids.push(Part::<D> { free: from ^ to, corner: from }.name());
-            }
+        let (ring, side_ids) = match out.id {
+            FeatureId::Face(index) => Part::<D>::FACES[index as usize],
+            _ => (part.ring(), Part::<D>::side_ids(&part.ring())),
+        };
+        for &corner in &ring.corners[..ring.count] {
+            out.push(FeatureId::Vertex(corner), self.corner(corner));
+        }
+        for &id in &side_ids[..if ring.count > 2 { 4 } else { ring.count - 1 }] {
+            out.side_ids.push(id);
         }
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
-        out.drop_repeated();
+        // Only a box that is flat along a free axis has corners in one place.
+        if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
+            out.drop_repeated();
+        }
     }
 
     #[track_caller]
@@ -244,8 +361,8 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        let corners = Self::part(id, 1).corners();
-        [corners[0], corners[1]].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+        let [from, to, ..] = Self::part(id, 1).ring().corners;
+        [from, to].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {

@@ -102,6 +102,7 @@ impl<N: Real, const D: usize> Feature<N, D> {
     }
 
     /// Adds a vertex and its name.
+    #[inline]
     pub(super) fn push(&mut self, id: FeatureId, vertex: Point<N, D>) {
         self.vertices.push(vertex);
         self.vertex_ids.push(id);

@@ -39,6 +39,7 @@ pub use cone::Cone;
 pub use convex_hull::ConvexHull;
 pub use convex_polygon::ConvexPolygon;
 pub use cuboid::Cuboid;
+pub(crate) use cuboid::FacingPart;
 pub use cylinder::Cylinder;
 pub use error::ShapeError;
 pub use feature::{Feature, FeatureId};

@@ -1,8 +1,10 @@
 //! The common core of convex polygons and convex hulls: vertices, faces, edges and who meets whom.
 
+use core::ops::Range;
+
 use super::FeatureId;
 use super::segment::length_of;
-use crate::math::{Point, Real, Vector, max};
+use crate::math::{Point, Real, Vector, max, unit};
 
 /// A convex solid with flat faces, in any dimension.
 ///
@@ -26,6 +28,8 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fans: Vec<u32>,
     /// Where the fan of each vertex starts, and at last where the last one ends.
     pub(super) fan_starts: Vec<u32>,
+    /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
+    pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
 }
@@ -84,7 +88,20 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 
     /// The edges (in the plane: the faces) that end at a vertex.
     pub(super) fn fan(&self, vertex: usize) -> &[u32] {
-        &self.fans[self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize]
+        &self.fans[self.fan_range(vertex)]
+    }
+
+    /// The edges (in the plane: the faces) that end at a vertex, and their directions.
+    pub(super) fn fan_along(
+        &self,
+        vertex: usize,
+    ) -> impl Iterator<Item = (u32, &Option<Vector<N, D>>)> {
+        let range = self.fan_range(vertex);
+        self.fans[range.clone()].iter().copied().zip(&self.fan_directions[range])
+    }
+
+    fn fan_range(&self, vertex: usize) -> Range<usize> {
+        self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize
     }
 
     /// An edge (in the plane: a face) with its ends and what lies beside it; a side of the plane lies
@@ -131,6 +148,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.fans = ends.iter().map(|&(_, side)| side).collect();
         let start = |vertex: u32| ends.partition_point(|&(owner, _)| owner < vertex);
         self.fan_starts = (0_u32..).take(self.vertices.len() + 1).map(start).map(count32).collect();
+        let direction = |&side: &u32| {
+            let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
+            unit(&(b - a)).map(|(along, _)| along)
+        };
+        self.fan_directions = self.fans.iter().map(direction).collect();
     }
 }
 

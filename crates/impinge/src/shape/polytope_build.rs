@@ -38,6 +38,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             edges: Vec::new(),
             fans: Vec::new(),
             fan_starts: Vec::new(),
+            fan_directions: Vec::new(),
             center,
         }
     }

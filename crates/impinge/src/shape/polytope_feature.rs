@@ -3,7 +3,7 @@
 use super::polytope::count32;
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, Feature, FeatureId, Polytope, SupportMap};
-use crate::math::{Point, Real, Vector, unit, unit_or};
+use crate::math::{Point, Real, Vector, unit_or};
 
 /// What faces a direction: the indices of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -33,9 +33,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// The side at a vertex that leans least along a direction, and the sine by which it does.
     fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
         let mut best: Option<(u32, N)> = None;
-        for &side in self.fan(vertex) {
-            let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
-            let slope = unit(&(b - a)).map_or(N::ONE, |(along, _)| along.dot(direction).abs());
+        for (side, along) in self.fan_along(vertex) {
+            let slope = along.map_or(N::ONE, |along| along.dot(direction).abs());
             if best.is_none_or(|(_, least)| slope < least) {
                 best = Some((side, slope));
             }
@@ -69,7 +68,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         let sides = self.face_sides(face);
         // A side of the plane is one segment, not a loop of two.
         let count = if sides.len() == 2 { 1 } else { sides.len() };
-        out.side_ids.extend(sides[..count].iter().map(|&side| Self::side_id(side)));
+        for &side in &sides[..count] {
+            out.side_ids.push(Self::side_id(side));
+        }
         out.normal = Some(face.normal);
     }
 

@@ -10,6 +10,9 @@ use crate::math::Space;
 /// Asked only about pairs that the groups allow, and only when a pair is about to start; all filters
 /// of a world must agree. The answer must not change in time unless the filter is registered anew or
 /// the groups of one of the objects are set again.
+///
+/// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
+/// stands for this one in its dimension; closures of two references to objects implement these.
 pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
     /// The two objects may interact. `co1` is the one whose handle comes first.
     fn is_pair_valid(&self, co1: &CollisionObject<N, D, T>, co2: &CollisionObject<N, D, T>)

@@ -22,6 +22,6 @@ pub use collision_world::CollisionWorld;
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
 pub use groups::{CollisionGroups, GroupError};
-pub use narrow_phase::{ContactPairs, NarrowPhase, ProximityPairs};
+pub use narrow_phase::{ContactManifolds, ContactPairs, NarrowPhase, ProximityPairs};
 pub use object::CollisionObject;
 pub use objects::CollisionObjects;

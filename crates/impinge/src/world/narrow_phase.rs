@@ -5,6 +5,7 @@ use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
 };
+use crate::query::ContactManifold;
 
 /// Pairs with their contacts, in canonical order.
 pub type ContactPairs<'a, N, const D: usize> = Box<
@@ -14,6 +15,12 @@ pub type ContactPairs<'a, N, const D: usize> = Box<
 /// Pairs with their proximities, in canonical order.
 pub type ProximityPairs<'a> =
     Box<dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ProximityPair)> + 'a>;
+
+/// Manifolds that hold a contact, in the canonical order of their pairs.
+pub type ContactManifolds<'a, N, const D: usize> = Box<
+    dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, &'a ContactManifold<N, D>)>
+        + 'a,
+>;
 
 /// Exact answers for the pairs that the broad phase proposes.
 ///
@@ -84,6 +91,16 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D>;
+
+    /// All manifolds that hold a contact.
+    fn contact_manifolds<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactManifolds<'a, N, D> {
+        Box::new(self.contact_pairs(objects).flat_map(|(handle1, handle2, pair)| {
+            pair.manifolds().map(move |manifold| (handle1, handle2, manifold))
+        }))
+    }
 
     /// All pairs that are asked for proximity.
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
@@ -160,6 +177,19 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         let pairs = Self::contact_pairs(self, table);
         Box::new(
             pairs.map(|(first, second, pair)| (table.handle(first), table.handle(second), pair)),
+        )
+    }
+
+    fn contact_manifolds<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactManifolds<'a, N, D> {
+        let table = objects.table();
+        let manifolds = Self::contact_manifolds(self, table);
+        Box::new(
+            manifolds.map(|(first, second, manifold)| {
+                (table.handle(first), table.handle(second), manifold)
+            }),
         )
     }
 

@@ -74,10 +74,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn contact_manifolds(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, &ContactManifold<N, D>)> {
-        self.contact_pairs().flat_map(|(object1, object2, pair)| {
-            let mut manifolds = Vec::new();
-            pair.contacts(&mut manifolds);
-            manifolds.into_iter().map(move |manifold| (object1, object2, manifold))
+        let manifolds = self.narrow_phase.contact_manifolds(&self.objects);
+        manifolds.filter_map(|(handle1, handle2, manifold)| {
+            Some((self.objects.get(handle1)?, self.objects.get(handle2)?, manifold))
         })
     }
 

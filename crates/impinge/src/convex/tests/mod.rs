@@ -6,3 +6,5 @@ mod exact;
 mod generator;
 mod random;
 mod solids;
+mod surface;
+mod witness;

@@ -2,79 +2,107 @@
 
 use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
-use crate::shape::{Cylinder, Feature, FeatureId, Geometry, Kind, SupportMap};
+use crate::shape::{Cylinder, FacingPart, Feature, FeatureId, Geometry, Kind, SupportMap};
 
 /// A cylinder that leans by no more than this sine touches along its side: its axis is the core.
 const LYING_SINE: f64 = 0.05;
 
-/// The core near a contact, in the local frame.
+/// One solid's share in all contacts of a manifold, in its local frame.
 pub(super) struct Side<N: Real, const D: usize> {
-    pub(super) core: Point<N, D>,
-    pub(super) geometry: NeighborhoodGeometry<N, D>,
     pub(super) rounding: N,
-    /// How much the flat face that faces the other solid leans: the length of the difference of its
-    /// normal and the contact's. `None` without such a face.
-    pub(super) lean: Option<N>,
-    /// An edge of what faces the other solid that is perpendicular to the contact's normal.
-    pub(super) level_edge: Option<Vector<N, D>>,
+    /// The manifold's normal away from the solid.
+    outward: Vector<N, D>,
+    facing: Facing<N, D>,
+}
+
+/// What of a solid faces the other one.
+enum Facing<N: Real, const D: usize> {
+    /// A half-space, with its outward normal.
+    Boundary(Vector<N, D>),
+    /// A ball.
+    Center,
+    /// A cylinder that lies on its side.
+    Axis,
+    /// A part of a box.
+    Part(FacingPart<N, D>),
+    /// The general case: the feature that faces the other solid is asked for once more and the named
+    /// part is looked up in it. A curved face counts as its tangent plane.
+    Feature(Feature<N, D>),
 }
 
 impl<N: Real, const D: usize> Side<N, D> {
-    /// The side of a solid whose surface is touched at `surface`, on the feature `id`; `outward` is
-    /// the contact's normal away from the solid.
-    pub(super) fn new(
-        kind: Kind<'_, N, D>,
-        id: FeatureId,
-        outward: &Vector<N, D>,
-        surface: &Point<N, D>,
-    ) -> Self {
-        let (geometry, rounding) = match kind {
-            Kind::Plane(plane) => {
-                let normal = plane.normal().into_inner();
-                let lean = Some((normal - outward).norm());
-                let geometry = NeighborhoodGeometry::Plane(normal);
-                return Self {
-                    core: *surface,
-                    geometry,
-                    rounding: N::ZERO,
-                    lean,
-                    level_edge: None,
-                };
+    /// The side of a solid; `outward` is the manifold's normal away from it.
+    pub(super) fn new(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
+        let (facing, rounding) = match kind {
+            Kind::Plane(plane) => (Facing::Boundary(plane.normal().into_inner()), N::ZERO),
+            Kind::Ball(ball) => (Facing::Center, ball.radius()),
+            Kind::Cylinder(cylinder, _) if is_lying(cylinder, &outward) => {
+                (Facing::Axis, cylinder.radius())
             }
-            Kind::Ball(ball) => (NeighborhoodGeometry::Point, ball.radius()),
-            Kind::Cylinder(cylinder, _) if is_lying(cylinder, outward) => {
-                (on_axis(id), cylinder.radius())
-            }
-            other => return Self::of_core(other, id, outward, surface),
+            Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
+                Some(part) => (Facing::Part(part), N::ZERO),
+                None => return Self::of_core(kind, outward),
+            },
+            other => return Self::of_core(other, outward),
         };
-        let core = surface - outward * rounding;
-        Self { core, geometry, rounding, lean: None, level_edge: None }
+        Self { rounding, outward, facing }
     }
 
-    /// The general case: the feature that faces the other solid is asked for once more and the named
-    /// part is looked up in it. A curved face counts as its tangent plane.
-    fn of_core(
-        kind: Kind<'_, N, D>,
-        id: FeatureId,
-        outward: &Vector<N, D>,
-        surface: &Point<N, D>,
-    ) -> Self {
+    fn of_core(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
         let map: &dyn SupportMap<N, D> =
             Geometry(kind).as_support_map().expect("only half-spaces are no support maps");
         let mut feature = Feature::default();
-        map.core_feature(outward, &mut feature);
-        let geometry = match id {
-            FeatureId::Vertex(_) => NeighborhoodGeometry::Point,
-            FeatureId::Edge(_) => line(&feature, id),
-            FeatureId::Face(_) => NeighborhoodGeometry::Plane(feature.normal.unwrap_or(*outward)),
+        map.core_feature(&outward, &mut feature);
+        Self { rounding: map.rounding(), outward, facing: Facing::Feature(feature) }
+    }
+
+    /// The point of the core below a point of the surface.
+    pub(super) fn core(&self, surface: &Point<N, D>) -> Point<N, D> {
+        surface - self.outward * self.rounding
+    }
+
+    /// What the core looks like at the feature `id`.
+    pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
+        match (&self.facing, id) {
+            (Facing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
+            (Facing::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
+            (Facing::Part(_), FeatureId::Edge(index)) => {
+                NeighborhoodGeometry::Line(FacingPart::edge_direction(index))
+            }
+            (Facing::Part(part), FeatureId::Face(_)) => {
+                NeighborhoodGeometry::Plane(part.normal.unwrap_or(self.outward))
+            }
+            (Facing::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
+            (Facing::Feature(feature), FeatureId::Face(_)) => {
+                NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
+            }
+            // The ends of a lying cylinder are on the rims.
+            (Facing::Center | Facing::Axis | Facing::Part(_) | Facing::Feature(_), _) => {
+                NeighborhoodGeometry::Point
+            }
+        }
+    }
+
+    /// How much the flat face that faces the other solid leans: the length of the difference of its
+    /// normal and the contact's. 2, the most there is, without such a face.
+    pub(super) fn lean(&self) -> N {
+        let normal = match &self.facing {
+            Facing::Boundary(normal) => Some(*normal),
+            Facing::Part(part) => part.normal,
+            Facing::Feature(feature) => feature.normal,
+            Facing::Center | Facing::Axis => None,
         };
-        let rounding = map.rounding();
-        Self {
-            core: surface - outward * rounding,
-            geometry,
-            rounding,
-            lean: feature.normal.map(|normal| (normal - outward).norm()),
-            level_edge: level_edge(&feature, outward),
+        normal.map_or(N::TWO, |normal| (normal - self.outward).norm())
+    }
+
+    /// An edge of what faces the other solid that is perpendicular to the contact's normal.
+    pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
+        match &self.facing {
+            Facing::Part(part) => {
+                part.most_level_side(&self.outward).filter(|side| is_level(side, &self.outward))
+            }
+            Facing::Feature(feature) => level_edge(feature, &self.outward),
+            _ => None,
         }
     }
 }
@@ -87,7 +115,12 @@ fn level_edge<N: Real, const D: usize>(
     let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
     let lean = |side: &Vector<N, D>| side.dot(outward).abs();
     let level = sides.reduce(|best, side| if lean(&side) < lean(&best) { side } else { best });
-    level.filter(|side| lean(side) <= super::least_angle())
+    level.filter(|side| is_level(side, outward))
+}
+
+/// Perpendicular up to rounding.
+fn is_level<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
+    side.dot(outward).abs() <= super::least_angle()
 }
 
 /// The direction of a side of a feature, along its outline; `None` for a side of no length.
@@ -101,14 +134,11 @@ fn is_lying<N: Real, const D: usize>(cylinder: &Cylinder<N>, outward: &Vector<N,
     outward[1].abs() <= N::lit(LYING_SINE) && cylinder.radius() > N::ZERO
 }
 
-/// The side of a cylinder is a line, its ends on the rims are points.
-fn on_axis<N: Real, const D: usize>(id: FeatureId) -> NeighborhoodGeometry<N, D> {
+/// The axis of a cylinder.
+fn upward<N: Real, const D: usize>() -> Vector<N, D> {
     let mut axis = Vector::<N, D>::zeros();
     axis[1] = N::ONE;
-    match id {
-        FeatureId::Face(_) => NeighborhoodGeometry::Line(axis),
-        _ => NeighborhoodGeometry::Point,
-    }
+    axis
 }
 
 /// The line of a side of a feature; a point for a rim, which is no straight edge.

@@ -2,10 +2,11 @@
 //!
 //! What the separating axis test found, the general builder would find again through supports and
 //! features. Here the face that faces the other box is a rectangle along two axes of its own box, and
-//! the most aligned face of the other box is seen as a parallelogram above it: the corners of their
-//! common area come out of fixed loops. Names, order and numbers are those of the general builder,
-//! which is the definition of this one, and which takes over wherever this one declines: edges across
-//! edges, faces that lean too far, flat boxes, angular prediction, nearest points off the face.
+//! the most aligned face of the other box, seen along the manifold's normal, a parallelogram above
+//! it: the corners of their common area come out of fixed loops. The normal is that of the rectangle,
+//! or leans a little where an edge of each box decides. Names, order and numbers are those of the
+//! general builder, which is the definition of this one, and which takes over wherever this one
+//! declines: faces that lean too far, flat boxes, angular prediction, nearest points off the faces.
 
 use super::frame::{Candidate, ROUNDING_ERRORS};
 use super::overlap::Candidates;
@@ -53,6 +54,8 @@ struct Faces<'a, N: Real> {
 struct Rectangle<N: Real> {
     axes: [usize; 3],
     sign: N,
+    /// The manifold's normal away from this box, in its frame, by the same axes.
+    toward: [N; 3],
     half: N,
     across: [N; 2],
 }
@@ -76,21 +79,14 @@ struct Parallelogram<N: Real> {
 }
 
 impl<'a, N: Real> Faces<'a, N> {
-    /// The two faces, if the axis is the normal of one and the other does not lean too far.
+    /// The two faces, unless one leans too far from the axis.
     fn meeting(boxes: &'a Boxes<N>, axis: &BoxAxis<N>) -> Option<Self> {
-        let (w, is_second) = match axis.kind {
-            AxisKind::Face1(axis) => (axis, false),
-            AxisKind::Face2(axis) => (axis, true),
-            AxisKind::Edges(..) => return None,
+        let (rectangle, is_second) = Rectangle::facing(boxes, axis)?;
+        let (other, pose) = if is_second {
+            (boxes.half1, boxes.pose12.inverse())
+        } else {
+            (boxes.half2, boxes.pose12)
         };
-        let (u, v) = ((w + 1) % 3, (w + 2) % 3);
-        let outward = if is_second { -axis.normal.dot(&boxes.axis2(w)) } else { axis.normal[w] };
-        let sign = if outward < N::ZERO { -N::ONE } else { N::ONE };
-        let (half, other) =
-            if is_second { (boxes.half2, boxes.half1) } else { (boxes.half1, boxes.half2) };
-        let pose = if is_second { boxes.pose12.inverse() } else { boxes.pose12 };
-        let rectangle =
-            Rectangle { axes: [u, v, w], sign, half: half[w], across: [half[u], half[v]] };
         let size = boxes.half1.norm() + boxes.half2.norm() + boxes.pose12.translation.norm();
         let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
         let above = Parallelogram::facing(&rectangle, &other, &pose)?;
@@ -178,6 +174,7 @@ impl<'a, N: Real> Faces<'a, N> {
         if out.iter().any(|old| old.features == features) {
             return;
         }
+        // The first box is above where the rectangle is the second's, whose normal then is straight.
         let [u, v, w] = self.rectangle.axes;
         let rise = if self.is_second { height } else { N::ZERO };
         let mut point = Point::<N, 3>::origin();
@@ -219,6 +216,40 @@ fn face(axis: usize, is_positive: bool) -> FeatureId {
 }
 
 impl<N: Real> Rectangle<N> {
+    /// The face whose normal the axis is, or, between edges, the face of the first box that is most
+    /// aligned with it; and whether it belongs to the second box. `None` if it leans too far.
+    fn facing(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Option<(Self, bool)> {
+        let straight = |w: usize, along: N| {
+            Vector::<N, 3>::ith(w, if along < N::ZERO { -N::ONE } else { N::ONE })
+        };
+        let (w, toward, half) = match axis.kind {
+            AxisKind::Face1(w) => (w, straight(w, axis.normal[w]), &boxes.half1),
+            AxisKind::Face2(w) => (w, straight(w, -axis.normal.dot(&boxes.axis2(w))), &boxes.half2),
+            AxisKind::Edges(..) => (axis.normal.iamax(), axis.normal, &boxes.half1),
+        };
+        let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+        let lean = toward[u] * toward[u] + toward[v] * toward[v];
+        let rectangle = Self {
+            axes: [u, v, w],
+            sign: if toward[w] < N::ZERO { -N::ONE } else { N::ONE },
+            toward: [toward[u], toward[v], toward[w]],
+            half: half[w],
+            across: [half[u], half[v]],
+        };
+        let is_second = matches!(axis.kind, AxisKind::Face2(_));
+        (lean <= N::lit(MOST_LEAN)).then_some((rectangle, is_second))
+    }
+
+    /// Where a vector that starts on the plane of the rectangle ends, seen along the normal, and how
+    /// far along the normal.
+    fn seen(&self, vector: &Vector<N, 3>) -> (Vector<N, 2>, N) {
+        let ([u, v, w], toward) = (self.axes, &self.toward);
+        let height = vector[w] / toward[2];
+        let flat =
+            Vector::<N, 2>::new(vector[u] - toward[0] * height, vector[v] - toward[1] * height);
+        (flat, height)
+    }
+
     fn is_positive(&self) -> bool {
         self.sign > N::ZERO
     }
@@ -278,36 +309,36 @@ impl<N: Real> Rectangle<N> {
 }
 
 impl<N: Real> Parallelogram<N> {
-    /// The face of a box, placed at `pose`, that is most aligned with the rectangle's; `None` if it
-    /// leans too far.
+    /// The face of a box, placed at `pose`, that is most aligned with the normal; `None` if it leans
+    /// too far.
     fn facing(rectangle: &Rectangle<N>, half: &Vector<N, 3>, pose: &Pose<N, 3>) -> Option<Self> {
-        let ([u, v, w], sign) = (rectangle.axes, rectangle.sign);
-        let leaning = |axis: usize| pose.rotation[(w, axis)].abs();
-        let mut m = if leaning(1) > leaning(0) { 1 } else { 0 };
-        m = if leaning(2) > leaning(m) { 2 } else { m };
+        let [u, v, w] = rectangle.axes;
+        let mut toward = Vector::<N, 3>::zeros();
+        (toward[u], toward[v], toward[w]) = rectangle.toward.into();
+        let facing = -pose.inverse_vector(&toward);
+        let m = facing.iamax();
         let (k1, k2) = ((m + 1) % 3, (m + 2) % 3);
-        let lean = leaning(k1) * leaning(k1) + leaning(k2) * leaning(k2);
+        let lean = facing[k1] * facing[k1] + facing[k2] * facing[k2];
         if lean > N::lit(MOST_LEAN) {
             return None;
         }
-        let is_positive = sign * pose.rotation[(w, m)] < N::ZERO;
-        let flat = |axis: usize, length: N| {
-            Vector::<N, 2>::new(pose.rotation[(u, axis)], pose.rotation[(v, axis)]) * length
-        };
-        let climb = |axis: usize, length: N| sign * pose.rotation[(w, axis)] * length;
-        let toward = signed(half[m], is_positive);
-        let arms = [flat(k1, half[k1]), flat(k2, half[k2])];
-        let area = cross2(&arms[0], &arms[1]);
-        let place = Vector::<N, 2>::new(pose.translation[u], pose.translation[v]);
+        let is_positive = facing[m] > N::ZERO;
+        let axis = |axis: usize| pose.rotation.column(axis) * half[axis];
+        let mut from_plane = pose.translation + axis(m) * signed(N::ONE, is_positive);
+        from_plane[w] -= rectangle.sign * rectangle.half;
+        let (center, height) = rectangle.seen(&from_plane);
+        let ((arm1, climb1), (arm2, climb2)) =
+            (rectangle.seen(&axis(k1)), rectangle.seen(&axis(k2)));
+        let area = cross2(&arm1, &arm2);
         Some(Self {
             axes: [m, k1, k2],
             is_positive,
-            center: place + flat(m, toward),
-            arms,
-            height: sign * pose.translation[w] - rectangle.half + climb(m, toward),
-            climbs: [climb(k1, half[k1]), climb(k2, half[k2])],
+            center,
+            arms: [arm1, arm2],
+            height,
+            climbs: [climb1, climb2],
             area,
-            widths: [area.abs() / arms[1].norm(), area.abs() / arms[0].norm()],
+            widths: [area.abs() / arm2.norm(), area.abs() / arm1.norm()],
         })
     }
 

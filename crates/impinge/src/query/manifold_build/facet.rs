@@ -39,30 +39,72 @@ pub(super) struct Facet<N: Real, const D: usize> {
     rounding: N,
     /// Between the manifold's normal and the facet's own.
     cosine: N,
+    /// Of a rounded solid the corner nearest to the other: how far it is below the supporting plane
+    /// and where it is seen.
+    top: (N, Vector<N, 2>),
 }
 
 impl<N: Real, const D: usize> Facet<N, D> {
-    /// The facet of a solid that is placed at `pose` in the frame of the first.
-    pub(super) fn facing(
-        which: Which,
-        map: &dyn SupportMap<N, D>,
-        pose: &Pose<N, D>,
-        frame: &Frame<N, D>,
-    ) -> Self {
-        let outward = which.outward(frame);
-        let mut feature = Feature::default();
-        map.core_feature(&pose.inverse_vector(&outward), &mut feature);
-        let mut facet = Self {
+    /// The facet of a half-space, which has no corners.
+    #[inline]
+    pub(super) fn boundary(which: Which) -> Self {
+        Self {
             which,
-            id: feature.id,
-            corners: corners(&feature, pose, frame),
+            id: FeatureId::Face(0),
+            corners: SmallVec::new(),
             inward: SmallVec::new(),
-            normal: feature.normal.map(|normal| pose.vector(&normal)),
-            rounding: map.rounding(),
+            normal: None,
+            rounding: N::ZERO,
             cosine: N::ONE,
-        };
-        facet.settle(&outward, frame.tolerance);
-        facet
+            top: (N::ZERO, Vector::<N, 2>::zeros()),
+        }
+    }
+
+    /// Makes it the facet of a solid that is placed at `pose` in the frame of the first; `None` for
+    /// the first itself.
+    pub(super) fn face(
+        &mut self,
+        map: &dyn SupportMap<N, D>,
+        pose: Option<&Pose<N, D>>,
+        frame: &Frame<N, D>,
+    ) {
+        let outward = self.which.outward(frame);
+        let mut feature = Feature::default();
+        match pose {
+            None => map.core_feature(&outward, &mut feature),
+            Some(pose) => map.core_feature(&pose.inverse_vector(&outward), &mut feature),
+        }
+        self.id = feature.id;
+        self.normal = feature.normal.map(|normal| pose.map_or(normal, |pose| pose.vector(&normal)));
+        self.rounding = map.rounding();
+        self.take_corners(&feature, pose, frame);
+        self.settle(&outward, frame.tolerance);
+        if self.rounding > N::ZERO {
+            self.find_top(frame);
+        }
+    }
+
+    /// Takes the corners of a feature to the frame of the first solid. Where a feature names fewer
+    /// sides than it has corners, as segments do, the rest bear its own name.
+    fn take_corners(
+        &mut self,
+        feature: &Feature<N, D>,
+        pose: Option<&Pose<N, D>>,
+        frame: &Frame<N, D>,
+    ) {
+        for (index, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
+            let point = pose.map_or(*vertex, |pose| pose.point(vertex));
+            let side = feature.side_ids.get(index).copied().unwrap_or(feature.id);
+            self.corners.push(Corner { point, flat: frame.flat(&point), id, side });
+        }
+    }
+
+    /// Finds the corner that is nearest to the other solid, the first of equals.
+    fn find_top(&mut self, frame: &Frame<N, D>) {
+        let placed =
+            |corner: &Corner<N, D>| (self.below_witness(&corner.point, frame), corner.flat);
+        let nearer = |top: (N, _), corner: (N, _)| if corner.0 < top.0 { corner } else { top };
+        self.top = self.corners.iter().map(placed).reduce(nearer).unwrap_or(self.top);
     }
 
     /// Simplifies what has no extent when seen along the normal, and prepares the sides.
@@ -93,12 +135,11 @@ impl<N: Real, const D: usize> Facet<N, D> {
             return self.keep_farthest(outward);
         }
         let turn = if area < N::ZERO { -N::ONE } else { N::ONE };
-        self.inward = (0..self.corners.len())
-            .map(|index| {
-                let side = self.side(index);
-                Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm())
-            })
-            .collect();
+        self.inward = SmallVec::from_elem(Vector::<N, 2>::zeros(), self.corners.len());
+        for ((from, to), inward) in sides(&self.corners).zip(&mut self.inward) {
+            let side = to.flat - from.flat;
+            *inward = Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm());
+        }
     }
 
     /// A segment that leans too much is its nearest end. The cosine is that of the angle between the
@@ -143,58 +184,80 @@ impl<N: Real, const D: usize> Facet<N, D> {
 
     /// Twice the signed area seen along the normal, and the index of the longest side.
     fn area_and_longest_side(&self) -> (N, usize) {
-        let (mut area, mut longest) = (N::ZERO, 0);
+        let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.corners[0].flat;
-        for index in 0..self.corners.len() {
-            let arm = self.corners[index].flat - origin;
-            area += cross2(&arm, &self.side(index));
-            if self.side(index).norm_squared() > self.side(longest).norm_squared() {
-                longest = index;
+        for (index, (from, to)) in sides(&self.corners).enumerate() {
+            let (arm, side) = (from.flat - origin, to.flat - from.flat);
+            area += cross2(&arm, &side);
+            let squared = side.norm_squared();
+            if squared > most {
+                (longest, most) = (index, squared);
             }
         }
         (area, longest)
     }
 
     /// A point without any extent across the normal.
+    #[inline]
     pub(super) fn is_point(&self) -> bool {
         self.corners.len() < 2
     }
 
     /// Two corners: one side, which is looked at from both hands.
+    #[inline]
     pub(super) fn is_segment(&self) -> bool {
         self.corners.len() == 2
     }
 
     /// None for a point, one for a segment, else one for each corner.
+    #[inline]
     pub(super) fn side_count(&self) -> usize {
         self.inward.len()
     }
 
     /// The index of the corner after a corner.
+    #[inline]
     pub(super) fn next(&self, index: usize) -> usize {
         if index + 1 < self.corners.len() { index + 1 } else { 0 }
     }
 
     /// From a corner to the next, seen along the normal.
+    #[inline]
     pub(super) fn side(&self, index: usize) -> Vector<N, 2> {
         self.corners[self.next(index)].flat - self.corners[index].flat
     }
 
-    /// How far inside the line of a side a place is; negative outside.
-    pub(super) fn inside(&self, side: usize, flat: &Vector<N, 2>) -> N {
-        self.inward[side].dot(&(flat - self.corners[side].flat))
+    /// How far inside the line of each side a place is; negative outside.
+    #[inline]
+    pub(super) fn measure_inside(&self, flat: &Vector<N, 2>, insides: &mut [N]) {
+        for ((inside, inward), from) in insides.iter_mut().zip(&self.inward).zip(&self.corners) {
+            *inside = inward.dot(&(flat - from.flat));
+        }
     }
 
     /// The smallest part of the facet that contains a place: a corner, a side, the whole.
     ///
     /// `None` if the place is outside by more than the tolerance.
     pub(super) fn locate(&self, flat: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
+        let mut insides: SmallVec<[N; 8]> = SmallVec::from_elem(N::ZERO, self.side_count());
+        self.measure_inside(flat, &mut insides);
+        self.locate_inside(&insides, flat, tolerance)
+    }
+
+    /// [`Self::locate`] where it is known how far inside of each side the place is.
+    #[inline]
+    pub(super) fn locate_inside(
+        &self,
+        insides: &[N],
+        flat: &Vector<N, 2>,
+        tolerance: N,
+    ) -> Option<FeatureId> {
+        let highest = if self.is_segment() { tolerance } else { N::INFINITY };
+        if insides.iter().any(|&inside| inside < -tolerance || inside > highest) {
+            return None;
+        }
         let mut touched = None;
-        for side in 0..self.side_count() {
-            let inside = self.inside(side, flat);
-            if inside < -tolerance || self.is_segment() && inside > tolerance {
-                return None;
-            }
+        for (side, &inside) in insides.iter().enumerate() {
             // Of two touched sides either will do: where they meet, both answer with the corner.
             if inside <= tolerance {
                 touched = self.on_side(side, flat, tolerance).or(touched);
@@ -216,6 +279,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     }
 
     /// The point of the core that is seen at the same place as `point`.
+    #[inline]
     pub(super) fn under(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> Point<N, D> {
         let Some(normal) = self.normal else {
             return self.along_side(0, self.parameter(&frame.flat(point)));
@@ -232,6 +296,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     }
 
     /// The point of a side at a parameter between 0 and 1.
+    #[inline]
     pub(super) fn along_side(&self, side: usize, parameter: N) -> Point<N, D> {
         let (from, to) = (&self.corners[side].point, &self.corners[self.next(side)].point);
         from + (to - from) * parameter
@@ -242,22 +307,18 @@ impl<N: Real, const D: usize> Facet<N, D> {
     /// Above the flat part that is `rounding / cosine`; above the end nearest to the other solid the
     /// ball around that end. Nothing rises above the witness. Exact for capsules, and wherever the
     /// surface is parallel to the facet; between the two a rounded polygon may lie a little lower.
+    #[inline]
     pub(super) fn lift(&self, core: &Point<N, D>, frame: &Frame<N, D>) -> N {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
         let room = self.below_witness(core, frame);
-        let top = self.corners.iter().fold(&self.corners[0], |top, corner| {
-            let is_nearer =
-                self.below_witness(&corner.point, frame) < self.below_witness(&top.point, frame);
-            if is_nearer { corner } else { top }
-        });
+        let (top, place) = self.top;
         let (radius, cosine) = (self.rounding, self.cosine);
-        let away_squared = (frame.flat(core) - top.flat).norm_squared();
+        let away_squared = (frame.flat(core) - place).norm_squared();
         let turns_squared = radius * radius * (N::ONE - cosine * cosine);
         let lift = if away_squared < turns_squared {
-            let rise = room - self.below_witness(&top.point, frame);
-            rise + (radius * radius - away_squared).sqrt()
+            room - top + (radius * radius - away_squared).sqrt()
         } else {
             radius / cosine
         };
@@ -284,21 +345,13 @@ impl Which {
     }
 }
 
-/// The corners of a feature, taken to the frame of the first solid. Where a feature names fewer sides
-/// than it has corners, as segments do, the rest bear its own name.
-fn corners<N: Real, const D: usize>(
-    feature: &Feature<N, D>,
-    pose: &Pose<N, D>,
-    frame: &Frame<N, D>,
-) -> SmallVec<[Corner<N, D>; 8]> {
-    let named = feature.vertices.iter().zip(&feature.vertex_ids).enumerate();
-    named
-        .map(|(index, (vertex, &id))| {
-            let point = pose.point(vertex);
-            let side = feature.side_ids.get(index).copied().unwrap_or(feature.id);
-            Corner { point, flat: frame.flat(&point), id, side }
-        })
-        .collect()
+/// Each corner and the one after it.
+#[inline]
+fn sides<N: Real, const D: usize>(
+    corners: &[Corner<N, D>],
+) -> impl Iterator<Item = (&Corner<N, D>, &Corner<N, D>)> {
+    let last = corners.last().zip(corners.first());
+    corners.windows(2).map(|pair| (&pair[0], &pair[1])).chain(last)
 }
 
 /// Merges each corner with those that follow it at the same place; the last one's side leads on.
@@ -307,6 +360,9 @@ fn merge_coincident<N: Real, const D: usize>(
     tolerance: N,
 ) {
     let apart = |a: &Corner<N, D>, b: &Corner<N, D>| max_component(&(a.flat - b.flat)) > tolerance;
+    if sides(corners.as_slice()).all(|(a, b)| apart(a, b)) {
+        return;
+    }
     let mut kept = 0;
     for index in 1..corners.len() {
         if apart(&corners[kept], &corners[index]) {

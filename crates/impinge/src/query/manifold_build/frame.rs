@@ -59,17 +59,20 @@ impl<N: Real, const D: usize> Frame<N, D> {
         }
     }
 
+    #[inline]
     pub(super) fn normal(&self) -> Vector<N, D> {
         self.witness.normal
     }
 
     /// Where a point lies when seen along the normal.
+    #[inline]
     pub(super) fn flat(&self, point: &Point<N, D>) -> Vector<N, 2> {
         let arm = point - self.witness.point1;
         Vector::<N, 2>::new(self.tangents[0].dot(&arm), self.tangents[1].dot(&arm))
     }
 
     /// How far along the normal a point lies, from the surface of the first solid at the witness.
+    #[inline]
     pub(super) fn height(&self, point: &Point<N, D>) -> N {
         self.normal().dot(&(point - self.witness.point1))
     }
@@ -80,6 +83,7 @@ impl<N: Real, const D: usize> Frame<N, D> {
     /// The witness is the nearest pair of points, so a smaller distance is a rounding error, and so
     /// is one that exceeds the prediction by no more than the tolerance. A point beyond the
     /// prediction stays if turning about the witness brings it nearer by enough.
+    #[inline]
     pub(super) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
         let distance = max(distance, self.witness.distance);
         if distance <= self.prediction {
@@ -92,6 +96,7 @@ impl<N: Real, const D: usize> Frame<N, D> {
     }
 
     /// The candidate at a pair of surface points of which the first is given.
+    #[inline]
     pub(super) fn candidate(
         &self,
         point1: Point<N, D>,

@@ -10,17 +10,17 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{Cuboid, FeatureId, Kind};
 
 /// The only feature of a half-space.
-pub(super) const BOUNDARY: FeatureId = FeatureId::Face(0);
+const BOUNDARY: FeatureId = FeatureId::Face(0);
 
-/// The points of the first solid, of which the facet is given, above the boundary of the second.
+/// Adds the points of the first solid, of which the facet is given, above the boundary of the second.
 ///
 /// None of a point: its witness says all.
 pub(super) fn candidates<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     facet: &Facet<N, D>,
     frame: &Frame<N, D>,
-) -> Candidates<N, D> {
-    let mut out = Candidates::new();
+    out: &mut Candidates<N, D>,
+) {
     let mut push = |id: FeatureId, point: Point<N, D>| {
         let distance = frame.witness.distance - frame.height(&point);
         out.extend(frame.candidate(point, distance, [id, BOUNDARY]));
@@ -38,7 +38,6 @@ pub(super) fn candidates<N: Real, const D: usize>(
         }
         _ => facet_corners(facet, frame, &mut push),
     }
-    out
 }
 
 /// The corners of the part that faces the half-space, on the rounded surface.

@@ -4,13 +4,15 @@
 //! with the part of their core that faces the other; seen along the normal these are points, segments
 //! and convex polygons of the plane (module [`mod@facet`]), and the corners of what they have in common
 //! ([`overlap`]) are the candidates. [`half_space`] is the case of a face without end. The witness is
-//! always represented, so the smallest distance of a manifold is that of the separation exactly.
+//! always represented, so the smallest distance of a manifold is that of the separation exactly; with
+//! a ball it is all there is.
 //! At last [`reduce`] chooses a few candidates and [`names`] numbers them.
 //!
 //! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
 //! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
 mod box_faces;
+mod box_sides;
 mod facet;
 mod frame;
 mod half_space;
@@ -75,12 +77,15 @@ pub(crate) fn contacts3<N: Real>(
     }
 }
 
-/// The manifold of a pair in the plane, from nothing.
+/// The manifold of a pair in the plane, from nothing; as [`contacts3`].
 pub(crate) fn contacts2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
+    if box_sides::build(pair, request, out) {
+        return;
+    }
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
@@ -98,54 +103,64 @@ fn build<N: Real, const D: usize>(
         out.points.clear();
         return;
     }
-    let mut candidates = candidates(pair, frame);
+    out.normal = frame.normal();
+    if let Kind::Ball(_) = pair.first {
+        return names::settle_alone(&of_ball(pair, frame), out);
+    }
+    let mut candidates = Candidates::new();
+    fill(pair, frame, &mut candidates);
     names::inherit(&out.points, &mut candidates);
     let deepest = deepest(&candidates, distance + frame.tolerance);
     candidates[deepest].distance = distance;
     let chosen = reduce::chosen(&candidates, deepest, limit.max(1), frame.tolerance);
-    out.normal = frame.normal();
     names::settle(&candidates, &chosen, out);
 }
 
-/// The corners of the common area, and the witness if it is none of them.
-fn candidates<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    frame: &Frame<N, D>,
-) -> Candidates<N, D> {
-    let first = facet(Which::First, pair.first, &Pose::identity(), frame);
-    let second = facet(Which::Second, pair.second, &pair.pose12, frame);
-    let mut out = match (&first, &second) {
-        (Some(first), Some(second)) => Overlap { frame, first, second }.candidates(),
-        (Some(first), None) => half_space::candidates(pair.first, first, frame),
-        _ => Candidates::new(),
-    };
-    let limit = frame.witness.distance + frame.tolerance;
-    if !out.iter().any(|candidate| candidate.distance <= limit) {
-        let features = [at_witness(first.as_ref(), frame), at_witness(second.as_ref(), frame)];
-        add_witness(frame, features, &mut out);
-    }
-    out
+/// The only point of a ball and another solid: the witness.
+fn of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>, frame: &Frame<N, D>) -> Candidate<N, D> {
+    let mut second = Facet::boundary(Which::Second);
+    face(&mut second, pair.second, Some(&pair.pose12), frame);
+    at_witness_between(frame, [FeatureId::Face(0), at_witness(&second, frame)])
 }
 
-/// What a solid shows of itself; `None` for a half-space.
-fn facet<N: Real, const D: usize>(
-    which: Which,
-    kind: Kind<'_, N, D>,
-    pose: &Pose<N, D>,
+/// The corners of the common area, and the witness if it is none of them.
+fn fill<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
-) -> Option<Facet<N, D>> {
-    Geometry(kind).as_support_map().map(|map| Facet::facing(which, map, pose, frame))
+    out: &mut Candidates<N, D>,
+) {
+    let mut first = Facet::boundary(Which::First);
+    let mut second = Facet::boundary(Which::Second);
+    face(&mut first, pair.first, None, frame);
+    face(&mut second, pair.second, Some(&pair.pose12), frame);
+    if let Kind::Plane(_) = pair.second {
+        half_space::candidates(pair.first, &first, frame, out);
+    } else {
+        Overlap { frame, first: &first, second: &second }.candidates(out);
+    }
+    let limit = frame.witness.distance + frame.tolerance;
+    if !out.iter().any(|candidate| candidate.distance <= limit) {
+        let features = [at_witness(&first, frame), at_witness(&second, frame)];
+        add_witness(frame, features, out);
+    }
+}
+
+/// Makes a facet what a solid shows of itself; that of a half-space stays its boundary.
+#[inline]
+fn face<N: Real, const D: usize>(
+    facet: &mut Facet<N, D>,
+    kind: Kind<'_, N, D>,
+    pose: Option<&Pose<N, D>>,
+    frame: &Frame<N, D>,
+) {
+    if let Some(map) = Geometry(kind).as_support_map() {
+        facet.face(map, pose, frame);
+    }
 }
 
 /// The part of a solid that the witness lies on.
-fn at_witness<N: Real, const D: usize>(
-    facet: Option<&Facet<N, D>>,
-    frame: &Frame<N, D>,
-) -> FeatureId {
-    let place = Vector::<N, 2>::zeros();
-    facet.map_or(half_space::BOUNDARY, |facet| {
-        facet.locate(&place, frame.tolerance).unwrap_or(facet.id)
-    })
+fn at_witness<N: Real, const D: usize>(facet: &Facet<N, D>, frame: &Frame<N, D>) -> FeatureId {
+    facet.locate(&Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(facet.id)
 }
 
 /// Adds the witness, in place of any candidate with the same name unless the name is that of two
@@ -157,14 +172,22 @@ fn add_witness<N: Real, const D: usize>(
 ) {
     let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
     out.retain(|candidate| is_shared || candidate.features != features);
+    out.push(at_witness_between(frame, features));
+}
+
+/// The witness as a candidate between two parts.
+fn at_witness_between<N: Real, const D: usize>(
+    frame: &Frame<N, D>,
+    features: [FeatureId; 2],
+) -> Candidate<N, D> {
     let (point1, distance) = (frame.witness.point1, frame.witness.distance);
     let flat = Vector::<N, 2>::zeros();
-    out.push(Candidate { point1, distance, flat, features, kept_id: None });
+    Candidate { point1, distance, flat, features, kept_id: None }
 }
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for
 /// rounding, at most `limit`, one that the previous manifold held, then the deepest.
-fn deepest<N: Real, const D: usize>(candidates: &Candidates<N, D>, limit: N) -> usize {
+fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     let rank = |index: usize| {
         let candidate = &candidates[index];
         let is_level = candidate.distance <= limit;

@@ -24,31 +24,29 @@ pub(super) struct Overlap<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Overlap<'_, N, D> {
-    /// The corners of the common area that the request admits; none where a facet is a point.
-    pub(super) fn candidates(&self) -> Candidates<N, D> {
-        let mut out = Candidates::new();
+    /// Adds the corners of the common area that the request admits; none where a facet is a point.
+    pub(super) fn candidates(&self, out: &mut Candidates<N, D>) {
         if self.first.is_point() || self.second.is_point() {
-            return out;
+            return;
         }
         if self.are_parallel_segments() {
-            self.common_stretch(&mut out);
-        } else {
-            self.corners_inside(&mut out);
-            self.crossings(&mut out);
+            return self.common_stretch(out);
         }
-        out
+        let insides = [Insides::of(self.first, self.second), Insides::of(self.second, self.first)];
+        self.corners_inside(&insides, out);
+        self.crossings(&insides, out);
     }
 
     /// Corners of either facet within the other.
-    fn corners_inside(&self, out: &mut Candidates<N, D>) {
+    fn corners_inside(&self, insides: &[Insides<N>; 2], out: &mut Candidates<N, D>) {
         let tolerance = self.frame.tolerance;
-        for corner in &self.first.corners {
-            if let Some(id) = self.second.locate(&corner.flat, tolerance) {
+        for (corner, insides) in self.first.corners.iter().zip(insides[0].rows()) {
+            if let Some(id) = self.second.locate_inside(insides, &corner.flat, tolerance) {
                 self.push_corner_of_first(corner, id, out);
             }
         }
-        for corner in &self.second.corners {
-            if let Some(id) = self.first.locate(&corner.flat, tolerance) {
+        for (corner, insides) in self.second.corners.iter().zip(insides[1].rows()) {
+            if let Some(id) = self.first.locate_inside(insides, &corner.flat, tolerance) {
                 self.push_corner_of_second(corner, id, out);
             }
         }
@@ -77,14 +75,19 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     }
 
     /// Sides that cross well inside both.
-    fn crossings(&self, out: &mut Candidates<N, D>) {
+    fn crossings(&self, insides: &[Insides<N>; 2], out: &mut Candidates<N, D>) {
         for side1 in 0..self.first.side_count() {
-            for side2 in 0..self.second.side_count() {
-                let at1 = self.crosses(self.first, side1, self.second, side2);
-                let at2 = self.crosses(self.second, side2, self.first, side1);
-                if let (Some(at1), Some(at2)) = (at1, at2) {
-                    let core1 = self.first.along_side(side1, at1);
-                    let core2 = self.second.along_side(side2, at2);
+            let [from1, to1] = insides[0].at_ends(self.first, side1);
+            for (side2, ends1) in from1.iter().zip(to1).enumerate() {
+                let ends1 = [*ends1.0, *ends1.1];
+                if !self.are_apart(ends1) {
+                    continue;
+                }
+                let ends2 = insides[1].at_ends(self.second, side2).map(|row| row[side1]);
+                if self.are_apart(ends2) {
+                    let at = |[from, to]: [N; 2]| from / (from - to);
+                    let core1 = self.first.along_side(side1, at(ends1));
+                    let core2 = self.second.along_side(side2, at(ends2));
                     let names = [self.first.corners[side1].side, self.second.corners[side2].side];
                     self.push(&core1, &core2, names, out);
                 }
@@ -92,21 +95,12 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         }
     }
 
-    /// Where one side crosses the line of another, as a parameter, unless an end lies on the line.
-    fn crosses(
-        &self,
-        facet: &Facet<N, D>,
-        side: usize,
-        other: &Facet<N, D>,
-        line: usize,
-    ) -> Option<N> {
-        let from = other.inside(line, &facet.corners[side].flat);
-        let to = other.inside(line, &facet.corners[facet.next(side)].flat);
+    /// The ends of a side lie on different hands of a line, and neither on it: a side that ends on
+    /// the line crosses nothing, its corner lies on the other facet or outside.
+    #[inline]
+    fn are_apart(&self, [from, to]: [N; 2]) -> bool {
         let tolerance = self.frame.tolerance;
-        // A side that ends on the line crosses nothing: its corner lies on the other facet or outside.
-        let leaves = from > tolerance && to < -tolerance;
-        let enters = from < -tolerance && to > tolerance;
-        (leaves || enters).then(|| from / (from - to))
+        from > tolerance && to < -tolerance || from < -tolerance && to > tolerance
     }
 
     /// Two segments that a turn by the predicted angle would make parallel.
@@ -123,14 +117,15 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     /// them and the place beside it on the other. Half-way between the two is where they meet once
     /// turned: the points are off their segments by half the lever arm times the sine at most.
     fn common_stretch(&self, out: &mut Candidates<N, D>) {
+        let (length1, length2) = (self.first.side(0).norm(), self.second.side(0).norm());
         for corner in &self.first.corners {
-            if let Some(on) = self.beside(corner, self.second) {
+            if let Some(on) = self.beside(corner, self.second, length2) {
                 let under = self.second.under(&corner.point, self.frame);
                 self.push_halfway(&corner.point, &under, [corner.id, on], out);
             }
         }
         for corner in &self.second.corners {
-            if let Some(on) = self.beside(corner, self.first) {
+            if let Some(on) = self.beside(corner, self.first, length1) {
                 let under = self.first.under(&corner.point, self.frame);
                 self.push_halfway(&under, &corner.point, [on, corner.id], out);
             }
@@ -150,10 +145,9 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         self.push(&(core1 + half), &(core2 - half), features, out);
     }
 
-    /// The part of a segment beside a corner of the other; `None` beyond the ends.
-    fn beside(&self, corner: &Corner<N, D>, segment: &Facet<N, D>) -> Option<FeatureId> {
+    /// The part of a segment of a given length beside a corner of the other; `None` beyond the ends.
+    fn beside(&self, corner: &Corner<N, D>, segment: &Facet<N, D>, length: N) -> Option<FeatureId> {
         let (side, from) = (segment.side(0), segment.corners[0].flat);
-        let length = side.norm();
         let along = (corner.flat - from).dot(&side) / length;
         let tolerance = N::TWO * self.frame.tolerance;
         if along < -tolerance || along > length + tolerance {
@@ -186,5 +180,35 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         if out.iter().all(is_new) {
             out.push(found);
         }
+    }
+}
+
+/// How far inside the sides of one facet the corners of the other are: a row for each corner.
+struct Insides<N: Real> {
+    numbers: SmallVec<[N; 64]>,
+    side_count: usize,
+}
+
+impl<N: Real> Insides<N> {
+    fn of<const D: usize>(corners: &Facet<N, D>, sides: &Facet<N, D>) -> Self {
+        // Facets that are no points have sides.
+        let side_count = sides.side_count().max(1);
+        let mut numbers = SmallVec::from_elem(N::ZERO, side_count * corners.corners.len());
+        for (row, corner) in numbers.chunks_exact_mut(side_count).zip(&corners.corners) {
+            sides.measure_inside(&corner.flat, row);
+        }
+        Self { numbers, side_count }
+    }
+
+    #[inline]
+    fn rows(&self) -> impl Iterator<Item = &[N]> {
+        self.numbers.chunks_exact(self.side_count)
+    }
+
+    /// The rows of the two ends of a side of the facet whose corners these are.
+    #[inline]
+    fn at_ends<const D: usize>(&self, facet: &Facet<N, D>, side: usize) -> [&[N]; 2] {
+        let row = |corner: usize| &self.numbers[corner * self.side_count..][..self.side_count];
+        [row(side), row(facet.next(side))]
     }
 }

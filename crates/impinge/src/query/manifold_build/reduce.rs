@@ -3,7 +3,6 @@
 use smallvec::SmallVec;
 
 use super::frame::Candidate;
-use super::overlap::Candidates;
 use crate::math::{Real, Vector, cross2};
 
 /// A new point must span this much more than one that the previous manifold held.
@@ -17,17 +16,21 @@ const ALMOST: f64 = 1.0 + 1.0 / 1024.0;
 /// Points of the previous manifold are preferred, so that rounding does not exchange the points of a
 /// solid at rest.
 pub(super) fn chosen<N: Real, const D: usize>(
-    candidates: &Candidates<N, D>,
+    candidates: &[Candidate<N, D>],
     deepest: usize,
     limit: usize,
     tolerance: N,
 ) -> SmallVec<[usize; 8]> {
+    if candidates.len() <= limit {
+        let mut all = SmallVec::new();
+        for index in 0..candidates.len() {
+            all.push(index);
+        }
+        return all;
+    }
     // From a point to a segment to a triangle and on: each addition keeps the outline convex enough
     // for the area that a further point adds to be that beyond one side.
     let mut outline = Outline { candidates, corners: SmallVec::from_slice(&[deepest]) };
-    if candidates.len() <= limit {
-        return (0..candidates.len()).collect();
-    }
     let order = by_depth(candidates);
     while outline.corners.len() < limit {
         let Some((index, place)) = outline.best_addition(&order, tolerance) else { break };
@@ -36,7 +39,7 @@ pub(super) fn chosen<N: Real, const D: usize>(
     outline.corners
 }
 
-fn by_depth<N: Real, const D: usize>(candidates: &Candidates<N, D>) -> SmallVec<[usize; 16]> {
+fn by_depth<N: Real, const D: usize>(candidates: &[Candidate<N, D>]) -> SmallVec<[usize; 16]> {
     let mut order: SmallVec<[usize; 16]> = (0..candidates.len()).collect();
     order.sort_by(|&a, &b| {
         candidates[a].distance.as_f64().total_cmp(&candidates[b].distance.as_f64())
@@ -70,15 +73,16 @@ impl<N: Real, const D: usize> Outline<'_, N, D> {
     /// What a place adds: its distance from a single point, else the largest area (doubled) that it
     /// spans with a side of the outline from outside.
     fn gain(&self, flat: &Vector<N, 2>, tolerance: N) -> (N, usize) {
-        let place = |at: usize| self.candidates[self.corners[at]].flat;
-        if self.corners.len() == 1 {
+        let corners = self.corners.as_slice();
+        let place = |at: usize| self.candidates[corners[at]].flat;
+        if corners.len() == 1 {
             let distance = (flat - place(0)).norm();
             return (if distance > tolerance { distance } else { N::ZERO }, 1);
         }
         let (mut gain, mut best) = (N::ZERO, 0);
-        for at in 0..self.corners.len() {
+        for at in 0..corners.len() {
             let from = place(at);
-            let side = place(if at + 1 < self.corners.len() { at + 1 } else { 0 }) - from;
+            let side = place(if at + 1 < corners.len() { at + 1 } else { 0 }) - from;
             let area = -cross2(&side, &(flat - from));
             if area > gain && area > tolerance * side.norm() {
                 (gain, best) = (area, at + 1);

@@ -102,6 +102,11 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
     }
 }
 
+/// The hit of a ray that starts in the set.
+fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
+    RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature }
+}
+
 /// What all shapes have in common: rays that are no rays, and the length of the direction.
 ///
 /// `span` is asked for finite rays whose largest component of the direction is between 1 and 2: the
@@ -120,11 +125,17 @@ fn cast<N: Real, const D: usize>(
         let (nearest, feature) = project(&ray.origin);
         let on_boundary = length(&(ray.origin - nearest.point)) == N::ZERO;
         let hits = if solid { nearest.is_inside } else { on_boundary };
-        let normal = Vector::<N, D>::zeros();
-        return hits.then_some(RayIntersection { toi: N::ZERO, normal, feature });
+        return hits.then(|| at_start(feature));
     }
     let unit = speed.power_of_two_below();
-    let hit = span(&Ray::new(ray.origin, ray.dir / unit))?.first_hit(solid)?;
+    let hit = span(&Ray::new(ray.origin, ray.dir / unit)).and_then(|span| span.first_hit(solid));
+    let Some(hit) = hit else {
+        // By rounding, a crossing at the start may seem to lie before it.
+        let start = if solid { Some(project(&ray.origin)) } else { None };
+        return start
+            .filter(|(nearest, _)| nearest.is_inside)
+            .map(|(_, feature)| at_start(feature));
+    };
     let toi = hit.toi / unit;
     toi.is_finite_number().then_some(RayIntersection { toi, ..hit })
 }

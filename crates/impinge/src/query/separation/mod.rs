@@ -23,6 +23,7 @@ mod outline;
 mod plane_any;
 mod polygon_polygon;
 mod projection;
+pub(super) mod rectangle_axes;
 mod segment_segment;
 mod segments;
 mod table2;

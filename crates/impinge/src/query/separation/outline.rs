@@ -36,12 +36,12 @@ impl<N: Real> Outline<N> {
     }
 
     fn new(vertices: SmallVec<[Point<N, 2>; 8]>, rounding: N) -> Self {
-        let next = |at: usize| vertices[(at + 1) % vertices.len()];
-        let normal = |(at, vertex): (usize, &Point<N, 2>)| {
-            unit(&(next(at) - vertex)).map(|(along, _)| right_of(&along))
-        };
-        let normals = vertices.iter().enumerate().map(normal).collect();
-        Self { vertices, normals, rounding }
+        let mut outline = Self { vertices, normals: SmallVec::new(), rounding };
+        for at in 0..outline.vertices.len() {
+            let [from, to] = outline.side(at);
+            outline.normals.push(unit(&(to - from)).map(|(along, _)| right_of(&along)));
+        }
+        outline
     }
 
     /// The corners may be given in either order.
@@ -61,11 +61,11 @@ impl<N: Real> Outline<N> {
     }
 
     fn of_polygon(polygon: &Polytope<N, 2>) -> Self {
-        Self {
-            vertices: polygon.vertices().iter().copied().collect(),
-            normals: polygon.faces().iter().map(|face| Some(face.normal)).collect(),
-            rounding: N::ZERO,
+        let mut normals = SmallVec::new();
+        for face in polygon.faces() {
+            normals.push(Some(face.normal));
         }
+        Self { vertices: SmallVec::from_slice(polygon.vertices()), normals, rounding: N::ZERO }
     }
 
     /// The same outline seen from the frame in which its own has the given pose.
@@ -80,6 +80,7 @@ impl<N: Real> Outline<N> {
     }
 
     /// The index of the vertex farthest along `direction`, the first of equals.
+    #[inline]
     pub(super) fn support(&self, direction: &Vector<N, 2>) -> usize {
         let (mut best, mut height) = (0, direction.dot(&self.vertices[0].coords));
         for (at, vertex) in self.vertices.iter().enumerate().skip(1) {
@@ -92,14 +93,28 @@ impl<N: Real> Outline<N> {
     }
 
     /// How far the outline reaches along `direction`, from the origin.
+    #[inline]
     pub(super) fn height(&self, direction: &Vector<N, 2>) -> N {
-        direction.dot(&self.vertices[self.support(direction)].coords)
+        let first = direction.dot(&self.vertices[0].coords);
+        self.vertices[1..]
+            .iter()
+            .fold(first, |high, vertex| max(direction.dot(&vertex.coords), high))
     }
 
-    /// The two ends of the side that starts at a vertex, which may be numbered beyond the last.
+    /// The two ends of the side that starts at a vertex.
+    #[inline]
     pub(super) fn side(&self, at: usize) -> [Point<N, 2>; 2] {
-        let count = self.vertices.len();
-        [self.vertices[at % count], self.vertices[(at + 1) % count]]
+        [self.vertices[at], self.vertices[self.next(at)]]
+    }
+
+    /// The number of the vertex after a vertex.
+    fn next(&self, at: usize) -> usize {
+        if at + 1 < self.vertices.len() { at + 1 } else { 0 }
+    }
+
+    /// The number of the vertex before a vertex.
+    pub(super) fn previous(&self, at: usize) -> usize {
+        if at > 0 { at - 1 } else { self.vertices.len() - 1 }
     }
 
     /// The outward bisector at a vertex whose angle is sharper than a right angle; `None` at a
@@ -108,8 +123,7 @@ impl<N: Real> Outline<N> {
     /// An axis that sides alone would not try: it keeps the directions tried less than a right angle
     /// apart, so that flat outlines (segments, slivers) that point at each other are told apart.
     pub(super) fn tip(&self, at: usize) -> Option<Vector<N, 2>> {
-        let count = self.normals.len();
-        let (before, after) = (self.normals[(at + count - 1) % count]?, self.normals[at]?);
+        let (before, after) = (self.normals[self.previous(at)]?, self.normals[at]?);
         if before.dot(&after) >= N::ZERO {
             return None;
         }

@@ -7,10 +7,12 @@
 //! best normal.
 
 use super::outline::Outline;
+use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, perp, unit};
 use crate::query::Pair;
+use crate::shape::Kind;
 
 /// The separation of two outlines.
 ///
@@ -22,7 +24,14 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     let outline2 = Outline::of(pair, &pair.second).placed(&pair.pose12);
     let rounding = outline1.rounding + outline2.rounding;
     let noise = N::lit(4.0) * N::EPSILON * max(outline1.reach(), outline2.reach());
-    let best = best_axis(&outline1, &outline2);
+    let best = match (&pair.first, &pair.second) {
+        (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) => {
+            let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
+            let best = Rectangles { half1, half2, pose12: pair.pose12 }.best_axis();
+            Axis { gap: best.gap, normal: best.normal }
+        }
+        _ => best_axis(&outline1, &outline2),
+    };
     // A lower bound: what it rejects by more than rounding is out of reach.
     if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
         return None;
@@ -112,8 +121,7 @@ fn apart<N: Real>(
 
 /// The two sides that meet at a vertex.
 fn around<N: Real>(vertex: usize, outline: &Outline<N>) -> [usize; 2] {
-    let count = outline.vertices.len();
-    [(vertex + count - 1) % count, vertex]
+    [outline.previous(vertex), vertex]
 }
 
 /// The nearest points of some sides of one outline and some of another.

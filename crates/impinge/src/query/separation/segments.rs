@@ -22,6 +22,7 @@ pub(super) fn core<N: Real, const D: usize>(
 /// The point of a segment nearest to `point`, and whether it lies between the ends.
 ///
 /// Measured from the nearer end, so that long segments lose nothing.
+#[inline]
 pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],
     point: &Point<N, D>,

@@ -1,0 +1,309 @@
+//! The tree over a user's own boxes.
+
+use super::{BoxTreeError, Search};
+use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
+use crate::bvh::{Bounds, Lanes, Tree};
+use crate::math::{Point, Real, Space};
+
+/// A tree over boxes that do not move, known by their indices.
+///
+/// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
+/// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
+/// beyond the range of `f32` count as unbounded and are tested one by one in each search, so there should
+/// be few.
+///
+/// Making it costs O(n log n). A search looks at O(log n) blocks of sixteen boxes and at what it finds,
+/// as long as boxes do not all overlap. Beside its box, an object takes about 60 bytes in the plane and
+/// 85 in space, and up to twice that for what arrays keep in reserve.
+///
+/// ```
+/// use impinge::bounding_volume::{Aabb, Ray};
+/// use impinge::math::{Point, Vector};
+/// use impinge::partitioning::BoxTree;
+///
+/// // Unit squares at x = 0, 10, 20, …
+/// let square = |i: u8| {
+///     let corner = Point::<f32, 2>::new(10.0 * f32::from(i), 0.0);
+///     Aabb::new(corner, corner + Vector::<f32, 2>::new(1.0, 1.0))
+/// };
+/// let tree = BoxTree::from_boxes(&(0..100).map(square).collect::<Vec<_>>());
+///
+/// let strip = Aabb::new(Point::<f32, 2>::new(15.0, 0.5), Point::<f32, 2>::new(40.0, 0.5));
+/// assert_eq!(tree.overlapping(&strip), [2, 3, 4]);
+/// assert_eq!(tree.containing(&Point::<f32, 2>::new(41.0, 1.0)), [4]);
+///
+/// let ray = Ray::new(Point::<f32, 2>::new(55.0, 0.5), Vector::<f32, 2>::new(2.0, 0.0));
+/// assert_eq!(tree.first_hit(&ray, f32::INFINITY), Some((6, 2.5)));
+/// assert_eq!(tree.nearest(&Point::<f32, 2>::new(27.0, 1.0), f32::INFINITY), Some((3, 3.0)));
+/// ```
+#[derive(Clone, Debug)]
+pub struct BoxTree<N: Real, const D: usize> {
+    boxes: Vec<Aabb<N, D>>,
+    /// Around all boxes; `None` if there are none.
+    bounds: Option<Aabb<N, D>>,
+    tree: Tree<D>,
+    /// The boxes that no finite `f32` box encloses, ascending.
+    unbounded: Vec<u32>,
+    lanes: Lanes,
+}
+
+/// What a search without an order of its own asks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Question<'a, N: Real, const D: usize> {
+    Overlapping(&'a Aabb<N, D>),
+    Containing(&'a Point<N, D>),
+    HitBy(&'a Ray<N, D>),
+}
+
+impl<N: Space<D>, const D: usize> BoxTree<N, D> {
+    /// The tree over some boxes, which are known by their indices; there may be none.
+    ///
+    /// # Panics
+    /// Where [`Self::try_from_boxes`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn from_boxes(boxes: &[Aabb<N, D>]) -> Self {
+        match Self::try_from_boxes(boxes) {
+            Ok(tree) => tree,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The tree over some boxes, which are known by their indices; there may be none.
+    ///
+    /// # Errors
+    /// If a box is inverted or holds a NaN, which [`Aabb`] refuses but arithmetic on boxes can yield,
+    /// or if 32 bits cannot number the boxes.
+    pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
+        (N::tables().partitioning.build)(boxes)
+    }
+
+    /// The boxes whose volume meets `aabb`, ascending.
+    #[must_use]
+    pub fn overlapping(&self, aabb: &Aabb<N, D>) -> Vec<usize> {
+        self.collect(&Question::Overlapping(aabb))
+    }
+
+    /// The boxes that hold the point, ascending.
+    #[must_use]
+    pub fn containing(&self, point: &Point<N, D>) -> Vec<usize> {
+        self.collect(&Question::Containing(point))
+    }
+
+    /// The boxes that the ray meets, ascending. A ray that is not finite meets nothing.
+    #[must_use]
+    pub fn hit_by(&self, ray: &Ray<N, D>) -> Vec<usize> {
+        self.collect(&Question::HitBy(ray))
+    }
+
+    /// Calls `visit` with each box that meets `aabb`; nothing is allocated, and the order is
+    /// arbitrary, but always the same.
+    pub fn visit_overlapping(&self, aabb: &Aabb<N, D>, visit: impl FnMut(usize)) {
+        self.each(&Question::Overlapping(aabb), visit);
+    }
+
+    /// Calls `visit` with each box that holds the point, as [`Self::visit_overlapping`] does.
+    pub fn visit_containing(&self, point: &Point<N, D>, visit: impl FnMut(usize)) {
+        self.each(&Question::Containing(point), visit);
+    }
+
+    /// Calls `visit` with each box that the ray meets, as [`Self::visit_overlapping`] does.
+    pub fn visit_hit_by(&self, ray: &Ray<N, D>, visit: impl FnMut(usize)) {
+        self.each(&Question::HitBy(ray), visit);
+    }
+
+    /// Calls `visit` with the boxes that the ray enters at or before `max_time`, in units of the length
+    /// of its direction, and the time of entry: the first first, by index at equal times.
+    ///
+    /// `visit` returns the new `max_time`: the time of the best hit so far to find the first thing that
+    /// the ray meets, the old one to see them all, a negative one to stop. It never grows. A ray that
+    /// starts in a box enters it at time zero; one that is not finite meets nothing.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::{Aabb, Ray};
+    /// use impinge::math::{Point, Vector};
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// // Disks of radius 1 on a line, and the first of them that a ray meets.
+    /// let centers = [2.0_f32, 5.0, 8.0].map(|x| Point::<f32, 2>::new(x, 0.0));
+    /// let reach = Vector::<f32, 2>::new(1.0, 1.0);
+    /// let tree = BoxTree::from_boxes(&centers.map(|c| Aabb::new(c - reach, c + reach)));
+    /// let ray = Ray::new(Point::<f32, 2>::new(0.0, 1.0), Vector::<f32, 2>::new(1.0, -0.25));
+    /// let (mut first, mut looked_at) = (None, 0);
+    /// tree.visit_ray(&ray, f32::INFINITY, |index, _| {
+    ///     looked_at += 1;
+    ///     let closest = (centers[index] - ray.origin).dot(&ray.dir) / ray.dir.norm_squared();
+    ///     if (ray.point_at(closest) - centers[index]).norm() <= 1.0 {
+    ///         first = first.or(Some(index));
+    ///     }
+    ///     if first.is_some() { -1.0 } else { f32::INFINITY }
+    /// });
+    /// assert_eq!((first, looked_at), (Some(0), 1));
+    /// ```
+    pub fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, mut visit: impl FnMut(usize, N) -> N) {
+        let mut found = |id: u32, time: N| visit(id as usize, time);
+        (N::tables().partitioning.by_time)(self, ray, max_time, &mut found);
+    }
+
+    /// Calls `visit` with the boxes at most `max_distance` from the point and their distance: the
+    /// nearest first, by index at equal distances. Boxes that hold the point are at distance zero.
+    ///
+    /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
+    /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
+    /// finite is near nothing. Distances whose squares leave the range of `N` count as infinite or zero.
+    pub fn visit_nearest(
+        &self,
+        point: &Point<N, D>,
+        max_distance: N,
+        mut visit: impl FnMut(usize, N) -> N,
+    ) {
+        let mut found = |id: u32, distance: N| visit(id as usize, distance);
+        (N::tables().partitioning.by_distance)(self, point, max_distance, &mut found);
+    }
+
+    /// The box that the ray enters first, at or before `max_time`, and when; of several the one of
+    /// least index.
+    #[must_use]
+    pub fn first_hit(&self, ray: &Ray<N, D>, max_time: N) -> Option<(usize, N)> {
+        let mut first = None;
+        self.visit_ray(ray, max_time, |index, time| {
+            first = Some((index, time));
+            -N::ONE
+        });
+        first
+    }
+
+    /// The box nearest to the point, at most `max_distance` away, and its distance; of several the one
+    /// of least index.
+    #[must_use]
+    pub fn nearest(&self, point: &Point<N, D>, max_distance: N) -> Option<(usize, N)> {
+        let mut nearest = None;
+        self.visit_nearest(point, max_distance, |index, distance| {
+            nearest = Some((index, distance));
+            -N::ONE
+        });
+        nearest
+    }
+
+    fn collect(&self, question: &Question<'_, N, D>) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.each(question, |index| found.push(index));
+        found.sort_unstable();
+        found
+    }
+
+    fn each(&self, question: &Question<'_, N, D>, mut visit: impl FnMut(usize)) {
+        (N::tables().partitioning.each)(self, question, &mut |id| visit(id as usize));
+    }
+}
+
+impl<N: Real, const D: usize> BoxTree<N, D> {
+    /// The number of boxes.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.boxes.len()
+    }
+
+    /// There is no box.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.boxes.is_empty()
+    }
+
+    /// The boxes, as they were given.
+    #[must_use]
+    pub fn boxes(&self) -> &[Aabb<N, D>] {
+        &self.boxes
+    }
+
+    /// The smallest box around all boxes; `None` if there are none.
+    #[must_use]
+    pub const fn bounds(&self) -> Option<&Aabb<N, D>> {
+        self.bounds.as_ref()
+    }
+
+    /// Checks every invariant; for tests.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn validate(&self) -> Result<(), String> {
+        self.tree.validate()?;
+        if self.tree.len() + self.unbounded.len() != self.boxes.len() {
+            return Err(format!("{} boxes of {}", self.tree.len(), self.boxes.len()));
+        }
+        for (id, aabb) in (0..).zip(&self.boxes) {
+            let tight = Bounds::enclosing(aabb);
+            let is_listed = self.unbounded.binary_search(&id).is_ok();
+            let is_kept = self.tree.bounds(id) == Some(&tight).filter(|tight| tight.is_finite());
+            if is_listed == tight.is_finite() || !is_kept {
+                return Err(format!("box {id} is not where it belongs"));
+            }
+        }
+        Ok(())
+    }
+
+    /// See [`Self::try_from_boxes`].
+    pub(crate) fn build(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
+        let count = count(boxes.len())?;
+        let (lanes, mut unbounded) = (Lanes::detect(), Vec::new());
+        let mut tree = Tree::new(lanes);
+        for (index, (id, aabb)) in (0..count).zip(boxes).enumerate() {
+            Aabb::try_new(*aabb.mins(), *aabb.maxs())
+                .map_err(|error| BoxTreeError::BadBox { index, error })?;
+            let tight = Bounds::enclosing(aabb);
+            if tight.is_finite() {
+                tree.insert_still(id, &tight);
+            } else {
+                unbounded.push(id);
+            }
+        }
+        tree.refit();
+        tree.settle();
+        let bounds = boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb));
+        Ok(Self { boxes: boxes.to_vec(), bounds, tree, unbounded, lanes })
+    }
+
+    pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
+        match question {
+            Question::Overlapping(aabb) => self.search().each_overlapping(aabb, found),
+            Question::Containing(point) => self.search().each_containing(point, found),
+            Question::HitBy(ray) => self.search().each_hit(ray, found),
+        }
+    }
+
+    pub(crate) fn by_time(&self, ray: &Ray<N, D>, max_time: N, found: &mut dyn FnMut(u32, N) -> N) {
+        self.search().by_time(ray, max_time, found);
+    }
+
+    pub(crate) fn by_distance(
+        &self,
+        point: &Point<N, D>,
+        max_distance: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_distance(point, max_distance, found);
+    }
+
+    fn search(&self) -> Search<'_, N, D, 1> {
+        let (exact, trees) = (self.boxes.as_slice(), [&self.tree]);
+        Search { exact, trees, unbounded: &self.unbounded, lanes: self.lanes }
+    }
+}
+
+/// The number of boxes as the tree counts them, which keeps one number for "none".
+fn count(given: usize) -> Result<u32, BoxTreeError> {
+    let count = u32::try_from(given).ok().filter(|&count| count < u32::MAX);
+    count.ok_or(BoxTreeError::TooMany { given })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_boxes_than_numbers_are_refused() {
+        assert_eq!(count(7), Ok(7), "few");
+        let given = u32::MAX as usize;
+        assert_eq!(count(given), Err(BoxTreeError::TooMany { given }), "too many");
+    }
+}

@@ -1,0 +1,34 @@
+//! Why boxes make no tree.
+
+use core::fmt;
+
+use crate::bounding_volume::AabbError;
+
+/// Why [`BoxTree::try_from_boxes`](super::BoxTree::try_from_boxes) refused its boxes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BoxTreeError {
+    /// A box is inverted or holds a NaN, as arithmetic on good boxes may yield.
+    BadBox {
+        /// The index of the box.
+        index: usize,
+        /// What is wrong with it.
+        error: AabbError,
+    },
+    /// There are more boxes than 32 bits can number.
+    TooMany {
+        /// How many were given.
+        given: usize,
+    },
+}
+
+impl fmt::Display for BoxTreeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BadBox { index, error } => write!(f, "box {index} is unusable: {error}"),
+            Self::TooMany { given } => write!(f, "{given} boxes are more than 32 bits can number"),
+        }
+    }
+}
+
+impl std::error::Error for BoxTreeError {}

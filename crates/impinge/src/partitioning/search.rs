@@ -1,0 +1,125 @@
+//! Searches of trees whose boxes stand for exact ones: the trees propose, the exact boxes decide.
+
+use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
+use crate::bvh::{Block, Bounds, Frontier, Keys, LANES, Lanes, Tree};
+use crate::math::{Point, Real, min};
+
+/// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
+/// its exact one, or in the list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
+    pub(crate) exact: &'a [Aabb<N, D>],
+    pub(crate) trees: [&'a Tree<D>; TREES],
+    pub(crate) unbounded: &'a [u32],
+    pub(crate) lanes: Lanes,
+}
+
+impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
+    /// Calls `found` with each object whose box meets `aabb`, in no particular order.
+    pub(crate) fn each_overlapping(&self, aabb: &Aabb<N, D>, found: impl FnMut(u32)) {
+        self.each_within(&Bounds::enclosing(aabb), |own| own.intersects(aabb), found);
+    }
+
+    /// Calls `found` with each object whose box holds the point, in no particular order.
+    pub(crate) fn each_containing(&self, point: &Point<N, D>, found: impl FnMut(u32)) {
+        let query = Bounds::enclosing_point(point);
+        self.each_within(&query, |own| own.contains_point(point), found);
+    }
+
+    fn each_within(
+        &self,
+        query: &Bounds<D>,
+        accept: impl Fn(&Aabb<N, D>) -> bool,
+        found: impl FnMut(u32),
+    ) {
+        let mut propose = self.accepted(accept, found);
+        for tree in self.trees {
+            tree.visit_overlapping(query, &mut propose);
+        }
+        self.unbounded.iter().copied().for_each(propose);
+    }
+
+    /// Calls `found` with each object whose box the ray meets, in no particular order. A ray that is
+    /// not finite meets nothing.
+    pub(crate) fn each_hit(&self, ray: &Ray<N, D>, found: impl FnMut(u32)) {
+        if !is_finite(ray) {
+            return;
+        }
+        let mut propose = self.accepted(|own| own.intersects_ray(ray), found);
+        for tree in self.trees {
+            tree.visit(|block| self.lanes.times_of_block(block, ray).0, &mut propose);
+        }
+        self.unbounded.iter().copied().for_each(propose);
+    }
+
+    /// Hands on what the exact boxes accept.
+    fn accepted(
+        &self,
+        accept: impl Fn(&Aabb<N, D>) -> bool,
+        mut found: impl FnMut(u32),
+    ) -> impl FnMut(u32) {
+        move |id| {
+            if accept(&self.exact[id as usize]) {
+                found(id);
+            }
+        }
+    }
+
+    /// Calls `found` with each object whose box the ray enters at or before `limit` and the time of
+    /// entry, in ascending order of (time, id); `found` returns the new limit, which never grows. A
+    /// ray that is not finite meets nothing.
+    pub(crate) fn by_time(&self, ray: &Ray<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
+        if !is_finite(ray) {
+            return;
+        }
+        let keys = Keys {
+            block: |block: &Block<D>| self.lanes.times_of_block(block, ray),
+            object: |id: u32| self.exact[id as usize].ray_interval(ray).map(|(enter, _)| enter),
+        };
+        self.best_first(limit, &keys, found);
+    }
+
+    /// Calls `found` with each object whose box is at most `limit` from the point and the distance, in
+    /// ascending order of (distance, id); `found` returns the new limit, which never grows. A point
+    /// that is not finite is near nothing.
+    pub(crate) fn by_distance(
+        &self,
+        point: &Point<N, D>,
+        limit: N,
+        found: impl FnMut(u32, N) -> N,
+    ) {
+        if !point.iter().all(|x| x.is_finite_number()) {
+            return;
+        }
+        let keys = Keys {
+            block: |block: &Block<D>| self.lanes.distance_of_block(block, point),
+            object: |id: u32| Some(self.exact[id as usize].distance_to_point(point)),
+        };
+        self.best_first(limit, &keys, found);
+    }
+
+    fn best_first(
+        &self,
+        limit: N,
+        keys: &Keys<impl Fn(&Block<D>) -> (u32, [N; LANES]), impl Fn(u32) -> Option<N>>,
+        mut found: impl FnMut(u32, N) -> N,
+    ) {
+        let mut frontier = Frontier::new();
+        for &id in self.unbounded {
+            if let Some(key) = (keys.object)(id) {
+                frontier.push_object(key, id);
+            }
+        }
+        // What was beyond an earlier limit is gone. A NaN passes, and ends the search.
+        let mut lowest = limit;
+        let lowered = |id: u32, key: N| {
+            lowest = min(lowest, found(id, key));
+            lowest
+        };
+        frontier.search(&self.trees, limit, keys, lowered);
+    }
+}
+
+fn is_finite<N: Real, const D: usize>(ray: &Ray<N, D>) -> bool {
+    ray.origin.iter().chain(ray.dir.iter()).all(|x| x.is_finite_number())
+}

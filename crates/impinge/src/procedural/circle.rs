@@ -1,0 +1,77 @@
+//! Directions spread evenly around a circle.
+
+use core::f64::consts::FRAC_PI_2;
+
+use crate::math::{Real, Vector};
+
+/// The least number of parts of a full turn: fewer enclose nothing.
+pub const LEAST_SUBDIVISIONS: u32 = 3;
+
+/// The greatest number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below what
+/// an `f32` tells apart, and the vertices of every surface can be numbered in 32 bits.
+pub const MOST_SUBDIVISIONS: u32 = 1 << 14;
+
+/// The number of parts that stands for the number asked for.
+pub(super) fn parts_of_turn(subdivisions: u32) -> u32 {
+    subdivisions.clamp(LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS)
+}
+
+/// The unit vector that is `index / count` of a full turn from x, towards y; `index` may be anything
+/// up to some turns, `count` up to four times [`MOST_SUBDIVISIONS`].
+///
+/// Each is computed for itself, from an angle of an eighth of a turn at most: errors do not add up, and
+/// quarter turns are exact.
+pub(super) fn direction<N: Real>(index: u32, count: u32) -> Vector<N, 2> {
+    let (quarters, rest) = (4 * index / count, 4 * index % count);
+    let is_mirrored = 2 * rest > count;
+    let part = if is_mirrored { count - rest } else { rest };
+    let (sine, cosine) = N::lit(f64::from(part) / f64::from(count) * FRAC_PI_2).sine_cosine();
+    let (x, y) = if is_mirrored { (sine, cosine) } else { (cosine, sine) };
+    // Differences, so that no zero has a sign.
+    match quarters % 4 {
+        0 => Vector::<N, 2>::new(x, y),
+        1 => Vector::<N, 2>::new(N::ZERO - y, x),
+        2 => Vector::<N, 2>::new(N::ZERO - x, N::ZERO - y),
+        _ => Vector::<N, 2>::new(y, N::ZERO - x),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[expect(clippy::disallowed_methods, reason = "another source to compare with")]
+    fn check<N: Real>() {
+        let quarters = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]];
+        for (index, expected) in (0..).zip(quarters) {
+            let expected = Vector::<f64, 2>::from(expected).map(N::lit);
+            for count in [4, 8, 1 << 16] {
+                assert_eq!(direction::<N>(index * count / 4, count), expected, "exact quarters");
+            }
+        }
+        for count in [3, 5, 12, 360, 1 << 16] {
+            for index in 0..=count {
+                let (sine, cosine) =
+                    (f64::from(index) / f64::from(count) * 4.0 * FRAC_PI_2).sin_cos();
+                let found = direction::<N>(index, count).map(N::as_f64);
+                let error = (found - Vector::<f64, 2>::new(cosine, sine)).norm();
+                // An angle of up to 2π, itself rounded, is what the standard library is asked about.
+                let allowed = 1.5 * N::EPSILON.as_f64() + 4.0 * f64::EPSILON;
+                assert!(error <= allowed, "{index} of {count}: off by {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn directions_are_those_of_the_library() {
+        check::<f32>();
+        #[cfg(feature = "f64")]
+        check::<f64>();
+    }
+
+    #[test]
+    fn counts_are_clamped() {
+        let counts = [0, 2, 3, 100, u32::MAX].map(parts_of_turn);
+        assert_eq!(counts, [3, 3, 3, 100, MOST_SUBDIVISIONS], "to what can be built");
+    }
+}

@@ -1,0 +1,126 @@
+//! Surfaces of revolution: what balls, capsules, cylinders and cones have in common.
+
+use super::TriangleSurface;
+use super::circle::direction;
+use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
+
+/// A circle around the axis through which the surface goes; the first and the last of a profile are
+/// points on the axis, whatever their radius says.
+///
+/// Normals are (away from the axis, along the axis). Those of the surface on the two sides of the
+/// circle differ where it is a crease.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stop<N: Real> {
+    pub(super) center: Point<N, 3>,
+    pub(super) radius: N,
+    /// The normal at the end of what comes before.
+    pub(super) before: Vector<N, 2>,
+    /// The normal at the start of what follows.
+    pub(super) after: Vector<N, 2>,
+}
+
+impl<N: Real> Stop<N> {
+    /// A circle on which the normal is the same on both sides.
+    pub(super) fn smooth(center: Point<N, 3>, radius: N, normal: Vector<N, 2>) -> Self {
+        Self { center, radius, before: normal, after: normal }
+    }
+}
+
+/// A right-handed frame whose second vector is the axis; the identity for the y axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<N: Real> {
+    across: Vector<N, 3>,
+    axis: Vector<N, 3>,
+    third: Vector<N, 3>,
+}
+
+impl<N: Real> Frame<N> {
+    /// The frame around a unit vector.
+    pub(super) fn around(axis: Vector<N, 3>) -> Self {
+        let (across, _) = orthonormal_basis(&axis);
+        Self { across, axis, third: cross(&across, &axis) }
+    }
+
+    /// The vector away from the axis that a unit vector of the plane stands for.
+    fn radial(&self, toward: &Vector<N, 2>) -> Vector<N, 3> {
+        self.across * toward.x + self.third * toward.y
+    }
+
+    /// The normal, given as (away from the axis, along the axis), in a direction around the axis.
+    fn normal(&self, profile: &Vector<N, 2>, toward: &Vector<N, 2>) -> Vector<N, 3> {
+        self.radial(toward) * profile.x + self.axis * profile.y
+    }
+}
+
+/// The surface that a profile, from the far end of the axis to the near one, leaves behind in a turn of
+/// `count` parts.
+pub(super) fn revolve<N: Real>(
+    frame: &Frame<N>,
+    count: u32,
+    profile: &[Stop<N>],
+) -> TriangleSurface<N> {
+    let last = profile.len() - 1;
+    let directions: Vec<_> = (0..count).map(|index| direction::<N>(index, count)).collect();
+    let mut vertices = vec![profile[0].center];
+    for stop in &profile[1..last] {
+        let at = |toward: &Vector<N, 2>| stop.center + frame.radial(toward) * stop.radius;
+        vertices.extend(directions.iter().map(at));
+    }
+    vertices.push(profile[last].center);
+    let mut bands = Bands { frame, directions, surface: TriangleSurface::of_vertices(vertices) };
+    for (row, stops) in (0_u32..).zip(profile.windows(2)) {
+        bands.push(row, usize::try_from(row).is_ok_and(|row| row + 1 == last), stops);
+    }
+    bands.surface
+}
+
+/// The surface as it grows, band by band.
+struct Bands<'a, N: Real> {
+    frame: &'a Frame<N>,
+    directions: Vec<Vector<N, 2>>,
+    surface: TriangleSurface<N>,
+}
+
+impl<N: Real> Bands<'_, N> {
+    /// Adds what lies between the stops `row` and `row + 1`.
+    ///
+    /// From outside, with the far end of the axis up, directions run to the left: from the third vector
+    /// of the frame, the axis and the first it is right-handed.
+    fn push(&mut self, row: u32, is_last: bool, stops: &[Stop<N>]) {
+        let count = u32::try_from(self.directions.len()).expect("a turn has few parts");
+        let ring = |row: u32, column: u32| 1 + (row - 1) * count + column;
+        for column in 0..count {
+            let next = (column + 1) % count;
+            let upper = |column| if row == 0 { 0 } else { ring(row, column) };
+            let lower = |column| ring(row + 1, if is_last { 0 } else { column });
+            let columns = [column, next];
+            let normals = [
+                self.normals(&stops[0].after, columns, row == 0),
+                self.normals(&stops[1].before, columns, is_last),
+            ];
+            if !is_last {
+                self.surface.triangles.push([lower(column), upper(next), lower(next)]);
+                self.surface.normals.push([normals[1][0], normals[0][1], normals[1][1]]);
+            }
+            if row > 0 {
+                self.surface.triangles.push([lower(column), upper(column), upper(next)]);
+                self.surface.normals.push([normals[1][0], normals[0][0], normals[0][1]]);
+            }
+        }
+    }
+
+    /// The normals at two neighbouring columns; on the axis, that of the middle between them twice.
+    fn normals(
+        &self,
+        profile: &Vector<N, 2>,
+        columns: [u32; 2],
+        is_pole: bool,
+    ) -> [Vector<N, 3>; 2] {
+        if is_pole {
+            let count = u32::try_from(self.directions.len()).expect("a turn has few parts");
+            let middle = direction(2 * columns[0] + 1, 2 * count);
+            return [self.frame.normal(profile, &middle); 2];
+        }
+        columns.map(|column| self.frame.normal(profile, &self.directions[column as usize]))
+    }
+}

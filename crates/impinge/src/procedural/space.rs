@@ -1,0 +1,174 @@
+//! Surfaces of the shapes of space.
+
+use super::TriangleSurface;
+use super::circle::{direction, parts_of_turn};
+use super::revolution::{Frame, Stop, revolve};
+use crate::math::{Point, Real, Vector, unit_or};
+use crate::shape::{
+    Ball, Capsule, Cone, ConvexHull, ConvexPolyhedron, Cuboid, Cylinder, FeatureId, Triangle,
+};
+
+/// Meridians and parallels: `n = subdivisions` of the former, and `4 k` parts with
+/// `k = ⌈n / 4⌉` to a full turn along each of them.
+///
+/// There are `2 + n (2 k − 1)` vertices and `2 n (2 k − 1)` triangles; the first vertex is the pole on
+/// the positive side of y, the last the one on the negative side. The gap is at most
+/// `radius · sin²(π / n)`.
+///
+/// ```
+/// use impinge::procedural::space::ball;
+/// use impinge::shape::Ball;
+///
+/// let octahedron = ball(&Ball::new(3.0_f64), 4);
+/// assert_eq!((octahedron.vertices.len(), octahedron.triangles.len()), (6, 8));
+/// assert!(octahedron.vertices.iter().all(|vertex| vertex.coords.norm() == 3.0));
+/// ```
+#[must_use]
+pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
+    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. The
+    // one whose middle is nearest to the centre would straddle the equator: its middle is at
+    // cos(π / n) · cos(π / 4k) of the radius, which is not below cos²(π / n).
+    let count = parts_of_turn(subdivisions);
+    let quarter = count.div_ceil(4);
+    let sphere = Sphere { radius: ball.radius(), frame: Frame::around(up()), axis: up(), quarter };
+    let profile: Vec<_> =
+        (0..=2 * quarter).map(|index| sphere.stop(&Point::origin(), index)).collect();
+    revolve(&sphere.frame, count, &profile)
+}
+
+/// A half ball at each end, each like half of [`ball`], and `n = subdivisions` rectangles between
+/// them, whatever the length.
+///
+/// There are `2 + 2 n k` vertices and `4 n k` triangles, with `k = ⌈n / 4⌉`; the first vertex is the
+/// pole beyond the second end of the segment, the last the one beyond the first end. The gap is at most
+/// `radius · sin²(π / n)`.
+#[must_use]
+pub fn capsule<N: Real>(capsule: &Capsule<N, 3>, subdivisions: u32) -> TriangleSurface<N> {
+    let count = parts_of_turn(subdivisions);
+    let quarter = count.div_ceil(4);
+    let (a, b) = (capsule.segment().a(), capsule.segment().b());
+    let axis = unit_or(&(b - a), up());
+    let sphere = Sphere { radius: capsule.radius(), frame: Frame::around(axis), axis, quarter };
+    let far = (0..=quarter).map(|index| sphere.stop(b, index));
+    let near = (quarter..=2 * quarter).map(|index| sphere.stop(a, index));
+    let profile: Vec<_> = far.chain(near).collect();
+    revolve(&sphere.frame, count, &profile)
+}
+
+/// `n = subdivisions` rectangles around, and `n` triangles in each cap that meet at its middle.
+///
+/// There are `2 + 2 n` vertices and `4 n` triangles; the first vertex is the middle of the cap on the
+/// positive side of y, the last that of the other. The gap is at most `radius · (1 − cos(π / n))`.
+#[must_use]
+pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleSurface<N> {
+    let (radius, top, bottom) =
+        (cylinder.radius(), cylinder.half_height(), -cylinder.half_height());
+    let [above, beside, below] = [(N::ZERO, N::ONE), (N::ONE, N::ZERO), (N::ZERO, -N::ONE)]
+        .map(|(away, along)| Vector::<N, 2>::new(away, along));
+    let profile = [
+        Stop::smooth(on_axis(top), N::ZERO, above),
+        Stop { center: on_axis(top), radius, before: above, after: beside },
+        Stop { center: on_axis(bottom), radius, before: beside, after: below },
+        Stop::smooth(on_axis(bottom), N::ZERO, below),
+    ];
+    revolve(&Frame::around(up()), parts_of_turn(subdivisions), &profile)
+}
+
+/// `n = subdivisions` triangles up to the apex and `n` in the base that meet at its middle.
+///
+/// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last the middle of
+/// the base. The gap is at most `radius · (1 − cos(π / n))`.
+#[must_use]
+pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
+    let (radius, half_height) = (cone.radius(), cone.half_height());
+    let below = Vector::<N, 2>::new(N::ZERO, -N::ONE);
+    // Halved, so that twice the half height cannot overflow.
+    let slope = Vector::<N, 2>::new(half_height, radius * N::HALF);
+    let slope = unit_or(&slope, Vector::<N, 2>::new(N::ONE, N::ZERO));
+    let base = on_axis(-half_height);
+    let profile = [
+        Stop::smooth(on_axis(half_height), N::ZERO, slope),
+        Stop { center: base, radius, before: slope, after: below },
+        Stop::smooth(base, N::ZERO, below),
+    ];
+    revolve(&Frame::around(up()), parts_of_turn(subdivisions), &profile)
+}
+
+/// Twelve triangles between the eight vertices of a box.
+///
+/// Vertex `i` is the box's `Vertex(i)`; the triangles `2 i` and `2 i + 1` are its `Face(i)`.
+///
+/// ```
+/// use impinge::math::Vector;
+/// use impinge::procedural::space::cuboid;
+/// use impinge::shape::Cuboid;
+///
+/// let surface = cuboid(&Cuboid::new(Vector::<f32, 3>::new(1.0, 2.0, 3.0)));
+/// assert_eq!((surface.vertices.len(), surface.triangles.len()), (8, 12));
+/// assert!(surface.corners().take(2).flatten().all(|corner| corner.x == 1.0));
+/// ```
+#[must_use]
+pub fn cuboid<N: Real>(cuboid: &Cuboid<N, 3>) -> TriangleSurface<N> {
+    let corner = |index| cuboid.vertex(FeatureId::Vertex(index));
+    let mut surface = TriangleSurface::of_vertices((0..8).map(corner).collect());
+    for face in 0..6_u32 {
+        let [axis, next, after] = [0, 1, 2].map(|turn| 1 << ((face / 2 + turn) % 3));
+        // Counter-clockwise seen from the positive side of the axis.
+        let mut ring = [0, next, next | after, after];
+        if face % 2 == 0 {
+            ring = ring.map(|corner| corner | axis);
+        } else {
+            ring.reverse();
+        }
+        surface.push_face(&ring, cuboid.feature_normal(FeatureId::Face(face)));
+    }
+    surface
+}
+
+/// The faces of a convex hull, each cut into triangles that meet at its first vertex, in order.
+///
+/// Vertex `i` is the hull's `Vertex(i)`. A hull of `v` vertices gives `2 v − 4` triangles.
+#[must_use]
+pub fn convex_hull<N: Real>(hull: &ConvexHull<N>) -> TriangleSurface<N> {
+    let mut surface = TriangleSurface::of_vertices(hull.vertices().to_vec());
+    for face in hull.faces() {
+        surface.push_face(hull.face_vertices(face), face.normal);
+    }
+    surface
+}
+
+/// The two sides of a triangle, `Face(0)` first: a closed surface around nothing.
+#[must_use]
+pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
+    let mut surface = TriangleSurface::of_vertices(triangle.corners().to_vec());
+    surface.push_face(&[0, 1, 2], triangle.feature_normal(FeatureId::Face(0)));
+    surface.push_face(&[0, 2, 1], triangle.feature_normal(FeatureId::Face(1)));
+    surface
+}
+
+/// The circles of a sphere across an axis, `quarter` parts to a quarter turn.
+struct Sphere<N: Real> {
+    radius: N,
+    frame: Frame<N>,
+    axis: Vector<N, 3>,
+    quarter: u32,
+}
+
+impl<N: Real> Sphere<N> {
+    /// The circle that is `index` parts from the pole that the axis points to.
+    fn stop(&self, center: &Point<N, 3>, index: u32) -> Stop<N> {
+        let toward = direction::<N>(index, 4 * self.quarter);
+        let center = center + self.axis * (toward.x * self.radius);
+        Stop::smooth(center, toward.y * self.radius, Vector::<N, 2>::new(toward.y, toward.x))
+    }
+}
+
+/// The y axis.
+fn up<N: Real>() -> Vector<N, 3> {
+    Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO)
+}
+
+/// A point of the y axis.
+fn on_axis<N: Real>(y: N) -> Point<N, 3> {
+    Point::<N, 3>::new(N::ZERO, y, N::ZERO)
+}

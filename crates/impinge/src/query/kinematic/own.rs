@@ -1,0 +1,87 @@
+//! Kinematics of contacts that an algorithm of the user's own has found.
+
+use super::{ContactKinematic, NeighborhoodGeometry, NormalRule};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector};
+use crate::query::Contact;
+use crate::shape::FeatureId;
+
+/// One solid's share of a contact that an algorithm of one's own has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSide<N: Real, const D: usize> {
+    /// What touches.
+    pub feature: FeatureId,
+    /// What the solid's core looks like there, in its local frame.
+    pub geometry: NeighborhoodGeometry<N, D>,
+    /// The radius by which the core is swollen: that of a ball, whose core is a point.
+    pub rounding: N,
+}
+
+impl<N: Real, const D: usize> ContactSide<N, D> {
+    /// A corner, or a small piece of a surface that is curved: the point stays with its solid.
+    #[must_use]
+    pub fn point(feature: FeatureId) -> Self {
+        Self { feature, geometry: NeighborhoodGeometry::Point, rounding: N::ZERO }
+    }
+}
+
+impl<N: Real, const D: usize> ContactKinematic<N, D> {
+    /// The kinematic of a contact of one's own, given in the world frame; `m1` and `m2` are the poses
+    /// of the solids that it was found for.
+    ///
+    /// For these poses [`Self::contact`] gives the contact back, up to rounding. For others its
+    /// normal turns with the solid whose side is flat (of two, the one whose normal is nearer to the
+    /// contact's). Where no side is flat, the normal is that of the shortest connection of the cores,
+    /// if that is the contact's normal now; else it turns with the first solid.
+    #[must_use]
+    pub fn from_contact<R: AbstractRotation<N, D>>(
+        contact: &Contact<N, D>,
+        (m1, side1): (&Isometry<N, R, D>, ContactSide<N, D>),
+        (m2, side2): (&Isometry<N, R, D>, ContactSide<N, D>),
+    ) -> Self {
+        let (pose1, pose2) = (Pose::from_isometry(m1), Pose::from_isometry(m2));
+        let (normal1, local1) = core(&pose1, &contact.world1, &contact.normal, side1.rounding);
+        let (normal2, local2) = core(&pose2, &contact.world2, &-contact.normal, side2.rounding);
+        let mut kinematic = Self {
+            feature1: side1.feature,
+            feature2: side2.feature,
+            local1,
+            local2,
+            geometry1: side1.geometry,
+            geometry2: side2.geometry,
+            rounding1: side1.rounding,
+            rounding2: side2.rounding,
+            normal1,
+            normal2: -normal2,
+            rule: NormalRule::Geometry,
+        };
+        if !kinematic.reproduces(&Pose::relative(&pose1, &pose2)) {
+            let lean1 = lean(&side1.geometry, &normal1);
+            let is_second = lean(&side2.geometry, &normal2) < lean1;
+            kinematic.rule = if is_second { NormalRule::Second } else { NormalRule::First };
+        }
+        kinematic
+    }
+}
+
+/// The direction out of a solid and the point of its core below a point of its surface, in its frame.
+fn core<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
+    surface: &Point<N, D>,
+    outward: &Vector<N, D>,
+    rounding: N,
+) -> (Vector<N, D>, Point<N, D>) {
+    let outward = pose.inverse_vector(outward);
+    (outward, pose.inverse_point(surface) - outward * rounding)
+}
+
+/// How much a flat side leans: the length of the difference of its normal and `outward`; more than
+/// any lean for a side that is not flat.
+fn lean<N: Real, const D: usize>(
+    geometry: &NeighborhoodGeometry<N, D>,
+    outward: &Vector<N, D>,
+) -> N {
+    match geometry {
+        NeighborhoodGeometry::Plane(normal) => (normal - outward).norm(),
+        _ => N::lit(4.0),
+    }
+}

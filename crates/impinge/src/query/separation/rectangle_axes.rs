@@ -1,0 +1,84 @@
+//! The separating axis test of two boxes in the plane.
+
+use crate::math::{Pose, Real, Vector};
+
+/// Two boxes, the second placed in the frame of the first.
+pub(in crate::query) struct Rectangles<N: Real> {
+    pub(in crate::query) half1: Vector<N, 2>,
+    pub(in crate::query) half2: Vector<N, 2>,
+    pub(in crate::query) pose12: Pose<N, 2>,
+}
+
+/// The normal of a side, turned to point from the first box to the second, and the gap along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::query) struct SideAxis<N: Real> {
+    /// The side belongs to the second box.
+    pub(in crate::query) is_second: bool,
+    /// The axis of its box that the side is perpendicular to.
+    pub(in crate::query) axis: usize,
+    pub(in crate::query) normal: Vector<N, 2>,
+    pub(in crate::query) gap: N,
+}
+
+impl<N: Real> Rectangles<N> {
+    /// What arithmetic on these numbers cannot resolve.
+    pub(in crate::query) fn noise(&self) -> N {
+        let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
+        N::lit(4.0) * N::EPSILON * size
+    }
+
+    /// The direction of the largest gap.
+    ///
+    /// Equal gaps: the sides of the first box come before those of the second, each in the order of
+    /// its outline, which starts below and goes round counter-clockwise.
+    pub(in crate::query) fn best_axis(&self) -> SideAxis<N> {
+        let leans = self.pose12.rotation.abs();
+        let offset = self.pose12.translation;
+        let reaches2 = leans * self.half2;
+        let first = [0, 1].map(|axis| {
+            let along = offset[axis];
+            let is_positive = if axis == 0 { along >= N::ZERO } else { along > N::ZERO };
+            let gap = along.abs() - self.half1[axis] - reaches2[axis];
+            (gap, rank(axis, is_positive), axis, is_positive)
+        });
+        let (gap, _, axis, is_positive) = better(first[0], first[1]);
+        let normal = signed(Vector::<N, 2>::ith(axis, N::ONE), is_positive);
+        let best = SideAxis { is_second: false, axis, normal, gap };
+        let seen = self.pose12.inverse_vector(&offset);
+        let reaches1 = leans.tr_mul(&self.half1);
+        let second = [0, 1].map(|axis| {
+            let along = seen[axis];
+            let is_positive = if axis == 0 { along > N::ZERO } else { along >= N::ZERO };
+            let gap = along.abs() - self.half2[axis] - reaches1[axis];
+            // The side of the second box that faces the first is opposite to the normal.
+            (gap, rank(axis, !is_positive), axis, is_positive)
+        });
+        let (gap, _, axis, is_positive) = better(second[0], second[1]);
+        if gap <= best.gap {
+            return best;
+        }
+        let along = self.pose12.rotation.column(axis).into_owned();
+        SideAxis { is_second: true, axis, normal: signed(along, is_positive), gap }
+    }
+}
+
+/// Where a side stands in the outline: below, right, above, left.
+const fn rank(axis: usize, is_positive: bool) -> usize {
+    match (axis, is_positive) {
+        (0, true) => 1,
+        (0, false) => 3,
+        (_, true) => 2,
+        (_, false) => 0,
+    }
+}
+
+type Found<N> = (N, usize, usize, bool);
+
+/// The larger gap; of equals the one that comes first.
+fn better<N: Real>(one: Found<N>, other: Found<N>) -> Found<N> {
+    if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
+}
+
+fn signed<N: Real>(vector: Vector<N, 2>, is_positive: bool) -> Vector<N, 2> {
+    if is_positive { vector } else { -vector }
+}
