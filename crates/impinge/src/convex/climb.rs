@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::difference::{Difference, Moved, noise};
 use super::gjk::nearest_normal;
 use super::simplex::Simplicial;
-use crate::math::{max, unit_or};
+use crate::math::{Vector, max, unit_or};
 
 /// Cap on the number of steps; each finds a nearest point.
 const STEPS: usize = 40;
@@ -18,8 +18,8 @@ const DOUBLINGS: usize = 16;
 /// largest at `n`, the height of `m` is no less than that of `n`: this is the proximal point method
 /// (R. T. Rockafellar, "Monotone Operators and the Proximal Point Algorithm", 1976), and kinks of
 /// `h`, the flat faces, are no trouble to it. Where the heights around hardly differ its steps are
-/// short; so each is doubled while that helps, and as the way up may be a ridge that bends, each
-/// trial is brought back to the ridge by a step of its own.
+/// short; so each is doubled while that helps. Where it does not help, the way up may be a ridge that
+/// bends: then each trial is first brought back to the ridge by a step of its own.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut Candidate<N, D>,
@@ -29,20 +29,33 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
         let first = raised(difference, &before);
         best.improve(&first);
         let step = first.normal - before.normal;
-        let mut stretch = N::TWO;
-        for _ in 0..DOUBLINGS {
-            let normal = unit_or(&(before.normal + step * stretch), before.normal);
-            let trial = raised(difference, &Candidate::along(difference, normal));
-            if !best.improve(&trial) {
-                break;
-            }
-            stretch *= N::TWO;
+        let along = |normal| Candidate::along(difference, normal);
+        if !stride(best, &step, along) {
+            stride(best, &step, |normal| raised(difference, &along(normal)));
         }
         let worth_it = best.height - before.height > noise::<N>() / N::lit(8.0);
         if !worth_it {
             return;
         }
     }
+}
+
+/// Goes on in the direction of a step that was made, twice as far each time, while that helps; says
+/// whether it did. `trial` makes a candidate of a normal.
+fn stride<N: Simplicial<D>, const D: usize>(
+    best: &mut Candidate<N, D>,
+    step: &Vector<N, D>,
+    trial: impl Fn(Vector<N, D>) -> Candidate<N, D>,
+) -> bool {
+    let (start, mut stretch) = (best.normal, N::ONE);
+    for round in 0..DOUBLINGS {
+        let normal = unit_or(&(start + step * stretch), start);
+        if !best.improve(&trial(normal)) {
+            return round > 0;
+        }
+        stretch *= N::TWO;
+    }
+    true
 }
 
 /// One step of the method.

@@ -20,12 +20,13 @@ pub(super) struct Face<N: Real> {
     pub(super) offset: N,
     /// Moved to where the difference is known to end; it grows no more.
     pub(super) settled: bool,
-    /// Not taken away by the growth that is under way.
-    present: bool,
 }
 
 /// The sides of a hole in the surface, each running as in the face that is gone.
 type Outline = SmallVec<[[u16; 2]; 24]>;
+
+/// Numbers of faces.
+type Indices = SmallVec<[usize; 16]>;
 
 pub(super) struct Hull<N: Real> {
     vertices: SmallVec<[Vertex<N, 3>; 32]>,
@@ -43,7 +44,7 @@ impl<N: Real> Hull<N> {
         }
         let mut hull = Self { vertices, faces: SmallVec::new() };
         for corners in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
-            hull.add_face(corners);
+            hull.faces.push(hull.face_of(corners));
         }
         hull
     }
@@ -92,22 +93,32 @@ impl<N: Real> Hull<N> {
         let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
         self.vertices.push(vertex);
         let mut visible = self.visible(from, &vertex);
-        let mut outline = Outline::new();
+        let (mut outline, mut free) = (Outline::new(), Indices::new());
         self.uncover(from, &mut outline);
+        free.push(from);
         // Only what is connected to `from` goes: a face elsewhere that rounding makes visible would
         // tear a second hole.
         while let Some(next) = visible.iter().position(|&face| self.adjoins(face, &outline)) {
-            self.uncover(visible.swap_remove(next), &mut outline);
+            let face = visible.swap_remove(next);
+            self.uncover(face, &mut outline);
+            free.push(face);
         }
-        self.faces.retain(|face| face.present);
         for [a, b] in outline {
-            self.add_face([a, b, apex]);
+            let face = self.face_of([a, b, apex]);
+            match free.pop() {
+                Some(index) => self.faces[index] = face,
+                None => self.faces.push(face),
+            }
+        }
+        free.sort_unstable();
+        while let Some(index) = free.pop() {
+            self.faces.swap_remove(index);
         }
     }
 
     /// The faces other than `from` that a point lies beyond; those too thin to tell count.
-    fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> SmallVec<[usize; 16]> {
-        let mut visible = SmallVec::new();
+    fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> Indices {
+        let mut visible = Indices::new();
         for (index, face) in self.faces.iter().enumerate() {
             let beyond = face.outward.dot(&vertex.point) - face.offset > noise();
             if index != from && (beyond || face.offset == N::INFINITY) {
@@ -124,8 +135,7 @@ impl<N: Real> Hull<N> {
     }
 
     /// Takes a face away: its sides become the hole's, or cancel against them.
-    fn uncover(&mut self, face: usize, outline: &mut Outline) {
-        self.faces[face].present = false;
+    fn uncover(&self, face: usize, outline: &mut Outline) {
         let [a, b, c] = self.faces[face].corners;
         for [start, end] in [[a, b], [b, c], [c, a]] {
             match outline.iter().position(|&side| side == [end, start]) {
@@ -137,7 +147,7 @@ impl<N: Real> Hull<N> {
         }
     }
 
-    fn add_face(&mut self, corners: [u16; 3]) {
+    fn face_of(&self, corners: [u16; 3]) -> Face<N> {
         let [a, b, c] = corners.map(|corner| self.vertex(corner).point);
         let (e, f) = (b - a, c - a);
         let normal = cross(&e, &f);
@@ -148,7 +158,6 @@ impl<N: Real> Hull<N> {
             let (outward, _) = found;
             (outward, outward.dot(&a))
         });
-        let face = Face { corners, outward, offset, settled: false, present: true };
-        self.faces.push(face);
+        Face { corners, outward, offset, settled: false }
     }
 }

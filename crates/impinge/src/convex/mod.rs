@@ -79,7 +79,10 @@ where
 /// `distance` is the certificate of `normal`. With `s` the sum of the reaches of the cores and of
 /// the distance of their origins, it falls short of the exact signed distance by a few
 /// `N::EPSILON · s` for cores with flat faces; for curved cores by about the larger of that and
-/// `2⁻⁴⁰ · s`. Where several normals are equally good (coincident centres, say) one is picked, the
+/// `2⁻⁴⁰ · s`; only where a whole ring of normals is nearly as good, as deep in nearly coaxial
+/// cylinders or cones, a local search ends the work, which may fall short by some `10⁻⁷ · s`. The
+/// points lie on the cores to the same accuracy, on curved ones to about its square root at worst.
+/// Where several normals are equally good (coincident centres, say) one is picked, the
 /// same each time. Cores that are single coincident points have no direction at all: the first
 /// axis is taken.
 ///

@@ -55,6 +55,11 @@ impl<N: Real, const D: usize> Nearest<N, D> {
         Self::new(*point, weights)
     }
 
+    /// Whether all of these corners contribute.
+    pub(super) fn weighs<const K: usize>(&self, corners: [usize; K]) -> bool {
+        corners.iter().all(|&corner| self.weights[corner] > N::ZERO)
+    }
+
     /// The nearer of two.
     pub(super) fn or_nearer(self, other: Option<Self>) -> Self {
         match other {

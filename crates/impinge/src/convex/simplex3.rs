@@ -44,7 +44,12 @@ fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) 
     let mut best: Option<Nearest<N, 3>> = None;
     for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
         if flat || weight <= N::ZERO {
-            best = Some(nearest_on_segment(points, side).or_nearer(best));
+            let found = nearest_on_segment(points, side);
+            // Beyond a side and beside no end of it: nothing of the triangle is nearer.
+            if !flat && found.weighs(side) {
+                return found;
+            }
+            best = Some(found.or_nearer(best));
         }
     }
     best.unwrap_or_else(|| {
@@ -72,7 +77,12 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
     let mut best: Option<Nearest<N, 3>> = None;
     for (part, face) in parts.into_iter().zip(FACES) {
         if flat || part * volume <= N::ZERO {
-            best = Some(nearest_on_triangle(points, face).or_nearer(best));
+            let found = nearest_on_triangle(points, face);
+            // Beyond a face and above its inside: nothing of the tetrahedron is nearer.
+            if !flat && found.weighs(face) {
+                return found;
+            }
+            best = Some(found.or_nearer(best));
         }
     }
     best.unwrap_or_else(|| Nearest::enclosed(parts.map(|part| part / volume)))

@@ -33,6 +33,8 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) due: Vec<(u32, u32)>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
+    /// Those of the pairs that touch; made when first needed after a change of either.
+    pub(super) touching: OnceLock<Vec<u32>>,
 }
 
 impl<N: Space<D>, const D: usize> Default for DefaultNarrowPhase<N, D> {
@@ -74,6 +76,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             ids: IdAllocator::new(),
             due: Vec::new(),
             order: OnceLock::new(),
+            touching: OnceLock::new(),
         }
     }
 
@@ -83,7 +86,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if !self.pairs.insert(first, second).is_new {
             return;
         }
-        self.order.take();
+        self.forget_order();
         let (location, _) = self.enter(table, (first, second), Carried::Nothing);
         self.locations.push(location);
     }
@@ -101,7 +104,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         push_change(table, (first, second), carried.end(), events);
         let removed = self.pairs.remove_at(index);
         self.locations.swap_remove(removed.index);
+        self.forget_order();
+    }
+
+    /// The pairs are others, or lie elsewhere, than when they were sorted.
+    fn forget_order(&mut self) {
         self.order.take();
+        self.touching.take();
     }
 
     /// Chooses the algorithms of an object's pairs anew, after its shape or query type changed. The
@@ -143,7 +152,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// now; moves it to the lane of its new kinds. Answers whether it could.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: (u32, u32), index: usize) -> bool {
         let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
-        let Location { lane, place } = self.locations[index];
+        let Location { lane, place, is_touching } = self.locations[index];
         let query = table.query(key.0).pair(table.query(key.1));
         match (lane, new_lane, query) {
             (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
@@ -151,14 +160,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 self.note_move(moved, place);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 let place = self.lanes.contacts[usize::from(new)].push(key, entry);
-                self.locations[index] = Location { lane: new_lane, place };
+                self.locations[index] = Location { lane: new_lane, place, is_touching };
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
                 let (mut entry, moved) = self.lanes.proximity[usize::from(old)].swap_remove(place);
                 self.note_move(moved, place);
                 entry.margin = margin;
                 let place = self.lanes.proximity[usize::from(new)].push(key, entry);
-                self.locations[index] = Location { lane: new_lane, place };
+                self.locations[index] = Location { lane: new_lane, place, is_touching };
             }
             _ => return false,
         }
@@ -175,6 +184,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried: Carried,
     ) -> (Location, Option<Change>) {
         self.due.push(key);
+        self.touching.take();
         match table.query(key.0).pair(table.query(key.1)) {
             PairQuery::Contacts { linear, angular } => {
                 self.enter_contacts(table, key, carried, (linear, angular))
@@ -190,6 +200,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried: Carried,
         (linear, angular): (N, N),
     ) -> (Location, Option<Change>) {
+        let is_touching = carried.is_touching();
         if let Some((lane, max_points)) = self.built_in_lane(table, key) {
             let Lane::Contacts(group) = lane else { unreachable!("the query asks for contacts") };
             let (touch, change) = carried.into_touch();
@@ -197,7 +208,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let entry =
                 ContactEntry::new(ManifoldRequest::new(linear, angular, max_points), number, touch);
             let place = self.lanes.contacts[usize::from(group)].push(key, entry);
-            return (Location { lane, place }, change);
+            return (Location { lane, place, is_touching }, change);
         }
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
         let Some(algorithm) = self.contact_dispatcher.get_contact_algorithm(a, b) else {
@@ -208,7 +219,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let prediction = ContactPrediction::new(linear, half, half);
         let entry = CustomContactEntry { algorithm, prediction, due: true, touch };
         let place = self.lanes.custom_contacts.push(key, entry);
-        (Location { lane: Lane::CustomContacts, place }, change)
+        (Location { lane: Lane::CustomContacts, place, is_touching }, change)
     }
 
     fn enter_proximity(
@@ -223,7 +234,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let (status, change) = carried.into_status();
             let entry = ProximityEntry { margin, due: true, status };
             let place = self.lanes.proximity[usize::from(group)].push(key, entry);
-            return (Location { lane, place }, change);
+            return (Location { lane, place, is_touching: false }, change);
         }
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
         let Some(algorithm) = self.proximity_dispatcher.get_proximity_algorithm(a, b) else {
@@ -232,7 +243,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let (status, change) = carried.into_status();
         let entry = CustomProximityEntry { algorithm, margin, due: true, status };
         let place = self.lanes.custom_proximity.push(key, entry);
-        (Location { lane: Lane::CustomProximity, place }, change)
+        (Location { lane: Lane::CustomProximity, place, is_touching: false }, change)
     }
 
     /// Takes the state of a pair out of its lane and keeps the location of whoever moved true.
@@ -252,7 +263,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 }
 
 /// Where pairs without an algorithm are.
-const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
+const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0, is_touching: false };
 
 /// Puts what happened to a pair into events.
 pub(super) fn push_change<N: Space<D>, const D: usize>(

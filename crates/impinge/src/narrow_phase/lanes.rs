@@ -30,6 +30,9 @@ pub(crate) enum Lane {
 pub(crate) struct Location {
     pub(crate) lane: Lane,
     pub(crate) place: u32,
+    /// The pair has contact points: what the state says, here too so that readers pass over the
+    /// others without looking at their states.
+    pub(crate) is_touching: bool,
 }
 
 /// What a pair carries over when its algorithm changes: the facts that events are told by.
@@ -48,6 +51,11 @@ impl Carried {
             Self::Proximity(status) => status.end(),
             Self::Nothing => None,
         }
+    }
+
+    /// The pair has contact points.
+    pub(crate) fn is_touching(self) -> bool {
+        matches!(self, Self::Contacts(Touch { touching: true }))
     }
 
     /// The touch to go on with, and the event if the pair had another query type before.

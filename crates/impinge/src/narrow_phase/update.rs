@@ -35,10 +35,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             self.update_all(table, &mut changes);
         }
         for (key, change) in changes {
+            self.note_change(key, change);
             push_change(table, key, Some(change), events);
         }
         self.due = due;
         self.due.clear();
+    }
+
+    /// Keeps what readers go by in step with the states.
+    fn note_change(&mut self, (first, second): (u32, u32), change: Change) {
+        if let Change::Contact { touching } = change {
+            let index = self.pairs.index_of(first, second).expect("a state belongs to a pair");
+            self.locations[index].is_touching = touching;
+            self.touching.take();
+        }
     }
 
     /// Goes through all pairs, lane by lane.
@@ -107,7 +117,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &mut self,
         table: &ObjectTable<N, D>,
         key: (u32, u32),
-        Location { lane, place }: Location,
+        Location { lane, place, .. }: Location,
     ) -> Option<Change> {
         match lane {
             Lane::Contacts(group) => {

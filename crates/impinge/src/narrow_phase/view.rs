@@ -88,13 +88,16 @@ impl ProximityPair {
     }
 }
 
-/// The places of the pairs, sorted by pair: object by object, each with its partners in order.
-fn sorted(pairs: &PairTable) -> Vec<u32> {
+/// The places of the wanted pairs, sorted by pair: object by object, each with its partners in order.
+fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
-    let (mut order, mut partners) = (Vec::with_capacity(pairs.len()), Vec::new());
+    let (mut order, mut partners) = (Vec::new(), Vec::new());
     for object in 0..objects {
-        let later = pairs.partners(object).filter(|&(partner, _)| partner > object);
-        partners.extend(later);
+        for (partner, place) in pairs.partners(object) {
+            if partner > object && is_wanted(place) {
+                partners.push((partner, place));
+            }
+        }
         partners.sort_unstable();
         let places = partners.drain(..).map(|(_, place)| place);
         order.extend(places.map(|place| u32::try_from(place).expect("a pair table is smaller")));
@@ -134,9 +137,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &'a self,
         table: &'a ObjectTable<N, D>,
     ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
-        let touching = self.contact_pairs(table).filter(|(_, _, pair)| pair.num_contacts() > 0);
-        touching.flat_map(|(first, second, pair)| {
-            pair.manifolds().map(move |manifold| (first, second, manifold))
+        let is_touching = |place: usize| self.locations[place].is_touching;
+        let touching = self.touching.get_or_init(|| sorted(&self.pairs, is_touching));
+        touching.iter().flat_map(move |&index| {
+            let (first, second) = self.pairs.pairs()[index as usize];
+            let pair = self.contacts_at(table, index as usize);
+            let manifolds = pair.into_iter().flat_map(|pair| pair.manifolds());
+            manifolds.map(move |manifold| (first, second, manifold))
         })
     }
 
@@ -183,7 +190,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// The places of the pairs, sorted by pair.
     fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
-        let order = self.order.get_or_init(|| sorted(&self.pairs));
+        let order = self.order.get_or_init(|| sorted(&self.pairs, |_| true));
         order.iter().map(|&index| index as usize)
     }
 
@@ -213,6 +220,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             };
             if found != key {
                 return Err(format!("the state of pair {key:?} is that of {found:?}"));
+            }
+            let touches = match location.lane {
+                Lane::Contacts(group) => {
+                    self.lanes.contacts[usize::from(group)].state(place).touch.touching
+                }
+                Lane::CustomContacts => self.lanes.custom_contacts.state(place).touch.touching,
+                _ => false,
+            };
+            if touches != location.is_touching {
+                return Err(format!("readers hold a wrong opinion of pair {key:?}"));
             }
         }
         Ok(())

@@ -211,7 +211,7 @@ fn bad_input_is_named() {
 }
 
 #[test]
-#[should_panic(expected = "the points only span something of dimension 1")]
+#[should_panic(expected = "the points span no solid: they lie on one line")]
 fn the_panicking_constructor_says_why() {
     let _ =
         ConvexHull::<f32>::from_points(&[[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]].map(Point::from));
