@@ -78,28 +78,32 @@ pub(crate) struct ContactEntry<N: Real, const D: usize> {
     pub(crate) due: bool,
     pub(crate) touch: Touch,
     pub(crate) state: ContactState<N, D>,
-    /// Made when first read after an update.
-    public: OnceLock<ContactManifold<N, D>>,
 }
+
+/// The manifold of a pair as users see it: made when first read after an update.
+pub(crate) type ContactView<N, const D: usize> = OnceLock<ContactManifold<N, D>>;
 
 impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
     pub(crate) fn new(request: ManifoldRequest<N>, number: u64, touch: Touch) -> Self {
         let state = ContactState::default();
-        Self { request, number, due: true, touch, state, public: OnceLock::new() }
+        Self { request, number, due: true, touch, state }
     }
 
     /// Brings the contacts up to date.
-    pub(crate) fn update(&mut self, posed: &Posed<'_, N, D>) -> Option<Change> {
+    pub(crate) fn update(
+        &mut self,
+        view: &mut ContactView<N, D>,
+        posed: &Posed<'_, N, D>,
+    ) -> Option<Change> {
         self.due = false;
-        self.public.take();
+        view.take();
         self.state.update(posed, &self.request);
         self.touch.set(self.state.len() > 0)
     }
 
     /// The manifold as users see it.
-    pub(crate) fn manifold(&self, posed: &Posed<'_, N, D>) -> &ContactManifold<N, D> {
-        let make = || (N::tables().public_manifold)(&self.state, posed, self.number);
-        self.public.get_or_init(make)
+    pub(crate) fn manifold(&self, posed: &Posed<'_, N, D>) -> ContactManifold<N, D> {
+        (N::tables().public_manifold)(&self.state, posed, self.number)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::ObjectTable;
 use super::entry::{
-    Change, ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry, Status, Touch,
+    Change, ContactEntry, ContactView, CustomContactEntry, CustomProximityEntry, ProximityEntry,
+    Status, Touch,
 };
 use super::group::Group;
 use crate::math::{Real, Space};
@@ -78,7 +79,7 @@ impl Carried {
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
 pub(crate) struct Lanes<N: Space<D>, const D: usize> {
-    pub(crate) contacts: Vec<Group<ContactEntry<N, D>>>,
+    pub(crate) contacts: Vec<Group<ContactEntry<N, D>, ContactView<N, D>>>,
     pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
     pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,

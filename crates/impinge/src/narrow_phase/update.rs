@@ -54,13 +54,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
         for group in &mut self.lanes.contacts {
-            update_group(group, changes, |key, entry| {
+            update_group(group, changes, |key, entry, view| {
                 let needed = needs_update(entry.due, table, key);
-                if needed { entry.update(&posed(table, key)) } else { None }
+                if needed { entry.update(view, &posed(table, key)) } else { None }
             });
         }
         for group in &mut self.lanes.proximity {
-            update_group(group, changes, |key, entry| {
+            update_group(group, changes, |key, entry, ()| {
                 let needed = needs_update(entry.due, table, key);
                 if needed { entry.update(&posed(table, key)) } else { None }
             });
@@ -70,7 +70,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// One by one: algorithms of the user's share one source of names.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
-        let (keys, entries) = self.lanes.custom_contacts.split_mut();
+        let (keys, entries, _) = self.lanes.custom_contacts.split_mut();
         for (&key, entry) in keys.iter().zip(entries) {
             if needs_update(entry.due, table, key) {
                 let dispatcher = &*self.contact_dispatcher;
@@ -78,7 +78,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 changes.extend(change.map(|change| (key, change)));
             }
         }
-        let (keys, entries) = self.lanes.custom_proximity.split_mut();
+        let (keys, entries, _) = self.lanes.custom_proximity.split_mut();
         for (&key, entry) in keys.iter().zip(entries) {
             if needs_update(entry.due, table, key) {
                 let change = entry.update(&*self.proximity_dispatcher, table, key);
@@ -121,8 +121,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) -> Option<Change> {
         match lane {
             Lane::Contacts(group) => {
-                let entry = self.lanes.contacts[usize::from(group)].state_mut(place);
-                entry.update(&posed(table, key))
+                let (entry, view) = self.lanes.contacts[usize::from(group)].parts_mut(place);
+                entry.update(view, &posed(table, key))
             }
             Lane::Proximity(group) => {
                 let entry = self.lanes.proximity[usize::from(group)].state_mut(place);
@@ -143,25 +143,27 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
 /// changed comes in the order of the group either way.
-fn update_group<S: Send + Sync>(
-    group: &mut Group<S>,
+fn update_group<S: Send + Sync, V: Default + Send + Sync>(
+    group: &mut Group<S, V>,
     changes: &mut Changes,
-    update: impl Fn((u32, u32), &mut S) -> Option<Change> + Sync,
+    update: impl Fn((u32, u32), &mut S, &mut V) -> Option<Change> + Sync,
 ) {
-    let (keys, states) = group.split_mut();
-    let chunk = |(keys, states): (&[(u32, u32)], &mut [S])| -> Changes {
-        let one = |(&key, state)| update(key, state).map(|change| (key, change));
-        keys.iter().zip(states).filter_map(one).collect()
+    let (keys, states, views) = group.split_mut();
+    let chunk = |((keys, states), views): ((&[(u32, u32)], &mut [S]), &mut [V])| -> Changes {
+        let one = |((&key, state), view)| update(key, state, view).map(|change| (key, change));
+        keys.iter().zip(states).zip(views).filter_map(one).collect()
     };
     #[cfg(feature = "parallel")]
     if keys.len() >= 2 * CHUNK {
         use rayon::prelude::*;
         let chunks = keys.par_chunks(CHUNK).zip(states.par_chunks_mut(CHUNK));
+        let chunks = chunks.zip(views.par_chunks_mut(CHUNK));
         let results: Vec<Changes> = chunks.map(chunk).collect();
         changes.extend(results.into_iter().flatten());
         return;
     }
-    for (keys, states) in keys.chunks(CHUNK).zip(states.chunks_mut(CHUNK)) {
-        changes.extend(chunk((keys, states)));
+    let chunks = keys.chunks(CHUNK).zip(states.chunks_mut(CHUNK));
+    for one in chunks.zip(views.chunks_mut(CHUNK)) {
+        changes.extend(chunk(one));
     }
 }

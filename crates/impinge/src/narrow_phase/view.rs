@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use super::entry::{ContactEntry, posed};
-use super::lanes::Lane;
-use super::state::Posed;
+use super::entry::{ContactEntry, ContactView, posed};
+use super::group::Group;
+use super::lanes::{Lane, Location};
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;
@@ -17,8 +17,29 @@ pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
 
 #[derive(Clone, Copy)]
 enum Contacts<'a, N: Space<D>, const D: usize> {
-    BuiltIn(&'a ContactEntry<N, D>, Posed<'a, N, D>),
+    BuiltIn(BuiltIn<'a, N, D>),
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
+}
+
+/// Where the contacts of one of the library's own pairs are.
+#[derive(Clone, Copy)]
+struct BuiltIn<'a, N: Space<D>, const D: usize> {
+    table: &'a ObjectTable<N, D>,
+    group: &'a Group<ContactEntry<N, D>, ContactView<N, D>>,
+    place: u32,
+    is_touching: bool,
+}
+
+impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
+    /// The manifold, if it holds a contact.
+    fn manifold(&self) -> Option<&'a ContactManifold<N, D>> {
+        if !self.is_touching {
+            return None;
+        }
+        let (group, place) = (self.group, self.place);
+        let make = || group.state(place).manifold(&posed(self.table, group.key(place)));
+        Some(group.view(place).get_or_init(make))
+    }
 }
 
 impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
@@ -32,7 +53,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     #[must_use]
     pub fn num_contacts(&self) -> usize {
         match self.0 {
-            Contacts::BuiltIn(entry, _) => entry.state.len(),
+            Contacts::BuiltIn(pair) => pair.group.state(pair.place).state.len(),
             Contacts::Custom(algorithm) => algorithm.num_contacts(),
         }
     }
@@ -42,10 +63,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         let mut others = Vec::new();
         let own = match self.0 {
             // The common case allocates nothing.
-            Contacts::BuiltIn(entry, posed) => {
-                let touches = entry.state.len() > 0;
-                touches.then(|| entry.manifold(&posed))
-            }
+            Contacts::BuiltIn(pair) => pair.manifold(),
             Contacts::Custom(algorithm) => {
                 algorithm.contacts(&mut others);
                 None
@@ -57,8 +75,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
-            Contacts::BuiltIn(entry, _) if entry.state.len() == 0 => {}
-            Contacts::BuiltIn(entry, posed) => out.push(entry.manifold(&posed)),
+            Contacts::BuiltIn(pair) => out.extend(pair.manifold()),
             Contacts::Custom(algorithm) => algorithm.contacts(out),
         }
     }
@@ -164,9 +181,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         match location.lane {
             Lane::Contacts(group) => {
                 let group = &self.lanes.contacts[usize::from(group)];
-                let entry = group.state(location.place);
-                let posed = posed(table, group.key(location.place));
-                Some(ContactPair(Contacts::BuiltIn(entry, posed)))
+                let Location { place, is_touching, .. } = location;
+                let pair = BuiltIn { table, group, place, is_touching };
+                Some(ContactPair(Contacts::BuiltIn(pair)))
             }
             Lane::CustomContacts => {
                 let entry = self.lanes.custom_contacts.state(location.place);
