@@ -40,8 +40,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
-    pub(crate) public_manifold:
-        fn(&ContactState<N, D>, &Posed<'_, N, D>, u64) -> ContactManifold<N, D>,
+    pub(crate) public_manifold: PublicManifoldFn<N, D>,
     pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
     pub(crate) update_pairs: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events),
     /// The step of a broad phase: what is pending, the filter, and what hears of changes.
@@ -52,6 +51,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
 
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
+type PublicManifoldFn<N, const D: usize> =
+    fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FindPairsFn<N, const D: usize> =

@@ -1,7 +1,7 @@
 //! What the narrow phase keeps of a pair, by who computes it and what is asked.
 
 use core::fmt;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::state::{ContactState, Posed, proximity_of};
 use super::traits::{
@@ -81,7 +81,38 @@ pub(crate) struct ContactEntry<N: Real, const D: usize> {
 }
 
 /// The manifold of a pair as users see it: made when first read after an update.
-pub(crate) type ContactView<N, const D: usize> = OnceLock<ContactManifold<N, D>>;
+#[derive(Debug)]
+pub(crate) struct ContactView<N: Real, const D: usize> {
+    manifold: OnceLock<ContactManifold<N, D>>,
+    /// That of an update before, for its memory. Locked by whoever makes the manifold, once.
+    old: Mutex<ContactManifold<N, D>>,
+}
+
+impl<N: Real, const D: usize> Default for ContactView<N, D> {
+    fn default() -> Self {
+        Self { manifold: OnceLock::new(), old: Mutex::default() }
+    }
+}
+
+impl<N: Real, const D: usize> ContactView<N, D> {
+    /// Forgets the manifold, but keeps its memory.
+    fn expire(&mut self) {
+        if let Some(manifold) = self.manifold.take() {
+            *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifold;
+        }
+    }
+
+    /// The manifold; `make` writes it over an old one if this is the first time it is asked for.
+    pub(crate) fn manifold(
+        &self,
+        make: impl FnOnce(ContactManifold<N, D>) -> ContactManifold<N, D>,
+    ) -> &ContactManifold<N, D> {
+        self.manifold.get_or_init(|| {
+            let mut old = self.old.lock().unwrap_or_else(PoisonError::into_inner);
+            make(core::mem::take(&mut *old))
+        })
+    }
+}
 
 impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
     pub(crate) fn new(request: ManifoldRequest<N>, number: u64, touch: Touch) -> Self {
@@ -96,14 +127,18 @@ impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
         posed: &Posed<'_, N, D>,
     ) -> Option<Change> {
         self.due = false;
-        view.take();
+        view.expire();
         self.state.update(posed, &self.request);
         self.touch.set(self.state.len() > 0)
     }
 
-    /// The manifold as users see it.
-    pub(crate) fn manifold(&self, posed: &Posed<'_, N, D>) -> ContactManifold<N, D> {
-        (N::tables().public_manifold)(&self.state, posed, self.number)
+    /// The manifold as users see it, over the memory of an old one.
+    pub(crate) fn manifold(
+        &self,
+        posed: &Posed<'_, N, D>,
+        old: ContactManifold<N, D>,
+    ) -> ContactManifold<N, D> {
+        (N::tables().public_manifold)(&self.state, posed, self.number, old)
     }
 }
 

@@ -67,7 +67,8 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         let number = *self.number.get_or_insert_with(|| ids.allocate());
         let tables = N::tables();
         (tables.update_contacts)(&mut self.state, &posed, &request);
-        self.manifold = (tables.public_manifold)(&self.state, &posed, number);
+        let old = core::mem::take(&mut self.manifold);
+        self.manifold = (tables.public_manifold)(&self.state, &posed, number, old);
         true
     }
 

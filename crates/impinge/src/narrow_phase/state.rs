@@ -50,18 +50,20 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     }
 
     /// The manifold as users see it; `posed` is that of the last update and `pair_number` names the
-    /// pair.
+    /// pair; `old` gives its memory.
     pub(crate) fn manifold(
         &self,
         posed: &Posed<'_, N, D>,
         pair_number: u64,
+        old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> {
         if self.raw.points.is_empty() {
             return ContactManifold::default();
         }
         let (pair, is_swapped) = posed.canonical();
         let pose1 = if is_swapped { posed.pose2 } else { posed.pose1 };
-        materialise(&pair, &self.raw, &Placement { pose1, pair: pair_number, is_swapped })
+        let placement = Placement { pose1, pair: pair_number, is_swapped };
+        materialise(&pair, &self.raw, &placement, old)
     }
 }
 

@@ -37,8 +37,9 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
             return None;
         }
         let (group, place) = (self.group, self.place);
-        let make = || group.state(place).manifold(&posed(self.table, group.key(place)));
-        Some(group.view(place).get_or_init(make))
+        let posed = || posed(self.table, group.key(place));
+        let make = |old| group.state(place).manifold(&posed(), old);
+        Some(group.view(place).manifold(make))
     }
 }
 

@@ -46,8 +46,8 @@ pub struct TrackedContact<N: Real, const D: usize> {
 /// are farther apart than the prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
-    /// Exactly as much memory as there are contacts: most pairs have fewer than the most.
-    contacts: Box<[TrackedContact<N, D>]>,
+    /// On the heap: most pairs have fewer contacts than the most that there may be.
+    contacts: Vec<TrackedContact<N, D>>,
 }
 
 impl<N: Real, const D: usize> ContactManifold<N, D> {
@@ -101,11 +101,13 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) is_swapped: bool,
 }
 
-/// The manifold as users see it; `pair` is the one that `raw` was built for.
+/// The manifold as users see it; `pair` is the one that `raw` was built for. It is written over the
+/// memory of a manifold that is no longer needed.
 pub(crate) fn materialise<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     raw: &RawManifold<N, D>,
     placement: &Placement<'_, N, D>,
+    old: ContactManifold<N, D>,
 ) -> ContactManifold<N, D> {
     let mut sides = Sides::new(pair, &raw.normal);
     let normal = placement.pose1.vector(&raw.normal);
@@ -119,7 +121,10 @@ pub(crate) fn materialise<N: Real, const D: usize>(
         }
         TrackedContact { contact, kinematic, id }
     };
-    ContactManifold { contacts: raw.points.iter().map(tracked).collect() }
+    let mut contacts = old.contacts;
+    contacts.clear();
+    contacts.extend(raw.points.iter().map(tracked));
+    ContactManifold { contacts }
 }
 
 /// A point in the world; `normal` is the manifold's, in the world.

@@ -226,8 +226,9 @@ fn common_motion_carries_the_contact_along() {
     let pair = Pair { first: cuboid.geometry().0, second: cuboid.geometry().0, pose12 };
     let (_, raw) = manifold(&pair, &request(0.0, 0.0));
     let placed = Placement { pose1: &pose1, pair: 7, is_swapped: false };
-    let straight = materialise(&pair, &raw, &placed);
-    let swapped = materialise(&pair, &raw, &Placement { is_swapped: true, ..placed });
+    let straight = materialise(&pair, &raw, &placed, crate::query::ContactManifold::default());
+    let swapped =
+        materialise(&pair, &raw, &Placement { is_swapped: true, ..placed }, straight.clone());
     assert_eq!((straight.len(), swapped.len()), (4, 4), "{straight:?}");
     for (tracked, other) in straight.contacts().iter().zip(swapped.contacts()) {
         let moved = tracked.kinematic.contact(&(common * m1), &(common * m2));
