@@ -15,6 +15,9 @@ const CHUNK: usize = 128;
 /// than by going through all of them.
 const SPARSE: usize = 8;
 
+/// Some pairs of a group side by side: keys and states, and views.
+type Chunk<'a, S, V> = ((&'a [(u32, u32)], &'a mut [S]), &'a mut [V]);
+
 /// What changed, pair by pair.
 type Changes = Vec<((u32, u32), Change)>;
 
@@ -149,7 +152,7 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
     update: impl Fn((u32, u32), &mut S, &mut V) -> Option<Change> + Sync,
 ) {
     let (keys, states, views) = group.split_mut();
-    let chunk = |((keys, states), views): ((&[(u32, u32)], &mut [S]), &mut [V])| -> Changes {
+    let chunk = |((keys, states), views): Chunk<'_, S, V>| -> Changes {
         let one = |((&key, state), view)| update(key, state, view).map(|change| (key, change));
         keys.iter().zip(states).zip(views).filter_map(one).collect()
     };

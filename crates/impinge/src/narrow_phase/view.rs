@@ -160,7 +160,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         touching.iter().flat_map(move |&index| {
             let (first, second) = self.pairs.pairs()[index as usize];
             let pair = self.contacts_at(table, index as usize);
-            let manifolds = pair.into_iter().flat_map(|pair| pair.manifolds());
+            let manifolds = pair.into_iter().flat_map(ContactPair::manifolds);
             manifolds.map(move |manifold| (first, second, manifold))
         })
     }
