@@ -50,6 +50,7 @@ pub use plane::Plane;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
 pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, SupportMap};
+pub(crate) use tilt::FACING_SINE_SQUARED;
 pub use triangle::Triangle;
 
 use core::any::Any;

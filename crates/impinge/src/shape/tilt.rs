@@ -2,6 +2,9 @@
 
 use crate::math::{Real, Vector};
 
+/// The squared sine of atan(1/2), the limit of [`super::SupportMap::core_feature`].
+pub(crate) const FACING_SINE_SQUARED: f64 = 0.2;
+
 /// The limit, kept as the square of its sine: small angles lose nothing to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tilt<N: Real> {
@@ -9,9 +12,9 @@ pub(super) struct Tilt<N: Real> {
 }
 
 impl<N: Real> Tilt<N> {
-    /// The limit of [`super::SupportMap::core_feature`], atan(1/2): its sine squared is 1/5.
+    /// The limit of [`super::SupportMap::core_feature`].
     pub(super) fn usual() -> Self {
-        Self { sine_squared: N::lit(0.2) }
+        Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
 
     /// The least angle that unit vectors in rounded arithmetic tell from zero.

@@ -10,13 +10,10 @@
 
 use super::frame::{Candidate, ROUNDING_ERRORS};
 use super::overlap::Candidates;
-use super::{ManifoldRequest, Pair, RawManifold, deepest, names, reduce};
-use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
+use super::{ManifoldRequest, Pair, RawManifold, choose_admitted};
+use crate::math::{Point, Pose, Real, Vector, cross2, min};
 use crate::query::separation::cuboid_axes::{AxisKind, BoxAxis, Boxes};
-use crate::shape::{FeatureId, Kind};
-
-/// The largest squared sine at which a face faces a direction, as in `core_feature`.
-const MOST_LEAN: f64 = 0.2;
+use crate::shape::{FACING_SINE_SQUARED, FeatureId, Kind};
 
 /// Builds the manifold of two boxes; answers whether it did.
 pub(super) fn build<N: Real>(
@@ -105,24 +102,12 @@ impl<'a, N: Real> Faces<'a, N> {
         self.corners_above(&mut candidates);
         self.corners_below(&mut candidates);
         self.crossings(&mut candidates);
-        let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
-        let is_found = (lowest - axis.gap).abs() <= self.tolerance;
-        if !is_found {
-            return false;
+        let limits = (request.prediction, request.max_points);
+        let is_built = choose_admitted(candidates, (axis.gap, self.tolerance), limits, out);
+        if is_built {
+            out.normal = axis.normal;
         }
-        candidates.retain(|candidate| {
-            let distance = max(candidate.distance, axis.gap);
-            candidate.distance = min(distance, request.prediction);
-            distance <= request.prediction + self.tolerance
-        });
-        names::inherit(&out.points, &mut candidates);
-        let deepest = deepest(&candidates, axis.gap + self.tolerance);
-        candidates[deepest].distance = axis.gap;
-        let chosen =
-            reduce::chosen(&candidates, deepest, request.max_points.max(1), self.tolerance);
-        out.normal = axis.normal;
-        names::settle(&candidates, &chosen, out);
-        true
+        is_built
     }
 
     /// Corners of the parallelogram above the rectangle.
@@ -237,7 +222,7 @@ impl<N: Real> Rectangle<N> {
             across: [half[u], half[v]],
         };
         let is_second = matches!(axis.kind, AxisKind::Face2(_));
-        (lean <= N::lit(MOST_LEAN)).then_some((rectangle, is_second))
+        (lean <= N::lit(FACING_SINE_SQUARED)).then_some((rectangle, is_second))
     }
 
     /// Where a vector that starts on the plane of the rectangle ends, seen along the normal, and how
@@ -319,7 +304,7 @@ impl<N: Real> Parallelogram<N> {
         let m = facing.iamax();
         let (k1, k2) = ((m + 1) % 3, (m + 2) % 3);
         let lean = facing[k1] * facing[k1] + facing[k2] * facing[k2];
-        if lean > N::lit(MOST_LEAN) {
+        if lean > N::lit(FACING_SINE_SQUARED) {
             return None;
         }
         let is_positive = facing[m] > N::ZERO;

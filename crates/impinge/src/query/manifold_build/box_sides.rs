@@ -7,13 +7,10 @@
 
 use super::frame::{Candidate, ROUNDING_ERRORS};
 use super::overlap::Candidates;
-use super::{ManifoldRequest, Pair, RawManifold, deepest, names, reduce};
+use super::{ManifoldRequest, Pair, RawManifold, choose_admitted};
 use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::query::separation::rectangle_axes::{Rectangles, SideAxis};
-use crate::shape::{FeatureId, Kind};
-
-/// The largest squared sine at which a side faces a direction, as in `core_feature`.
-const MOST_LEAN: f64 = 0.2;
+use crate::shape::{FACING_SINE_SQUARED, FeatureId, Kind};
 
 /// Builds the manifold of two boxes; answers whether it did.
 pub(super) fn build<N: Real>(
@@ -109,24 +106,12 @@ impl<'a, N: Real> Sides<'a, N> {
                 self.push(end.place, height, [end.id, id], &mut candidates);
             }
         }
-        let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
-        let is_found = (lowest - axis.gap).abs() <= self.tolerance;
-        if !is_found {
-            return false;
+        let limits = (request.prediction, request.max_points.min(2));
+        let is_built = choose_admitted(candidates, (axis.gap, self.tolerance), limits, out);
+        if is_built {
+            out.normal = axis.normal;
         }
-        candidates.retain(|candidate| {
-            let distance = max(candidate.distance, axis.gap);
-            candidate.distance = min(distance, request.prediction);
-            distance <= request.prediction + self.tolerance
-        });
-        names::inherit(&out.points, &mut candidates);
-        let deepest = deepest(&candidates, axis.gap + self.tolerance);
-        candidates[deepest].distance = axis.gap;
-        let limit = request.max_points.clamp(1, 2);
-        let chosen = reduce::chosen(&candidates, deepest, limit, self.tolerance);
-        out.normal = axis.normal;
-        names::settle(&candidates, &chosen, out);
-        true
+        is_built
     }
 
     /// Adds a place of the common stretch, once for each pair of names.
@@ -179,7 +164,7 @@ fn upper<N: Real>(
 ) -> Option<Stretch<N>> {
     let facing = [0, 1].map(|axis| -up * pose.rotation[(across, axis)]);
     let m = usize::from(facing[1].abs() > facing[0].abs());
-    if facing[1 - m] * facing[1 - m] > N::lit(MOST_LEAN) {
+    if facing[1 - m] * facing[1 - m] > N::lit(FACING_SINE_SQUARED) {
         return None;
     }
     let is_positive = facing[m] > N::ZERO;

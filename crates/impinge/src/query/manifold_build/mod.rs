@@ -28,7 +28,7 @@ use self::overlap::{Candidates, Overlap};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
-use crate::math::{Pose, Real, Vector, orthonormal_basis, perp};
+use crate::math::{Pose, Real, Vector, max, min, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Geometry, Kind};
 
 /// Builds the manifold of two solids in the plane: at most two points.
@@ -109,11 +109,45 @@ fn build<N: Real, const D: usize>(
     }
     let mut candidates = Candidates::new();
     fill(pair, frame, &mut candidates);
+    choose(candidates, (distance, frame.tolerance), limit, out);
+}
+
+/// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. The
+/// nearest stands for the witness and takes the separation's `distance`, which it has but for
+/// rounding.
+fn choose<N: Real, const D: usize>(
+    mut candidates: Candidates<N, D>,
+    (distance, tolerance): (N, N),
+    limit: usize,
+    out: &mut RawManifold<N, D>,
+) {
     names::inherit(&out.points, &mut candidates);
-    let deepest = deepest(&candidates, distance + frame.tolerance);
+    let deepest = deepest(&candidates, distance + tolerance);
     candidates[deepest].distance = distance;
-    let chosen = reduce::chosen(&candidates, deepest, limit.max(1), frame.tolerance);
+    let chosen = reduce::chosen(&candidates, deepest, limit.max(1), tolerance);
     names::settle(&candidates, &chosen, out);
+}
+
+/// [`choose`] for a fused algorithm, whose candidates are not yet held against the separation's
+/// distance and the prediction; answers whether one of them is the witness. If not, nothing happens.
+fn choose_admitted<N: Real, const D: usize>(
+    mut candidates: Candidates<N, D>,
+    (distance, tolerance): (N, N),
+    (prediction, limit): (N, usize),
+    out: &mut RawManifold<N, D>,
+) -> bool {
+    let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
+    let is_found = (lowest - distance).abs() <= tolerance;
+    if !is_found {
+        return false;
+    }
+    candidates.retain(|candidate| {
+        let no_nearer = max(candidate.distance, distance);
+        candidate.distance = min(no_nearer, prediction);
+        no_nearer <= prediction + tolerance
+    });
+    choose(candidates, (distance, tolerance), limit, out);
+    true
 }
 
 /// The only point of a ball and another solid: the witness.
