@@ -156,6 +156,10 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 2>;
     /// What a part is.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 2>;
+    /// Shapes side by side, as one.
+    pub type Compound<N> = crate::shape::Compound<N, 2>;
+    /// A line given by heights over a grid.
+    pub type HeightField<N> = crate::shape::HeightField<N, 2>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
 }
