@@ -134,8 +134,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, PartPath, PartSearch,
-        Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A rectangle.
@@ -148,6 +148,10 @@ pub mod shape {
     pub type Segment<N> = crate::shape::Segment<N, 2>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 2>;
+    /// A filled shape of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 2>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 2>;
     /// A vertex or a side, as points.
     pub type Feature<N> = crate::shape::Feature<N, 2>;
     /// How queries see a shape.

@@ -135,7 +135,8 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
-        FeatureId, PartPath, PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
+        ShapeKind, SupportMap, Surface,
     };
 
     /// A box.
@@ -148,6 +149,10 @@ pub mod shape {
     pub type Segment<N> = crate::shape::Segment<N, 3>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
+    /// A surface of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 3>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// How queries see a shape.

@@ -1,12 +1,14 @@
 //! Compounds: shapes side by side, as one.
 
 use super::error::or_panic;
+use super::scale::Scale;
+use super::segment::length_of;
 use super::{
-    CompositeShape, Geometry, Part, PartPath, PartSearch, PartSolid, Shape, ShapeError,
-    ShapeHandle, Surface,
+    CompositeShape, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid, ScaleError, Shape,
+    ShapeError, ShapeHandle, Surface,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use crate::math::{Point, Pose, Space, Vector, max, min};
+use crate::math::{Matrix, Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::partitioning::BoxTree;
 
 /// The union of shapes, its children, each placed in the compound's frame.
@@ -97,6 +99,27 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         self.children.len()
     }
 
+    /// The compound scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
+    ///
+    /// Each child is scaled where it stands. With factors of one magnitude that asks nothing of its
+    /// position; otherwise its rotation must take axes to axes, or turn around an axis across which
+    /// the factors are of one magnitude: else it would be sheared.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, a child would be sheared or cannot be scaled so, or numbers
+    /// leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let mut children = Vec::with_capacity(self.children.len());
+        for (index, ((_, shape), pose)) in self.children.iter().zip(&self.poses).enumerate() {
+            let refused = |_| ScaleError::Child { index };
+            let (pose, factors) = scaled_pose(pose, scale).ok_or(ScaleError::Child { index })?;
+            let shape = shape.scaled(&factors).map_err(refused)?;
+            children.push((N::isometry(&pose), shape));
+        }
+        Ok(Self::try_new(children)?)
+    }
+
     /// The child that a part belongs to, and which of the child's parts it is.
     ///
     /// # Panics
@@ -120,6 +143,39 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let (child, own) = self.child_of_part(part);
         Some((self.composite(child)?.surface()?, &self.poses[child], own))
     }
+}
+
+/// Where a child of a scaled compound lies, and its own scale; `None` if it would be sheared.
+///
+/// With the signs M and the magnitudes P of the factors, rotation R:
+/// `M P R = (M R M) (M (Rᵀ P R))`, a rotation after a scale if `Rᵀ P R` is diagonal.
+fn scaled_pose<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
+    scale: Scale<'_, N, D>,
+) -> Option<(Pose<N, D>, Vector<N, D>)> {
+    let signs = scale.signs();
+    let mut rotation = pose.rotation;
+    for (row, column) in (0..D).flat_map(|row| (0..D).map(move |column| (row, column))) {
+        rotation[(row, column)] *= signs[row] * signs[column];
+    }
+    let own = match scale.uniform() {
+        Ok(_) => scale.magnitudes(),
+        Err(_) => own_factors(&pose.rotation, &scale.magnitudes())?,
+    };
+    let translation = scale.vector(&pose.translation);
+    Some((Pose { rotation, translation }, own.component_mul(&signs)))
+}
+
+/// The diagonal of `Rᵀ P R`, if nothing is beside it but rounding.
+fn own_factors<N: Real, const D: usize>(
+    rotation: &Matrix<N, D>,
+    magnitudes: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let turned = rotation.transpose() * Matrix::<N, D>::from_diagonal(magnitudes) * rotation;
+    let noise = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
+    let is_beside = |at: (usize, usize)| at.0 != at.1 && turned[at].abs() > noise;
+    let mut all = (0..D).flat_map(|row| (0..D).map(move |column| (row, column)));
+    (!all.any(is_beside)).then(|| turned.diagonal())
 }
 
 /// See [`Compound::firsts`].
@@ -194,7 +250,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
 
 /// A part of a child without a surface stands alone: it admits every normal.
 impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
-    fn admits(&self, part: u32, feature: super::FeatureId, normal: &Vector<N, D>) -> bool {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         self.surface_at(part).is_none_or(|(surface, pose, own)| {
             surface.admits(own, feature, &pose.inverse_vector(normal))
         })
@@ -238,11 +294,15 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         let placed = self.children.iter().zip(&self.poses);
         let reach = placed.map(|((_, shape), pose)| {
             let sphere = shape.local_bounding_sphere().transformed_by(pose);
-            super::segment::length_of(&(sphere.center() - center)) + sphere.radius()
+            length_of(&(sphere.center() - center)) + sphere.radius()
         });
         let radius = reach.fold(N::ZERO, max) * (N::ONE + N::lit(8.0) * N::EPSILON);
-        let of_box = super::segment::length_of(&aabb.half_extents());
+        let of_box = length_of(&aabb.half_extents());
         let radius = if aabb.is_bounded() { min(radius, of_box) } else { N::INFINITY };
         BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
 }

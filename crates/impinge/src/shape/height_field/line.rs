@@ -3,15 +3,16 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::grid::{Cells, Extent, Grid, search, whole};
-use super::marks::{Diagonals, Marks};
 use super::pyramid::{Pyramid, Span, merged, no_span};
 use super::question::{Probe, lifted};
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
 use crate::shape::{
-    CompositeShape, Geometry, Part, PartSearch, PartSolid, Segment, Shape, ShapeError, Surface,
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Segment, Shape, ShapeError,
+    ShapeHandle, Surface,
 };
 
 impl<N: Real> HeightField<N, 2> {
@@ -35,8 +36,7 @@ impl<N: Real> HeightField<N, 2> {
         check_parts(heights.len() as u64 - 1)?;
         let grid = grid([1, heights.len()], heights, &scale, N::ZERO)?;
         let pyramid = Pyramid::new([1, grid.columns - 1], |_, cell| step_span(&grid, cell));
-        let marks = Marks::new(Diagonals::Forward);
-        Ok(Self { grid, pyramid, marks, scale, is_one_sided: false })
+        Ok(Self::around(grid, pyramid, scale))
     }
 
     /// The same field with a hole in each cell for which `is_hole(cell)`, and only there.
@@ -48,6 +48,15 @@ impl<N: Real> HeightField<N, 2> {
         }
         self.rebuild();
         self
+    }
+
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, or numbers leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, 2>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?.vector(&self.scale);
+        Ok(self.with_scale(scale, N::ZERO)?)
     }
 
     /// An unscaled height.
@@ -243,7 +252,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 2>> {
-        None
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
     /// Segments that share a point.
@@ -265,5 +274,9 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
             }
             None => Aabb::around(Point::origin(), Vector::<N, 2>::zeros()),
         }
+    }
+
+    fn scaled(&self, scale: &Vector<N, 2>) -> Result<ShapeHandle<N, 2>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
 }

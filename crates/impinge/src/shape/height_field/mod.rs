@@ -10,6 +10,9 @@ mod marks;
 mod pyramid;
 mod question;
 mod sheet;
+mod surface;
+#[cfg(test)]
+mod tests;
 
 pub use marks::{Diagonal, Diagonals};
 
@@ -28,7 +31,11 @@ use crate::math::{Real, Vector};
 /// side; a negative extent turns them around, and a negative y component turns the field upside down.
 ///
 /// **Front.** The front is the side that heights grow towards: that of +y, or of −y if the scale's y
-/// component is negative. Normally both sides are solid to the touch ([`Self::with_one_side`]).
+/// component is negative. Both sides can be touched, or the front alone if asked by `one_sided`.
+///
+/// **Seams.** Contacts see the field as one surface (see [`Surface`](super::Surface)), with the rule and
+/// the tolerance that [`TriMesh`](super::TriMesh) has. [`Self::with_internal_edges_kept`] switches
+/// this off.
 ///
 /// **Cells.** Between four neighbouring heights lies a cell of two triangles, parts `2 · cell` and
 /// `2 · cell + 1`; which way they divide it says [`Diagonal`]. The corners of a triangle run
@@ -42,7 +49,7 @@ use crate::math::{Real, Vector};
 ///
 /// ```
 /// use impinge::dim3::na::{Isometry3, Point3, Vector3};
-/// use impinge::dim3::query::{PointQuery, Ray, RayCast};
+/// use impinge::dim3::query::{Ray, RayCast};
 /// use impinge::dim3::shape::HeightField;
 ///
 /// // A roof: the ridge in the middle runs along x.
@@ -52,11 +59,11 @@ use crate::math::{Real, Vector};
 /// assert_eq!(roof.height_at(3.0, -1.0), Some(1.0), "half way up to a ridge of 2");
 ///
 /// let down = Ray::new(Point3::new(3.0, 5.0, -1.0), Vector3::new(0.0, -1.0, 0.0));
-/// let hit = roof.cast_ray(&Isometry3::identity(), &down, f32::MAX, true).expect("it is there");
-/// assert_eq!(hit.toi, 4.0);
+/// let hit = roof.toi_with_ray(&Isometry3::identity(), &down, true);
+/// assert_eq!(hit, Some(4.0));
 ///
 /// roof.set_hole(0, 1, true);
-/// assert!(roof.cast_ray(&Isometry3::identity(), &down, f32::MAX, true).is_none());
+/// assert_eq!(roof.toi_with_ray(&Isometry3::identity(), &down, true), None);
 /// ```
 #[derive(Clone, Debug)]
 pub struct HeightField<N: Real, const D: usize> {
@@ -65,6 +72,7 @@ pub struct HeightField<N: Real, const D: usize> {
     marks: Marks,
     scale: Vector<N, D>,
     is_one_sided: bool,
+    keeps_internal_edges: bool,
 }
 
 impl<N: Real, const D: usize> HeightField<N, D> {
@@ -87,22 +95,51 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         rows * columns
     }
 
-    /// Only the front can be touched: what is behind the surface meets it without contact.
+    /// Nothing touches the field from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// The same field with only the front to be touched, or with both sides.
+    /// Lets nothing touch the field from behind.
     #[must_use]
-    pub const fn with_one_side(mut self, is_one_sided: bool) -> Self {
-        self.is_one_sided = is_one_sided;
+    pub const fn one_sided(mut self) -> Self {
+        self.is_one_sided = true;
         self
     }
 
-    /// The sign of the front's y: 1 or −1.
-    fn up(&self) -> N {
-        if self.scale[1] < N::ZERO { -N::ONE } else { N::ONE }
+    /// Contacts treat each part on its own; see [`Self::with_internal_edges_kept`].
+    #[must_use]
+    pub const fn keeps_internal_edges(&self) -> bool {
+        self.keeps_internal_edges
+    }
+
+    /// Makes contacts treat each part on its own, with all its edges and corners, as if it had no
+    /// neighbours.
+    #[must_use]
+    pub const fn with_internal_edges_kept(mut self) -> Self {
+        self.keeps_internal_edges = true;
+        self
+    }
+
+    /// The same field with other extents, those along z in `depth`.
+    fn with_scale(&self, scale: Vector<N, D>, depth: N) -> Result<Self, ShapeError> {
+        let mut scaled = self.clone();
+        let heights = std::mem::take(&mut scaled.grid.heights);
+        scaled.grid = grid([scaled.grid.zs.len(), scaled.grid.columns], heights, &scale, depth)?;
+        Ok(Self { scale, ..scaled })
+    }
+
+    /// The field between these lines: both sides can be touched, and contacts see one surface.
+    const fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
+        let marks = Marks::new(Diagonals::Forward);
+        let (is_one_sided, keeps_internal_edges) = (false, false);
+        Self { grid, pyramid, marks, scale, is_one_sided, keeps_internal_edges }
+    }
+
+    /// The scale has an odd number of negative components.
+    fn is_mirrored(&self) -> bool {
+        self.scale.iter().filter(|&&factor| factor < N::ZERO).count() % 2 == 1
     }
 }
 

@@ -10,8 +10,10 @@ use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
 use crate::shape::{
-    CompositeShape, Geometry, Part, PartSearch, PartSolid, Shape, ShapeError, Surface, Triangle,
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Shape, ShapeError,
+    ShapeHandle, Surface, Triangle,
 };
 
 /// A point of the grid: its row and column.
@@ -47,8 +49,7 @@ impl<N: Real> HeightField<N, 3> {
         check_parts(((rows - 1) * (columns - 1)) as u64 * 2)?;
         let pyramid =
             Pyramid::new([rows - 1, columns - 1], |row, column| square_span(&grid, row, column));
-        let marks = Marks::new(Diagonals::Forward);
-        Ok(Self { grid, pyramid, marks, scale, is_one_sided: false })
+        Ok(Self::around(grid, pyramid, scale))
     }
 
     /// The same field with the diagonals of all cells set anew; holes stay.
@@ -80,6 +81,15 @@ impl<N: Real> HeightField<N, 3> {
         }
         self.rebuild();
         self
+    }
+
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, or numbers leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, 3>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?.vector(&self.scale);
+        Ok(self.with_scale(scale, scale.z)?)
     }
 
     /// The number of rows of heights; there is one row of cells less.
@@ -298,9 +308,8 @@ impl<N: Real> HeightField<N, 3> {
             (Diagonal::Backward, _) => [d, b, c],
         };
         // A mirror turns the order around.
-        let is_mirrored = self.scale.iter().filter(|&&factor| factor < N::ZERO).count() % 2 == 1;
         let [first, second, third] = corners;
-        if is_mirrored { [first, third, second] } else { corners }
+        if self.is_mirrored() { [first, third, second] } else { corners }
     }
 
     fn triangle_of(&self, corners: [GridPoint; 3]) -> Triangle<N, 3> {
@@ -425,7 +434,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 3>> {
-        None
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
     /// Triangles around one point of the grid.
@@ -446,5 +455,9 @@ impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
             Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),
             None => Aabb::around(Point::origin(), Vector::<N, 3>::zeros()),
         }
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
 }
