@@ -3,6 +3,7 @@
 mod closest_points;
 mod contact;
 mod distance;
+mod impact;
 mod kinematic;
 mod manifold;
 mod manifold_build;
@@ -12,12 +13,13 @@ mod proximity;
 mod raw_manifold;
 pub(crate) mod ray;
 pub(crate) mod separation;
-mod time_of_impact;
 
 pub use crate::bounding_volume::Ray;
 pub use closest_points::{ClosestPoints, closest_points};
 pub use contact::{Contact, contact};
 pub use distance::distance;
+pub(crate) use impact::impact_of_pair;
+pub use impact::{Impact, ImpactOptions, ImpactStatus, Moving, impact, time_of_impact};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
@@ -27,5 +29,3 @@ pub use point::{PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
 pub use ray::{RayCast, RayIntersection};
-pub use time_of_impact::time_of_impact;
-pub(crate) use time_of_impact::{Moving, advance};
