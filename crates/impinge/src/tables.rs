@@ -15,7 +15,7 @@ use crate::narrow_phase::{
     CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
     proximity_of,
 };
-use crate::partitioning::{BoxTree, BoxTreeError, Question};
+use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
@@ -64,8 +64,8 @@ type FindPairsFn<N, const D: usize> =
 pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) build: BuildFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
-    pub(crate) by_time: InOrderFn<N, D, Ray<N, D>>,
-    pub(crate) by_distance: InOrderFn<N, D, Point<N, D>>,
+    pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
+    pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;

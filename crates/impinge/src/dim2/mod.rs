@@ -138,7 +138,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, ConvexPolygon, ConvexPolyhedron, FeatureId, Shape, ShapeError, ShapeKind, SupportMap,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, PartPath, PartSearch,
+        Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A rectangle.
@@ -155,6 +156,10 @@ pub mod shape {
     pub type Feature<N> = crate::shape::Feature<N, 2>;
     /// How queries see a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 2>;
+    /// One of the solids that a composite is made of.
+    pub type Part<'a, N> = crate::shape::Part<'a, N, 2>;
+    /// What a part is.
+    pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 2>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
 }

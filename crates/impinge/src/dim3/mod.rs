@@ -138,8 +138,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, Shape, ShapeError,
-        ShapeKind, SupportMap,
+        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, PartPath,
+        PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A box.
@@ -156,6 +156,10 @@ pub mod shape {
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// How queries see a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
+    /// One of the solids that a composite is made of.
+    pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
+    /// What a part is.
+    pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }

@@ -1,6 +1,7 @@
 //! Questions about one solid or two, answered from nothing but the arguments.
 
 mod closest_points;
+mod composite;
 mod contact;
 mod distance;
 mod impact;

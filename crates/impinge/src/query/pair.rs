@@ -3,7 +3,10 @@
 use core::cmp::Ordering;
 
 use crate::math::{Point, Pose, Real, Vector};
-use crate::shape::{Geometry, Kind, SupportMap};
+use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
+
+/// So many parts of two composites of one pose are compared to tell which comes first.
+const PARTS_COMPARED: u32 = 8;
 
 /// Two solids, the first at the origin of the frame that the answer is given in.
 ///
@@ -104,7 +107,20 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
         Kind::Cone(cone, _) => vec![cone.half_height(), cone.radius()],
         Kind::SupportMap(map) => probed(*map),
         Kind::Plane(plane) => plane.normal().as_slice().to_vec(),
+        Kind::Composite(parts) => of_parts(*parts),
     }
+}
+
+/// What tells one composite from another: how many parts it has, and the first few of them.
+fn of_parts<N: Real, const D: usize>(parts: &dyn CompositeShape<N, D>) -> Vec<N> {
+    let mut all = vec![N::lit(f64::from(parts.num_parts()))];
+    for index in 0..parts.num_parts().min(PARTS_COMPARED) {
+        let part = parts.part(index);
+        all.extend_from_slice(part.pose.translation.as_slice());
+        all.extend_from_slice(part.pose.rotation.as_slice());
+        all.extend(numbers(&part.solid.geometry().0));
+    }
+    all
 }
 
 /// The coordinates of some points in a row.

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, SupportMap, Triangle,
+    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, SupportMap,
+    Triangle,
 };
 use crate::math::Real;
 
@@ -31,6 +32,8 @@ pub enum ShapeKind {
     SupportMap,
     /// [`Plane`]: the half-space.
     Plane,
+    /// A union of solids: [`CompositeShape`].
+    Composite,
 }
 
 /// A shape as queries see it. Users get one from a built-in shape or from [`Self::support_map`].
@@ -51,12 +54,18 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Cone(&'a Cone<N>, &'a dyn SupportMap<N, D>),
     SupportMap(&'a dyn SupportMap<N, D>),
     Plane(&'a Plane<N, D>),
+    Composite(&'a dyn CompositeShape<N, D>),
 }
 
 impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
     /// A convex solid of the user's own.
     pub fn support_map(map: &'a dyn SupportMap<N, D>) -> Self {
         Self(Kind::SupportMap(map))
+    }
+
+    /// A composite of the user's own.
+    pub fn composite(composite: &'a dyn CompositeShape<N, D>) -> Self {
+        Self(Kind::Composite(composite))
     }
 
     /// Which kind it is.
@@ -73,10 +82,12 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Cone(..) => ShapeKind::Cone,
             Kind::SupportMap(_) => ShapeKind::SupportMap,
             Kind::Plane(_) => ShapeKind::Plane,
+            Kind::Composite(_) => ShapeKind::Composite,
         }
     }
 
-    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points.
+    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points, and for a
+    /// composite, which is not convex.
     #[must_use]
     pub fn as_support_map(&self) -> Option<&'a dyn SupportMap<N, D>> {
         Some(match self.0 {
@@ -87,14 +98,23 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Cuboid(cuboid) => cuboid,
             Kind::Polytope(polytope) => polytope,
             Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => map,
-            Kind::Plane(_) => return None,
+            Kind::Plane(_) | Kind::Composite(_) => return None,
         })
+    }
+
+    /// The parts of a composite; `None` for a convex solid.
+    #[must_use]
+    pub fn as_composite(&self) -> Option<&'a dyn CompositeShape<N, D>> {
+        match self.0 {
+            Kind::Composite(composite) => Some(composite),
+            _ => None,
+        }
     }
 }
 
 impl ShapeKind {
     /// How many kinds there are.
-    pub(crate) const COUNT: usize = Self::Plane as usize + 1;
+    pub(crate) const COUNT: usize = Self::Composite as usize + 1;
 }
 
 impl<N: Real, const D: usize> fmt::Debug for Geometry<'_, N, D> {

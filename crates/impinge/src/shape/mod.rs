@@ -4,11 +4,12 @@
 //! radius, a capsule a segment. Algorithms run on cores and subtract the roundings at the end,
 //! which is exact and free. [`Shape`] is what a world stores; [`SupportMap`] is what a convex solid
 //! of a user's own must offer to join every query; [`ConvexPolyhedron`] names the features of solids
-//! with flat faces.
+//! with flat faces; [`CompositeShape`] is a union of solids.
 
 mod ball;
 mod bounds;
 mod capsule;
+mod composite;
 mod cone;
 mod convex_hull;
 mod convex_polygon;
@@ -20,6 +21,7 @@ mod feature;
 mod feature_tests;
 mod geometry;
 mod handle;
+mod part_search;
 mod plane;
 mod polytope;
 mod polytope_build;
@@ -35,6 +37,7 @@ mod triangle_feature;
 pub use ball::Ball;
 pub use bounds::{aabb, bounding_sphere};
 pub use capsule::Capsule;
+pub use composite::{CompositeShape, Part, PartPath, PartSearch, PartSolid, Surface};
 pub use cone::Cone;
 pub use convex_hull::ConvexHull;
 pub use convex_polygon::ConvexPolygon;
@@ -95,6 +98,17 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// assert!(!handle.is_shape::<Cuboid<f32>>());
 /// ```
 impl<N: Real, const D: usize> dyn Shape<N, D> {
+    /// The way to a part of a composite that an answer names by its number; empty for a convex solid,
+    /// which is its own part 0.
+    #[must_use]
+    pub fn path_to_part(&self, part: u32) -> PartPath {
+        let mut path = PartPath::new();
+        if let Some(composite) = self.geometry().as_composite() {
+            composite.extend_path(part, &mut path);
+        }
+        path
+    }
+
     /// The shape is of the type `S`.
     #[must_use]
     pub fn is_shape<S: Shape<N, D>>(&self) -> bool {

@@ -4,6 +4,7 @@ use super::{
     SurfacePoint, ball, capsule, cuboid, plane, polytope, segment, support_map, triangle2,
 };
 use crate::math::{Point, Real};
+use crate::query::composite;
 use crate::shape::Kind;
 
 /// The nearest point of the solid's boundary, in its local frame.
@@ -25,5 +26,6 @@ pub(crate) fn surface_point<N: Real>(
             support_map::surface_point(map, point)
         }
         Kind::Plane(solid) => plane::surface_point(solid, point),
+        Kind::Composite(parts) => composite::surface_point(parts, point).0,
     }
 }

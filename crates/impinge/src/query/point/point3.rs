@@ -5,6 +5,7 @@ use super::{
     triangle3,
 };
 use crate::math::{Point, Real};
+use crate::query::composite;
 use crate::shape::Kind;
 
 /// The nearest point of the solid's boundary, in its local frame.
@@ -26,5 +27,6 @@ pub(crate) fn surface_point<N: Real>(
         Kind::Cone(solid, _) => cone::surface_point(solid, point),
         Kind::SupportMap(map) => support_map::surface_point(map, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
+        Kind::Composite(parts) => composite::surface_point(parts, point).0,
     }
 }

@@ -23,6 +23,7 @@ mod volume;
 
 pub(crate) use span::Span;
 
+use super::composite::first_hit;
 use super::point::length;
 use super::{PointProjection, PointQuery};
 use crate::bounding_volume::Ray;
@@ -45,6 +46,8 @@ pub struct RayIntersection<N: Real, const D: usize> {
     /// The feature that was hit. A hit on a vertex or an edge may answer with one of the faces there;
     /// a ray that starts inside a solid, with the nearer of the two features ahead and behind.
     pub feature: FeatureId,
+    /// The part of a composite that was hit, which the feature is of; 0 for a convex solid.
+    pub part: u32,
 }
 
 /// Questions about a ray and a solid; implemented for every [`Shape`].
@@ -97,6 +100,9 @@ pub trait RayCast<N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
+        if let Some(parts) = self.geometry().as_composite() {
+            return first_hit(parts, ray, solid);
+        }
         let project = |point: &_| self.project_local_point(point);
         cast(ray, solid, project, |ray| (N::tables().ray_span)(self.geometry().0, ray))
     }
@@ -104,7 +110,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
 
 /// The hit of a ray that starts in the set.
 fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
-    RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature }
+    RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 
 /// What all shapes have in common: rays that are no rays, and the length of the direction.

@@ -22,5 +22,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Spa
             support_map::span(map, ray)
         }
         Kind::Plane(solid) => plane::span(solid, ray),
+        // Its parts are asked instead.
+        Kind::Composite(_) => None,
     }
 }

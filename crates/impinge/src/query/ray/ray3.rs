@@ -24,5 +24,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
         Kind::Cone(solid, _) => cone::span(solid, ray),
         Kind::SupportMap(map) => support_map::span(map, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
+        // Its parts are asked instead.
+        Kind::Composite(_) => None,
     }
 }

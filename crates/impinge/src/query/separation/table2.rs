@@ -6,7 +6,7 @@ use super::{
 };
 use crate::convex::Separation;
 use crate::math::Real;
-use crate::query::Pair;
+use crate::query::{Pair, composite};
 
 /// The table of the plane, for one scalar.
 struct Plane<N>(core::marker::PhantomData<N>);
@@ -20,20 +20,23 @@ impl<N: Real> Plane<N> {
         let gg: Algorithm<N, 2> = general::plane;
         let gp: Algorithm<N, 2> = plane_any::separation;
         let pp: Algorithm<N, 2> = plane_any::plane_plane;
+        let gx: Algorithm<N, 2> = composite::separation;
         let __: Algorithm<N, 2> = flipped;
         // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone
-        // (neither occurs in the plane), support map, plane.
+        // (neither occurs in the plane), support map, plane,
+        // composite.
         [
-            [bb, bs, bs, oo, bc, oo, gg, gg, gg, gp],
-            [__, oo, oo, oo, oo, oo, gg, gg, gg, gp],
-            [__, __, oo, oo, oo, oo, gg, gg, gg, gp],
-            [__, __, __, oo, oo, oo, gg, gg, gg, gp],
-            [__, __, __, __, oo, oo, gg, gg, gg, gp],
-            [__, __, __, __, __, oo, gg, gg, gg, gp],
-            [__, __, __, __, __, __, gg, gg, gg, gp],
-            [__, __, __, __, __, __, __, gg, gg, gp],
-            [__, __, __, __, __, __, __, __, gg, gp],
-            [__, __, __, __, __, __, __, __, __, pp],
+            [bb, bs, bs, oo, bc, oo, gg, gg, gg, gp, gx],
+            [__, oo, oo, oo, oo, oo, gg, gg, gg, gp, gx],
+            [__, __, oo, oo, oo, oo, gg, gg, gg, gp, gx],
+            [__, __, __, oo, oo, oo, gg, gg, gg, gp, gx],
+            [__, __, __, __, oo, oo, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, oo, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, __, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, __, __, gg, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, pp, gx],
+            [__, __, __, __, __, __, __, __, __, __, gx],
         ]
     };
 }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::convex::Separation;
 use crate::math::Real;
-use crate::query::Pair;
+use crate::query::{Pair, composite};
 
 /// The table of space, for one scalar.
 struct Space<N>(core::marker::PhantomData<N>);
@@ -26,20 +26,23 @@ impl<N: Real> Space<N> {
         let gg: Algorithm<N, 3> = general::space;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
+        let gx: Algorithm<N, 3> = composite::separation;
         let __: Algorithm<N, 3> = flipped;
         // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
-        // support map, plane.
+        // support map, plane,
+        // composite.
         [
-            [bb, bs, bs, bt, bc, bh, by, bo, gg, gp],
-            [__, ss, ss, gg, gg, gg, gg, gg, gg, gp],
-            [__, __, ss, gg, gg, gg, gg, gg, gg, gp],
-            [__, __, __, gg, gg, gg, gg, gg, gg, gp],
-            [__, __, __, __, cc, gg, gg, gg, gg, gp],
-            [__, __, __, __, __, gg, gg, gg, gg, gp],
-            [__, __, __, __, __, __, gg, gg, gg, gp],
-            [__, __, __, __, __, __, __, gg, gg, gp],
-            [__, __, __, __, __, __, __, __, gg, gp],
-            [__, __, __, __, __, __, __, __, __, pp],
+            [bb, bs, bs, bt, bc, bh, by, bo, gg, gp, gx],
+            [__, ss, ss, gg, gg, gg, gg, gg, gg, gp, gx],
+            [__, __, ss, gg, gg, gg, gg, gg, gg, gp, gx],
+            [__, __, __, gg, gg, gg, gg, gg, gg, gp, gx],
+            [__, __, __, __, cc, gg, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, gg, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, __, gg, gg, gg, gp, gx],
+            [__, __, __, __, __, __, __, gg, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, pp, gx],
+            [__, __, __, __, __, __, __, __, __, __, gx],
         ]
     };
 }
