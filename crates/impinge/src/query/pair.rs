@@ -40,8 +40,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order =
-        compare(&Placed { pose: *pose1, shape: shape1 }, &Placed { pose: *pose2, shape: shape2 });
+    let order = compare(pose1, shape1, pose2, shape2);
     let swapped = order == Ordering::Greater;
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
@@ -56,20 +55,21 @@ pub(crate) fn indistinguishable<N: Real, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
 ) -> bool {
-    compare(placed1, placed2) == Ordering::Equal
+    compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) == Ordering::Equal
 }
 
 /// The order of [`canonical`].
 fn compare<N: Real, const D: usize>(
-    placed1: &Placed<'_, N, D>,
-    placed2: &Placed<'_, N, D>,
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
 ) -> Ordering {
-    placed1
-        .shape
+    shape1
         .kind()
-        .cmp(&placed2.shape.kind())
-        .then_with(|| compare_poses(&placed1.pose, &placed2.pose))
-        .then_with(|| compare_numbers(&numbers(&placed1.shape.0), &numbers(&placed2.shape.0)))
+        .cmp(&shape2.kind())
+        .then_with(|| compare_poses(pose1, pose2))
+        .then_with(|| compare_numbers(&numbers(&shape1.0), &numbers(&shape2.0)))
 }
 
 /// By translation, then by rotation.
