@@ -20,8 +20,8 @@ use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
 use crate::query::{
-    ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold, advance,
-    contacts2, contacts3,
+    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
+    RawManifold, contacts2, contacts3, impact_of_pair,
 };
 use crate::shape::{Kind, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -31,8 +31,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
-    /// The time at which two moving solids touch.
-    pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
+    /// When two moving solids touch, and where.
+    pub(crate) impact: ImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -51,6 +51,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
 
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
+type ImpactFn<N, const D: usize> =
+    fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
@@ -156,7 +158,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separation_in_world: in_world,
-            time_of_impact: advance,
+            impact: impact_of_pair,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             contacts: particular.contacts,

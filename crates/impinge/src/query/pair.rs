@@ -20,7 +20,7 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
 }
 
 /// A solid where it stands in the world.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
     pub(crate) shape: Geometry<'a, N, D>,
@@ -40,11 +40,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = shape1
-        .kind()
-        .cmp(&shape2.kind())
-        .then_with(|| compare_poses(pose1, pose2))
-        .then_with(|| compare_numbers(&numbers(&shape1.0), &numbers(&shape2.0)));
+    let order = compare(pose1, shape1, pose2, shape2);
     let swapped = order == Ordering::Greater;
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
@@ -52,6 +48,28 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
         Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
     };
     (pair, swapped)
+}
+
+/// The solids are the same at the same place, as far as [`canonical`] can tell.
+pub(crate) fn indistinguishable<N: Real, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+) -> bool {
+    compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) == Ordering::Equal
+}
+
+/// The order of [`canonical`].
+fn compare<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> Ordering {
+    shape1
+        .kind()
+        .cmp(&shape2.kind())
+        .then_with(|| compare_poses(pose1, pose2))
+        .then_with(|| compare_numbers(&numbers(&shape1.0), &numbers(&shape2.0)))
 }
 
 /// By translation, then by rotation.
