@@ -4,6 +4,7 @@
 //! are few and tested one by one, so every change is seen at once; what it proposes is tested again
 //! exactly, by the queries for one solid and two.
 
+mod cast;
 mod filter;
 mod point;
 mod ranking;
