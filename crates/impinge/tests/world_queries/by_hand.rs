@@ -246,7 +246,29 @@ fn far_away<N: Stage<D>, const D: usize>() {
     }
 }
 
+/// Distances whose squares are no numbers of the type, large and small.
+fn huge_and_tiny<N: Stage<D>, const D: usize>() {
+    let [large, small] = [N::MAX, N::MIN_POSITIVE].map(|limit| limit.as_f64().powf(0.75));
+    for unit in [large, small, 1.0] {
+        let mut world = World::<N, D>::new(N::ZERO);
+        let dot = ball::<N, D>(0.0);
+        let handles = [4.0, 2.0, -3.0].map(|x| add(&mut world, [x * unit; D], &dot));
+        let here = N::pose_at([0.0; D], 0.0);
+        let edge = N::distance((&here, &*dot), (&N::pose_at([-3.0 * unit; D], 0.0), &*dot));
+        for _ in 0..2 {
+            let found = world.objects_within(&here, &*dot, edge, &Filter::new());
+            let order = [handles[1], handles[2]];
+            assert_eq!(handles_of(found.iter().map(|near| near.object)), order, "unit {unit}");
+            assert_eq!(found[1].distance, edge, "unit {unit}");
+            let point = world.nearest_to_point(&Point::origin(), 1, N::INFINITY, &Filter::new());
+            assert_eq!(point[0].object.handle(), handles[1], "unit {unit}");
+            world.update();
+        }
+    }
+}
+
 in_tests!(
+    huge_and_tiny,
     rays_in_order,
     neighbors_in_order,
     casts_in_order,
