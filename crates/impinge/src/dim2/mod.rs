@@ -152,6 +152,12 @@ pub mod shape {
     pub type Segment<N> = crate::shape::Segment<N, 2>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 2>;
+    /// The points within a radius of a convex shape.
+    pub type Rounded<N, S> = crate::shape::Rounded<N, 2, S>;
+    /// The hull of two balls.
+    pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 2>;
+    /// A stretched disk.
+    pub type Ellipse<N> = crate::shape::Ellipsoid<N, 2>;
     /// A vertex or a side, as points.
     pub type Feature<N> = crate::shape::Feature<N, 2>;
     /// How queries see a shape.

@@ -152,6 +152,12 @@ pub mod shape {
     pub type Segment<N> = crate::shape::Segment<N, 3>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
+    /// The points within a radius of a convex shape.
+    pub type Rounded<N, S> = crate::shape::Rounded<N, 3, S>;
+    /// The hull of two balls.
+    pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 3>;
+    /// A stretched ball.
+    pub type Ellipsoid<N> = crate::shape::Ellipsoid<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// How queries see a shape.

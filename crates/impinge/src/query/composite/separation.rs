@@ -1,6 +1,6 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Pose, Real, Space, max};
 use crate::query::Pair;
@@ -85,6 +85,9 @@ pub(in crate::query) fn aabb_of<N: Space<D>, const D: usize>(
         Kind::Triangle(triangle) => triangle.aabb(pose),
         Kind::Cuboid(cuboid) => cuboid.aabb(pose),
         Kind::Plane(plane) => plane.aabb(pose),
+        Kind::Ellipsoid(ellipsoid) => ellipsoid.aabb(pose),
+        Kind::TaperedCapsule(capsule) => capsule.aabb(pose),
+        Kind::Rounded(solid) => aabb_of(solid.inner().0, pose).loosened(solid.swelling()),
         Kind::Polytope(map) => aabb_of_map(map, pose),
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
             aabb_of_map(map, pose)
@@ -114,7 +117,6 @@ fn aabb_of_parts<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     pose: &Pose<N, D>,
 ) -> Aabb<N, D> {
-    use crate::bounding_volume::BoundingVolume;
     let one = |index| {
         let part = parts.part(index);
         part.solid.as_shape().aabb(&pose.compose(&part.pose))
