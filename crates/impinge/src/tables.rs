@@ -23,7 +23,7 @@ use crate::query::{
     ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
     RawManifold, contacts2, contacts3, impact_of_pair,
 };
-use crate::shape::{Kind, ShapeHandle};
+use crate::shape::{Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -47,6 +47,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) find_pairs: FindPairsFn<N, D>,
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
+    pub(crate) mesh: MeshTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -63,12 +64,14 @@ type FindPairsFn<N, const D: usize> =
 /// Making and searching a tree over a user's boxes.
 pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) build: BuildFn<N, D>,
+    pub(crate) refit: RefitFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type RefitFn<N, const D: usize> = fn(&mut BoxTree<N, D>, &[Aabb<N, D>]) -> Result<(), BoxTreeError>;
 type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
 type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
 
@@ -76,6 +79,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
     const fn new() -> Self {
         Self {
             build: BoxTree::build,
+            refit: BoxTree::refit_to,
             each: BoxTree::answer,
             by_time: BoxTree::by_time,
             by_distance: BoxTree::by_distance,
@@ -132,6 +136,7 @@ struct Particular<N: Space<D>, const D: usize> {
     contacts: ContactsFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+    mesh: MeshTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
@@ -140,6 +145,7 @@ impl<N: Real> Particular<N, 2> {
         contacts: contacts2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
+        mesh: MeshTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -149,6 +155,7 @@ impl<N: Real> Particular<N, 3> {
         contacts: contacts3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
+        mesh: MeshTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -169,6 +176,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             find_pairs: PairFinder::update,
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
+            mesh: particular.mesh,
         }
     }
 }

@@ -138,8 +138,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, PartPath, PartSearch,
-        Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
+        PartPath, PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A rectangle.
@@ -158,6 +158,10 @@ pub mod shape {
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 2>;
     /// A stretched disk.
     pub type Ellipse<N> = crate::shape::Ellipsoid<N, 2>;
+    /// A filled shape of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 2>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 2>;
     /// A vertex or a side, as points.
     pub type Feature<N> = crate::shape::Feature<N, 2>;
     /// How queries see a shape.

@@ -138,8 +138,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, PartPath,
-        PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, MeshError,
+        Neighbor, PartPath, PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A box.
@@ -158,6 +158,10 @@ pub mod shape {
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 3>;
     /// A stretched ball.
     pub type Ellipsoid<N> = crate::shape::Ellipsoid<N, 3>;
+    /// A surface of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 3>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// How queries see a shape.
