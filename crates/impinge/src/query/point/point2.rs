@@ -26,6 +26,6 @@ pub(crate) fn surface_point<N: Real>(
             support_map::surface_point(map, point)
         }
         Kind::Plane(solid) => plane::surface_point(solid, point),
-        Kind::Composite(parts) => composite::surface_point(parts, point).0,
+        Kind::Composite(parts) => composite::surface_point(parts, point),
     }
 }

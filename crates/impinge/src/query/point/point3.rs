@@ -27,6 +27,6 @@ pub(crate) fn surface_point<N: Real>(
         Kind::Cone(solid, _) => cone::surface_point(solid, point),
         Kind::SupportMap(map) => support_map::surface_point(map, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
-        Kind::Composite(parts) => composite::surface_point(parts, point).0,
+        Kind::Composite(parts) => composite::surface_point(parts, point),
     }
 }
