@@ -15,7 +15,7 @@ use crate::narrow_phase::{
     CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
     proximity_of,
 };
-use crate::partitioning::{BoxTree, BoxTreeError, Question};
+use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
@@ -23,9 +23,9 @@ use crate::query::separation::{
     Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold,
-    RayIntersection, Witness, advance, contacts2, contacts3, witness_features2, witness_features3,
-    witness_in_world,
+    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
+    RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_pair, witness_features2,
+    witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, Kind, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -40,8 +40,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_in_world: WitnessFn<N, D>,
     /// The features that the nearest points of two convex solids lie on.
     pub(crate) witness_features: FeaturesFn<N, D>,
-    /// The time at which two moving solids touch.
-    pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
+    /// When two moving solids touch, and where.
+    pub(crate) impact: ImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -71,6 +71,8 @@ type NearestPartFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
 type EachHitFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
+type ImpactFn<N, const D: usize> =
+    fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
@@ -82,8 +84,8 @@ type FindPairsFn<N, const D: usize> =
 pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) build: BuildFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
-    pub(crate) by_time: InOrderFn<N, D, Ray<N, D>>,
-    pub(crate) by_distance: InOrderFn<N, D, Point<N, D>>,
+    pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
+    pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
@@ -182,7 +184,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             touching_in_world,
             witness_in_world,
             witness_features: particular.witness_features,
-            time_of_impact: advance,
+            impact: impact_of_pair,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             nearest_part,

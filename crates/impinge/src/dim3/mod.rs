@@ -105,8 +105,8 @@ pub mod world {
 pub mod query {
     pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
-        ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
-        time_of_impact,
+        ContactId, ImpactOptions, ImpactStatus, PointQuery, Proximity, RayCast, closest_points,
+        contact, distance, impact, proximity, time_of_impact,
     };
 
     /// A half-line.
@@ -119,6 +119,10 @@ pub mod query {
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
     /// Where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 3>;
+    /// A solid that moves along a straight line.
+    pub type Moving<'a, N> = crate::query::Moving<'a, N, 3>;
+    /// When two moving solids first touch, and where.
+    pub type Impact<N> = crate::query::Impact<N, 3>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
     /// One solid's share of a contact, for algorithms of one's own.
