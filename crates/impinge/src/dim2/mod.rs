@@ -99,6 +99,10 @@ pub mod world {
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 2, T>;
     /// The objects of a world.
     pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 2, T>;
+    /// Which objects a query is about.
+    pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 2, T>;
+    /// An object near what was asked about.
+    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 2, T>;
 }
 
 /// Questions about one solid or two.

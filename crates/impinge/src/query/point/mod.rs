@@ -177,6 +177,21 @@ fn placed<N: Real, const D: usize>(
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
 }
 
+/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
+/// it is: the size of what [`PointQuery::distance_to_point`] gives.
+pub(crate) fn project<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+) -> (PointProjection<N, D>, N) {
+    let local = pose.inverse_point(point);
+    let (nearest, _) = shape.project_local_point(&local);
+    let distance = length(&(local - nearest.point));
+    let is_own = solid && nearest.is_inside;
+    (placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance })
+}
+
 impl<N: Real, const D: usize> PointProjection<N, D> {
     /// The projection on the boundary, made that on the solid: a point inside is its own.
     fn of_solid(self, point: &Point<N, D>, solid: bool) -> Self {
