@@ -143,7 +143,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
-        PartPath, PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A rectangle.
@@ -174,6 +174,10 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 2>;
     /// What a part is.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 2>;
+    /// Shapes side by side, as one.
+    pub type Compound<N> = crate::shape::Compound<N, 2>;
+    /// A line given by heights over a grid.
+    pub type HeightField<N> = crate::shape::HeightField<N, 2>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
 }

@@ -142,8 +142,9 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, MeshError,
-        Neighbor, PartPath, PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
+        FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
+        ShapeKind, SupportMap, Surface,
     };
 
     /// A box.
@@ -174,6 +175,10 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
     /// What a part is.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
+    /// Shapes side by side, as one.
+    pub type Compound<N> = crate::shape::Compound<N, 3>;
+    /// A surface given by heights over a grid.
+    pub type HeightField<N> = crate::shape::HeightField<N, 3>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }

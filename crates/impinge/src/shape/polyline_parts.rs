@@ -3,8 +3,8 @@
 use super::seam::{Seam, is_flat, slack};
 use super::tri_mesh::sphere_around;
 use super::{
-    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, Shape,
-    Surface,
+    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
+    Shape, ShapeHandle, Surface,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
@@ -110,5 +110,9 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
     /// The sphere around the middle of the box, through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.segments.iter().flatten(), &self.vertices)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
 }

@@ -5,7 +5,8 @@ use super::{TriMesh, table};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Shape, Surface,
+    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
+    ShapeHandle, Surface,
 };
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
@@ -63,6 +64,10 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
     /// The sphere around the middle of the box, through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.triangles.iter().flatten(), &self.vertices)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
 }
 

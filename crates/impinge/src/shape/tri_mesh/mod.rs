@@ -10,6 +10,7 @@ mod tests;
 mod topology;
 
 pub(super) use composite::sphere_around;
+pub(super) use surface3::normal_of;
 pub(crate) use table::MeshTable;
 pub use topology::Neighbor;
 
@@ -213,7 +214,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
 /// Unit, perpendicular to the side from `a` to `b`, towards `c`; `None` if they lie on a line, as
 /// [`Triangle`] sees it.
-fn inward_of<N: Real, const D: usize>(
+pub(super) fn inward_of<N: Real, const D: usize>(
     a: &Point<N, D>,
     b: &Point<N, D>,
     c: &Point<N, D>,

@@ -6,7 +6,7 @@ use crate::math::{Point, Real, Vector, cross, max, max_component, unit, unit_or}
 use crate::shape::FeatureId;
 
 /// The unit normal on the side that sees the corners counter-clockwise; zero if they lie on a line.
-pub(super) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
+pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
     let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
     let longer = |best: usize, at: usize| if squared(at) > squared(best) { at } else { best };
     let longest = longer(longer(0, 1), 2);
