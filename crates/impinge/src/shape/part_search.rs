@@ -6,6 +6,10 @@ use crate::math::{Space, Vector};
 use crate::partitioning::BoxTree;
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        BoxTree::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
         self.visit_overlapping(aabb, |index| visit(number(index)));
     }
