@@ -1,11 +1,11 @@
 //! The tree over a user's own boxes.
 
-use super::{BoxTreeError, Search};
+use super::{BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
-use crate::math::{Point, Real, Space};
+use crate::math::{Point, Real, Space, Vector, max};
 
-/// A tree over boxes that do not move, known by their indices.
+/// A tree over boxes that stay where they are, or move all at once; known by their indices.
 ///
 /// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
 /// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
@@ -177,7 +177,48 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// ```
     pub fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, mut visit: impl FnMut(usize, N) -> N) {
         let mut found = |id: u32, time: N| visit(id as usize, time);
-        (N::tables().partitioning.by_time)(self, ray, max_time, &mut found);
+        (N::tables().partitioning.by_time)(self, &Sweep::along(ray), max_time, &mut found);
+    }
+
+    /// Calls `visit` with the boxes that `aabb`, moving with `velocity`, touches at or before
+    /// `max_time`, and the first time of that: the first first, by index at equal times.
+    ///
+    /// [`Self::visit_ray`] for a box in place of a point, with the same rules: `visit` returns the new
+    /// `max_time`, which never grows; boxes that meet `aabb` are touched at time zero, whatever the
+    /// velocity; a velocity of zero finds these alone. `aabb` may be unbounded. A velocity that is
+    /// not finite and a box at infinity touch nothing.
+    ///
+    /// The time at which a solid in the moving box touches one in a box of the tree is never earlier, so
+    /// that of the best hit so far is the `max_time` to return in a search for the first.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::{Point, Vector};
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let square = |x: f32, y: f32| {
+    ///     let corner = Point::<f32, 2>::new(x, y);
+    ///     Aabb::new(corner, corner + Vector::<f32, 2>::new(1.0, 1.0))
+    /// };
+    /// let tree = BoxTree::from_boxes(&[square(6.0, 0.0), square(3.0, 1.0), square(3.0, 1.5)]);
+    /// let mut touched = Vec::new();
+    /// let velocity = Vector::<f32, 2>::new(2.0, 0.0);
+    /// tree.visit_cast(&square(0.0, 0.0), &velocity, f32::INFINITY, |index, time| {
+    ///     touched.push((index, time));
+    ///     f32::INFINITY
+    /// });
+    /// assert_eq!(touched, [(1, 1.0), (0, 2.5)], "the third is passed by half a unit");
+    /// ```
+    pub fn visit_cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        max_time: N,
+        mut visit: impl FnMut(usize, N) -> N,
+    ) {
+        let mut found = |id: u32, time: N| visit(id as usize, time);
+        let sweep = Sweep { aabb: *aabb, velocity: *velocity };
+        (N::tables().partitioning.by_time)(self, &sweep, max_time, &mut found);
     }
 
     /// Calls `visit` with the boxes at most `max_distance` from the point and their distance: the
@@ -185,15 +226,51 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     ///
     /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
     /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
-    /// finite is near nothing. Distances whose squares leave the range of `N` count as infinite or zero.
+    /// finite is near nothing. Distances whose squares are too small for `N` count as zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,
         max_distance: N,
+        visit: impl FnMut(usize, N) -> N,
+    ) {
+        self.visit_nearest_to_box(&Aabb::at(*point), max_distance, visit);
+    }
+
+    /// Calls `visit` with the boxes at most `max_distance` from `aabb` and their distance: the nearest
+    /// first, by index at equal distances. Boxes that meet `aabb` are at distance zero.
+    ///
+    /// [`Self::visit_nearest`] for a box in place of a point, with the same rules: `visit` returns the
+    /// new `max_distance`, which never grows. `aabb` may be unbounded; one at infinity, or that
+    /// arithmetic has made NaN, is near nothing.
+    ///
+    /// The distance of a solid in `aabb` from one in a box of the tree is never smaller, so that of the
+    /// nearest so far is the `max_distance` to return in a search for the nearest.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::{Point, Vector};
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let square = |x: f32, y: f32| {
+    ///     let corner = Point::<f32, 2>::new(x, y);
+    ///     Aabb::new(corner, corner + Vector::<f32, 2>::new(1.0, 1.0))
+    /// };
+    /// let tree = BoxTree::from_boxes(&[square(4.0, 5.0), square(-3.0, 0.5), square(1.0, 1.0)]);
+    /// let mut found = Vec::new();
+    /// tree.visit_nearest_to_box(&square(0.0, 0.0), 3.0, |index, distance| {
+    ///     found.push((index, distance));
+    ///     3.0
+    /// });
+    /// assert_eq!(found, [(2, 0.0), (1, 2.0)], "the first is 5 away, corner to corner");
+    /// ```
+    pub fn visit_nearest_to_box(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
         mut visit: impl FnMut(usize, N) -> N,
     ) {
         let mut found = |id: u32, distance: N| visit(id as usize, distance);
-        (N::tables().partitioning.by_distance)(self, point, max_distance, &mut found);
+        (N::tables().partitioning.by_distance)(self, aabb, max_distance, &mut found);
     }
 
     /// The box that the ray enters first, at or before `max_time`, and when; of several the one of
@@ -325,6 +402,19 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
+    /// How far the things in the boxes reach along a direction: not less, and more by at most a few
+    /// rounding units of `f32` of their coordinates. `reach_of` tells it of one of them, which lies in
+    /// its box. Minus infinity if there are none. It asks O(log n) of them where they bulge, more
+    /// where many reach almost equally far.
+    pub(crate) fn reach_along(
+        &self,
+        direction: Vector<N, D>,
+        mut reach_of: impl FnMut(u32) -> N,
+    ) -> N {
+        let reach = self.tree.reach_along(direction, &mut reach_of);
+        self.unbounded.iter().fold(reach, |reach, &id| max(reach_of(id), reach))
+    }
+
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
         match question {
             Question::Overlapping(aabb) => self.search().each_overlapping(aabb, found),
@@ -333,17 +423,22 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         }
     }
 
-    pub(crate) fn by_time(&self, ray: &Ray<N, D>, max_time: N, found: &mut dyn FnMut(u32, N) -> N) {
-        self.search().by_time(ray, max_time, found);
+    pub(crate) fn by_time(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_time(sweep, max_time, found);
     }
 
     pub(crate) fn by_distance(
         &self,
-        point: &Point<N, D>,
+        aabb: &Aabb<N, D>,
         max_distance: N,
         found: &mut dyn FnMut(u32, N) -> N,
     ) {
-        self.search().by_distance(point, max_distance, found);
+        self.search().by_distance(aabb, max_distance, found);
     }
 
     fn search(&self) -> Search<'_, N, D, 1> {

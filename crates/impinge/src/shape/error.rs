@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::ShapeKind;
 use crate::math::{Real, Vector};
 
 /// Why a constructor refused its numbers. Values are given as `f64`, exactly.
@@ -43,6 +44,11 @@ pub enum ShapeError {
     NotConvex {
         /// The index of the point.
         index: usize,
+    },
+    /// A shape of this kind is not bounded and convex, so it has no rounded variant.
+    NotRoundable {
+        /// The kind of the shape.
+        kind: ShapeKind,
     },
     /// A composite without parts.
     NoChildren,
@@ -88,6 +94,9 @@ impl fmt::Display for ShapeError {
                     _ => "lie in one plane",
                 };
                 write!(f, "the points span no solid: they {where_they_are}")
+            }
+            Self::NotRoundable { kind } => {
+                write!(f, "{kind:?} is not a bounded convex solid and cannot be rounded")
             }
             Self::NotConvex { index } => write!(f, "the outline is not convex at point {index}"),
             Self::NoChildren => write!(f, "a compound needs a child at least"),
