@@ -317,11 +317,8 @@ fn what_cannot_be_is_refused() {
             "{shape}: {factors:?}"
         );
     }
-    assert_eq!(
-        refused(&all[5], [1e-320, 1e-320, 1e-320]),
-        ScaleError::OutOfRange,
-        "a hull without a volume"
-    );
+    let tiny = all[5].scaled(&Vector::<f64, 3>::repeat(1e-300)).expect("there is room");
+    assert_eq!(refused(&tiny, [1e-300; 3]), ScaleError::OutOfRange, "a hull without a volume");
     assert_eq!(
         refused(&Handle::new(Own(Ball::new(1.0))), [1.0; 3]),
         ScaleError::Unsupported,
