@@ -20,8 +20,8 @@ use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
 use crate::query::{
-    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
-    RawManifold, contacts2, contacts3, impact_of_pair,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    Proximity, RawManifold, contacts2, contacts3, impact_of_flight, impact_of_pair,
 };
 use crate::shape::{Kind, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -33,6 +33,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation_in_world: InWorldFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -53,6 +54,8 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type ImpactFn<N, const D: usize> =
     fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type NonlinearImpactFn<N, const D: usize> =
+    fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
@@ -159,6 +162,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             separation: particular.separation,
             separation_in_world: in_world,
             impact: impact_of_pair,
+            nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             contacts: particular.contacts,

@@ -2,11 +2,18 @@
 //!
 //! [`linear`] serves solids that do not turn: the front here brings the pair into its canonical order
 //! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
-//! path.
+//! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
+//! a motion than where it is and how fast it can be ([`motion`], [`bounds`]).
 
+mod bounds;
 mod linear;
+mod motion;
+mod nonlinear;
 
 pub(crate) use linear::{Arrival, Path, advance};
+pub use motion::{ConstantVelocities, RigidMotion};
+pub use nonlinear::nonlinear_time_of_impact;
+pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::pair::{Placed, canonical, indistinguishable};
 use crate::math::{
