@@ -229,7 +229,7 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
         let (closing, noise) = sight.moment.closing(&sight.points(), sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         let deep = sight.gap < -sight.tolerance();
-        closing > noise || (deep && (closing >= -noise || sight.gap == -N::INFINITY))
+        closing > noise || (deep && closing >= -noise) || sight.gap == -N::INFINITY
     }
 
     /// The impact at a moment, seen from the world.
