@@ -1,10 +1,11 @@
 //! Every kind has an algorithm with every kind: a new one without fails to compile here, or fails.
 
-use crate::math::{Point, Pose, Real, Unit, Vector};
+use crate::math::{Point, Pose, Real, Space, Unit, Vector};
+use crate::partitioning::BoxTree;
 use crate::query::{Pair, separation::separation};
 use crate::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry, Kind, Plane,
-    Segment, Shape, ShapeKind, Triangle,
+    Ball, Capsule, CompositeShape, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry,
+    Kind, Part, PartSearch, PartSolid, Plane, Segment, Shape, ShapeKind, Triangle,
 };
 
 /// The kind with a number, by an exhaustive match from each kind to the next.
@@ -20,8 +21,8 @@ fn all_kinds() -> Vec<ShapeKind> {
         ShapeKind::Cylinder => Some(ShapeKind::Cone),
         ShapeKind::Cone => Some(ShapeKind::SupportMap),
         ShapeKind::SupportMap => Some(ShapeKind::Plane),
-        // Composites are tested on their own.
-        ShapeKind::Plane | ShapeKind::Composite => None,
+        ShapeKind::Plane => Some(ShapeKind::Composite),
+        ShapeKind::Composite => None,
     }) {
         kinds.push(next);
     }
@@ -37,13 +38,37 @@ struct Solids<N: Real, const D: usize> {
     cuboid: Cuboid<N, D>,
     polytope: Box<dyn Shape<N, D>>,
     plane: Plane<N, D>,
+    composite: One<N, D>,
 }
 
-impl<N: Real, const D: usize> Solids<N, D> {
+/// A composite of one part.
+struct One<N: Real, const D: usize> {
+    cuboid: Cuboid<N, D>,
+    search: BoxTree<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for One<N, D> {
+    fn num_parts(&self) -> u32 {
+        1
+    }
+
+    fn part(&self, _: u32) -> Part<'_, N, D> {
+        Part { pose: Pose::identity(), solid: PartSolid::Shape(&self.cuboid) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        &self.search
+    }
+}
+
+impl<N: Space<D>, const D: usize> Solids<N, D> {
     fn new(polytope: Box<dyn Shape<N, D>>) -> Self {
         let y = |y: f64| axis::<N, D>(1) * N::lit(y);
         let (low, high) = (Point::from(y(-1.0)), Point::from(y(1.0)));
+        let cuboid = Cuboid::new(Vector::<N, D>::repeat(N::ONE));
+        let search = BoxTree::from_boxes(&[cuboid.local_aabb()]);
         Self {
+            composite: One { cuboid, search },
             ball: Ball::new(N::ONE),
             segment: Segment::new(low, high),
             capsule: Capsule::<N, D>::new(N::HALF, N::HALF),
@@ -65,6 +90,7 @@ impl<N: Real, const D: usize> Solids<N, D> {
             ShapeKind::Polytope => self.polytope.geometry().0,
             ShapeKind::SupportMap => Kind::SupportMap(&self.capsule),
             ShapeKind::Plane => Kind::Plane(&self.plane),
+            ShapeKind::Composite => Kind::Composite(&self.composite),
             _ => return None,
         })
     }
@@ -78,7 +104,7 @@ fn axis<N: Real, const D: usize>(at: usize) -> Vector<N, D> {
 
 /// The second solid stands five units above the first: the gap is three, or two over half-spaces,
 /// which end at the origin; a half-space above reaches down without end.
-fn check<N: crate::math::Space<D>, const D: usize>(first: Kind<'_, N, D>, second: Kind<'_, N, D>) {
+fn check<N: Space<D>, const D: usize>(first: Kind<'_, N, D>, second: Kind<'_, N, D>) {
     let pose12 = Pose::from_translation(axis::<N, D>(1) * N::lit(5.0));
     let kinds = [first, second].map(|kind| Geometry(kind).kind());
     let found = separation(&Pair { first, second, pose12 }, N::INFINITY);
