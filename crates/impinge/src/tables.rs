@@ -27,7 +27,7 @@ use crate::query::{
     RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_pair, witness_features2,
     witness_features3, witness_in_world,
 };
-use crate::shape::{CompositeShape, FeatureId, Kind, ShapeHandle};
+use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -60,6 +60,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) find_pairs: FindPairsFn<N, D>,
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
+    pub(crate) mesh: MeshTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -83,12 +84,14 @@ type FindPairsFn<N, const D: usize> =
 /// Making and searching a tree over a user's boxes.
 pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) build: BuildFn<N, D>,
+    pub(crate) refit: RefitFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type RefitFn<N, const D: usize> = fn(&mut BoxTree<N, D>, &[Aabb<N, D>]) -> Result<(), BoxTreeError>;
 type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
 type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
 
@@ -96,6 +99,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
     const fn new() -> Self {
         Self {
             build: BoxTree::build,
+            refit: BoxTree::refit_to,
             each: BoxTree::answer,
             by_time: BoxTree::by_time,
             by_distance: BoxTree::by_distance,
@@ -153,6 +157,7 @@ struct Particular<N: Space<D>, const D: usize> {
     witness_features: FeaturesFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+    mesh: MeshTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
@@ -162,6 +167,7 @@ impl<N: Real> Particular<N, 2> {
         witness_features: witness_features2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
+        mesh: MeshTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -172,6 +178,7 @@ impl<N: Real> Particular<N, 3> {
         witness_features: witness_features3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
+        mesh: MeshTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -197,6 +204,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             find_pairs: PairFinder::update,
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
+            mesh: particular.mesh,
         }
     }
 }

@@ -206,9 +206,7 @@ fn against_half_spaces() {
 }
 
 /// A composite of one part in its own frame is that part, to the bit.
-fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
-    maker: &Maker<N, R, D>,
-) {
+fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);
         let (solid, other) = (maker.solid(random, N::ONE), maker.solid(random, N::ONE));

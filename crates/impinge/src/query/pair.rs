@@ -128,6 +128,17 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
         Kind::Polytope(polytope) => coordinates(polytope.vertices()),
         Kind::Cylinder(cylinder, _) => vec![cylinder.half_height(), cylinder.radius()],
         Kind::Cone(cone, _) => vec![cone.half_height(), cone.radius()],
+        Kind::Ellipsoid(ellipsoid) => ellipsoid.half_axes().as_slice().to_vec(),
+        Kind::TaperedCapsule(capsule) => {
+            let mut numbers = coordinates(&[*capsule.segment().a(), *capsule.segment().b()]);
+            numbers.extend(capsule.radii());
+            numbers
+        }
+        Kind::Rounded(solid) => {
+            let mut numbers = numbers(&solid.inner().0);
+            numbers.push(solid.swelling());
+            numbers
+        }
         Kind::SupportMap(map) => probed(*map),
         Kind::Plane(plane) => plane.normal().as_slice().to_vec(),
         // Compared part by part.

@@ -8,14 +8,17 @@ mod capsule;
 mod cone;
 mod cuboid;
 mod cylinder;
+mod ellipsoid;
 mod location;
 mod plane;
 pub(crate) mod point2;
 pub(crate) mod point3;
 mod polytope;
+mod rounded;
 mod segment;
 mod support_map;
 mod surface;
+mod tapered_capsule;
 mod triangle2;
 mod triangle3;
 mod volume;
@@ -172,6 +175,21 @@ fn placed<N: Real, const D: usize>(
     solid: bool,
 ) -> PointProjection<N, D> {
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
+}
+
+/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
+/// it is: the size of what [`PointQuery::distance_to_point`] gives.
+pub(crate) fn project<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+) -> (PointProjection<N, D>, N) {
+    let local = pose.inverse_point(point);
+    let (nearest, _) = shape.project_local_point(&local);
+    let distance = length(&(local - nearest.point));
+    let is_own = solid && nearest.is_inside;
+    (placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance })
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {

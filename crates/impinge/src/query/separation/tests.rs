@@ -4,8 +4,9 @@ use crate::math::{Point, Pose, Real, Space, Unit, Vector};
 use crate::partitioning::BoxTree;
 use crate::query::{Pair, separation::separation};
 use crate::shape::{
-    Ball, Capsule, CompositeShape, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry,
-    Kind, Part, PartSearch, PartSolid, Plane, Segment, Shape, ShapeKind, Triangle,
+    Ball, Capsule, CompositeShape, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid,
+    Geometry, Kind, Part, PartSearch, PartSolid, Plane, Rounded, Segment, Shape, ShapeKind,
+    TaperedCapsule, Triangle,
 };
 
 /// The kind with a number, by an exhaustive match from each kind to the next.
@@ -19,7 +20,10 @@ fn all_kinds() -> Vec<ShapeKind> {
         ShapeKind::Cuboid => Some(ShapeKind::Polytope),
         ShapeKind::Polytope => Some(ShapeKind::Cylinder),
         ShapeKind::Cylinder => Some(ShapeKind::Cone),
-        ShapeKind::Cone => Some(ShapeKind::SupportMap),
+        ShapeKind::Cone => Some(ShapeKind::Ellipsoid),
+        ShapeKind::Ellipsoid => Some(ShapeKind::TaperedCapsule),
+        ShapeKind::TaperedCapsule => Some(ShapeKind::Rounded),
+        ShapeKind::Rounded => Some(ShapeKind::SupportMap),
         ShapeKind::SupportMap => Some(ShapeKind::Plane),
         ShapeKind::Plane => Some(ShapeKind::Composite),
         ShapeKind::Composite => None,
@@ -37,6 +41,9 @@ struct Solids<N: Real, const D: usize> {
     triangle: Triangle<N, D>,
     cuboid: Cuboid<N, D>,
     polytope: Box<dyn Shape<N, D>>,
+    ellipsoid: Ellipsoid<N, D>,
+    tapered: TaperedCapsule<N, D>,
+    rounded: Rounded<N, D, Cuboid<N, D>>,
     plane: Plane<N, D>,
     composite: One<N, D>,
 }
@@ -75,6 +82,11 @@ impl<N: Space<D>, const D: usize> Solids<N, D> {
             triangle: Triangle::new(low, high, Point::from(axis::<N, D>(0))),
             cuboid: Cuboid::new(Vector::<N, D>::repeat(N::ONE)),
             polytope,
+            ellipsoid: Ellipsoid::new(Vector::<N, D>::from_fn(|axis, _| {
+                if axis == 1 { N::ONE } else { N::HALF }
+            })),
+            tapered: TaperedCapsule::new(N::HALF, N::HALF, N::HALF),
+            rounded: Rounded::new(Cuboid::new(Vector::<N, D>::repeat(N::HALF)), N::HALF),
             plane: Plane::new(Unit::new_unchecked(axis::<N, D>(1))),
         }
     }
@@ -88,6 +100,9 @@ impl<N: Space<D>, const D: usize> Solids<N, D> {
             ShapeKind::Triangle => Kind::Triangle(&self.triangle),
             ShapeKind::Cuboid => Kind::Cuboid(&self.cuboid),
             ShapeKind::Polytope => self.polytope.geometry().0,
+            ShapeKind::Ellipsoid => Kind::Ellipsoid(&self.ellipsoid),
+            ShapeKind::TaperedCapsule => Kind::TaperedCapsule(&self.tapered),
+            ShapeKind::Rounded => Kind::Rounded(&self.rounded),
             ShapeKind::SupportMap => Kind::SupportMap(&self.capsule),
             ShapeKind::Plane => Kind::Plane(&self.plane),
             ShapeKind::Composite => Kind::Composite(&self.composite),
