@@ -90,8 +90,8 @@ fn against_convex<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     let random = &mut Random(seed, seed % 5 == 0);
     let scene = maker.scene(random, 1 + usize::try_from(seed % 23).expect("few"), scale);
     let solid = maker.solid(random, scale * N::lit([1.0, 0.01, 5.0][(seed % 3) as usize]));
-    let m1 = maker.place(random, scale * N::lit(7.0));
-    let m2 = maker.place(random, scale * N::lit(7.0));
+    let m1 = maker.place(random, scale * N::lit(4.0));
+    let m2 = maker.place(random, scale * N::lit(4.0));
     let noise = scale * (N::EPSILON * N::lit(4096.0) + N::lit(1e-9));
 
     let two = Two { m1: &m1, g1: &scene.fast, m2: &m2, g2: &*solid };
