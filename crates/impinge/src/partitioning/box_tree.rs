@@ -226,7 +226,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     ///
     /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
     /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
-    /// finite is near nothing. Distances whose squares leave the range of `N` count as infinite or zero.
+    /// finite is near nothing. Distances whose squares are too small for `N` count as zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,

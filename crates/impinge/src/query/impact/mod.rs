@@ -2,11 +2,18 @@
 //!
 //! [`linear`] serves solids that do not turn: the front here brings the pair into its canonical order
 //! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
-//! path.
+//! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
+//! a motion than where it is and how fast it can be ([`motion`], [`bounds`]).
 
+mod bounds;
 mod linear;
+mod motion;
+mod nonlinear;
 
 pub(crate) use linear::{Arrival, Path, advance};
+pub use motion::{ConstantVelocities, RigidMotion};
+pub use nonlinear::nonlinear_time_of_impact;
+pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::composite::{Between, first_arrival};
 use super::pair::{Placed, indistinguishable};
@@ -60,7 +67,7 @@ pub struct ImpactOptions<N: Real> {
     /// negative or NaN. Infinite by default.
     pub max_time: N,
     /// The solids count as touching when they are so far apart. Zero by default; negative and NaN
-    /// count as zero.
+    /// count as zero. At an infinite distance everything touches at time zero.
     pub target_distance: N,
 }
 
@@ -145,8 +152,9 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives the
 /// same bits. The unit of time is the one that velocities are lengths per.
 ///
-/// The time is right up to the rounding of the solids' sizes and of their initial distance, and never
-/// late by more: solids that pass each other that closely may count as touching.
+/// At the time found the solids are at the target distance, up to the rounding of their sizes and of
+/// their initial distance, and before that time they were not nearer by more: it is never late, and
+/// solids that pass each other that closely may count as touching.
 ///
 /// The impact of composites is the first impact of two of their parts, of several at one time that of the
 /// first by number; each pair of parts has the policy below for itself. So a shape that slides along
