@@ -23,9 +23,9 @@ use crate::query::separation::{
     Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
-    RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_pair, witness_features2,
-    witness_features3, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    Proximity, RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_flight,
+    impact_of_pair, witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -42,6 +42,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_features: FeaturesFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -74,6 +75,8 @@ type EachHitFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
 type ImpactFn<N, const D: usize> =
     fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type NonlinearImpactFn<N, const D: usize> =
+    fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
@@ -192,6 +195,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_in_world,
             witness_features: particular.witness_features,
             impact: impact_of_pair,
+            nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             nearest_part,
