@@ -10,10 +10,10 @@ use core::fmt;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space};
+use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
-    proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events, KeptContacts,
+    ObjectTable, Posed, proximity_of,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question};
 use crate::query::point::{SurfacePoint, point2, point3};
@@ -21,7 +21,7 @@ use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
 use crate::query::{
     ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold, advance,
-    contacts2, contacts3,
+    contact_in_world, contacts2, contacts3, tangents2, tangents3,
 };
 use crate::shape::{Kind, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -31,6 +31,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
+    pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The time at which two moving solids touch.
     pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
     /// When the line of a ray is inside a solid.
@@ -39,8 +40,13 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+    /// Two directions across a normal; the second is zero in the plane.
+    pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
     pub(crate) public_manifold: PublicManifoldFn<N, D>,
+    pub(crate) update_composites:
+        fn(&mut CompositeState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
+    pub(crate) composite_manifolds: CompositeManifoldsFn<N, D>,
     pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
     pub(crate) update_pairs: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events),
     /// The step of a broad phase: what is pending, the filter, and what hears of changes.
@@ -53,6 +59,12 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
+type CompositeManifoldsFn<N, const D: usize> = fn(
+    &CompositeState<N, D>,
+    &Posed<'_, N, D>,
+    u64,
+    Vec<ContactManifold<N, D>>,
+) -> Vec<ContactManifold<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FindPairsFn<N, const D: usize> =
@@ -128,6 +140,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     contacts: ContactsFn<N, D>,
+    tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
 }
@@ -136,6 +149,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
+        tangents: tangents2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
     };
@@ -145,6 +159,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         contacts: contacts3,
+        tangents: tangents3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
     };
@@ -156,12 +171,16 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separation_in_world: in_world,
+            contact_in_world,
             time_of_impact: advance,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             contacts: particular.contacts,
+            tangents: particular.tangents,
             update_contacts: ContactState::update,
-            public_manifold: ContactState::manifold,
+            public_manifold: ContactState::manifolds,
+            update_composites: CompositeState::update,
+            composite_manifolds: CompositeState::manifolds,
             proximity: proximity_of,
             update_pairs: DefaultNarrowPhase::update_pairs_here,
             find_pairs: PairFinder::update,
