@@ -1,11 +1,12 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
 use crate::math::{Pose, Real, Space};
+use crate::query::composite::Between;
 use crate::query::{
-    CompositeContacts, ContactManifold, ManifoldRequest, Pair, Placement, Proximity, RawManifold,
-    canonical, distance_within, materialise,
+    CompositeContacts, ContactManifold, ManifoldRequest, Pair, Placed, Placement, Proximity,
+    RawManifold, canonical, materialise, own_distance,
 };
-use crate::shape::Shape;
+use crate::shape::{Geometry, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -22,6 +23,12 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     /// The pair in the order in which every query computes it.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
+    }
+
+    /// The two solids, each for itself.
+    fn placed(&self) -> [Placed<'a, N, D>; 2] {
+        [(self.pose1, self.shape1), (self.pose2, self.shape2)]
+            .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
     }
 
     /// Where the pair in canonical order stands.
@@ -124,7 +131,10 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
             self.contacts.flip_names();
             self.swapped = swapped;
         }
-        self.contacts.update(&pair, posed.is_self, request);
+        let (first, second) =
+            if swapped { (posed.pose2, posed.pose1) } else { (posed.pose1, posed.pose2) };
+        let between = Between { pair, pose21: Pose::relative(second, first) };
+        self.contacts.update(&between, posed.is_self, request);
     }
 
     fn manifolds(
@@ -144,7 +154,16 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     margin: N,
 ) -> Proximity {
     let (pair, _) = posed.canonical();
-    match distance_within(&pair, posed.is_self, margin) {
+    let is_composite = |kind| Geometry(kind).as_composite().is_some();
+    let found = if posed.is_self {
+        own_distance(&pair, margin)
+    } else if is_composite(pair.first) || is_composite(pair.second) {
+        let [placed1, placed2] = posed.placed();
+        (N::tables().touching_in_world)(&placed1, &placed2, margin).map(|found| found.distance)
+    } else {
+        (N::tables().separation)(&pair, margin).map(|found| found.distance)
+    };
+    match found {
         None => Proximity::Disjoint,
         Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,

@@ -8,11 +8,11 @@
 use super::facet::{Facet, Which};
 use super::frame::Frame;
 use super::overlap::{Candidates, Overlap};
-use super::{at_witness, build, choose, face};
+use super::{build, choose, face};
 use crate::convex::Separation;
 use crate::math::{Space, Vector, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::{FeatureId, Geometry};
+use crate::shape::Geometry;
 
 /// What a manifold along a given normal is asked for.
 #[derive(Clone, Copy)]
@@ -85,17 +85,6 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     out: &mut RawManifold<N, D>,
 ) {
     build(pair, &frame(pair, separation, request), (request, request.max_points), out);
-}
-
-/// The parts of the two solids that the witness lies on.
-pub(in crate::query) fn features_at_witness<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    separation: &Separation<N, D>,
-    request: &ManifoldRequest<N>,
-) -> [FeatureId; 2] {
-    let frame = frame(pair, separation, request);
-    let (first, second) = facets(pair, &frame);
-    [at_witness(&first, &frame), at_witness(&second, &frame)]
 }
 
 fn frame<N: Space<D>, const D: usize>(

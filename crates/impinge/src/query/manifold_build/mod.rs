@@ -23,12 +23,14 @@ mod patch;
 mod reduce;
 #[cfg(test)]
 pub(super) mod tests;
+mod witness;
 
-pub(super) use self::along::{Along, build_along, build_between, extremes, features_at_witness};
+pub(super) use self::along::{Along, build_along, build_between, extremes};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, merge};
+pub(crate) use self::witness::{features2 as witness_features2, features3 as witness_features3};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;

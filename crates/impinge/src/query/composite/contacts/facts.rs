@@ -4,7 +4,7 @@ use super::judge::{Case, Verdict, faces, judge};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
-use crate::query::manifold_build::{Along, Patch, build_along, build_between, features_at_witness};
+use crate::query::manifold_build::{Along, Patch, build_along, build_between};
 use crate::query::{ManifoldRequest, RawManifold};
 
 /// How a contact of two parts stands as one of the two shapes.
@@ -18,13 +18,13 @@ pub(super) enum Standing {
     Left,
 }
 
-/// Two parts that are within reach of each other. All in the moved frame of the first shape.
+/// Two parts that are within reach of each other.
 #[derive(Clone, Debug)]
 pub(super) struct Finding<N: Real, const D: usize> {
     pub(super) parts: [u32; 2],
     /// How far the two are apart, each taken alone.
     pub(super) distance: N,
-    /// What they say of the contact of the shapes; empty if nothing.
+    /// What they say of the contact of the shapes, in the frame of the first.
     pub(super) patch: Patch<N, D>,
     pub(super) standing: Standing,
     /// Lengths below this are rounding errors.
@@ -50,10 +50,9 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
 ) -> Option<Finding<N, D>> {
     let placed = scene.pair(parts);
-    let has_surface = scene.first.surface.is_some() || scene.second.surface.is_some();
+    let has_surface = scene.surfaces.iter().any(Option::is_some);
     match placed.centers() {
-        [Some(center1), Some(center2)] if has_surface => {
-            let centers = [center1, center2];
+        Some(centers) if has_surface => {
             of_surfaces(scene, &Meeting { placed, parts, centers, reference }, request)
         }
         // A half-space has the same normal everywhere: there are no seams to slide over.
@@ -80,50 +79,33 @@ fn plain<N: Space<D>, const D: usize>(
 struct Meeting<'a, N: Real, const D: usize> {
     placed: PartPair<'a, N, D>,
     parts: [u32; 2],
-    /// In the moved frames of the two shapes.
-    centers: [Point<N, D>; 2],
-    /// In the frame of the second shape, of the first.
+    /// Of the part of the first shape and of that of the second, as seen by both shapes.
+    centers: [[Point<N, D>; 2]; 2],
+    /// Of the first shape, as seen by the second.
     reference: &'a Reference<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
-    /// From where the other solid comes to the part of the first shape and to that of the second, in
-    /// the frames of the shapes.
-    fn origins(&self, scene: &Scene<'_, N, D>) -> [Point<N, D>; 2] {
-        let to_second = self.reference.unwrap_or_else(|| scene.in_second(&self.centers[0]));
-        [scene.in_first(&self.centers[1]), to_second]
-    }
-
     /// What the two surfaces say of a separation of the two parts.
-    fn verdicts(
-        &self,
-        scene: &Scene<'_, N, D>,
-        found: &Separation<N, D>,
-        request: &ManifoldRequest<N>,
-    ) -> [Verdict<N, D>; 2] {
-        let origins = self.origins(scene);
-        let [origin1, origin2] = &origins;
-        let can_touch = faces(&scene.first, self.parts[0], origin1)
-            && faces(&scene.second, self.parts[1], origin2);
+    fn verdicts(&self, scene: &Scene<'_, N, D>, found: &Separation<N, D>) -> [Verdict<N, D>; 2] {
+        // Where the other solid comes from, and the part itself, as the shape of the part sees it.
+        let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
+        let other2 = self.reference.unwrap_or(other2);
+        let [surface1, surface2] = scene.surfaces;
+        let can_touch =
+            faces(surface1, self.parts[0], &other1) && faces(surface2, self.parts[1], &other2);
         if !can_touch {
             return [Verdict::Nothing; 2];
         }
-        let features = features_at_witness(&self.placed.pair(), found, request);
+        let features = (N::tables().witness_features)(&self.placed.pair(), found);
         let [feature1, feature2] = self.placed.turned(features);
         let normal = self.placed.outward(&found.normal);
-        let case1 = Case {
-            part: self.parts[0],
-            feature: feature1,
-            outward: normal,
-            toward: origin1 - (self.centers[0] + scene.first.origin),
-        };
-        let case2 = Case {
-            part: self.parts[1],
-            feature: feature2,
-            outward: -scene.pose12.inverse_vector(&normal),
-            toward: origin2 - (self.centers[1] + scene.second.origin),
-        };
-        [judge(&scene.first, &case1), judge(&scene.second, &case2)]
+        let (part, feature, toward) = (self.parts[0], feature1, other1 - own1);
+        let case1 = Case { part, feature, outward: normal, toward };
+        let (part, feature, toward) = (self.parts[1], feature2, other2 - own2);
+        let outward = -self.placed.seen_by_second(&normal);
+        let case2 = Case { part, feature, outward, toward };
+        [judge(surface1, &case1), judge(surface2, &case2)]
     }
 }
 
@@ -138,10 +120,10 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     if !found.distance.is_finite_number() {
         return None;
     }
-    let verdicts = meeting.verdicts(scene, &found, request);
+    let verdicts = meeting.verdicts(scene, &found);
     let normal = placed.outward(&found.normal);
     let mut raw = RawManifold::default();
-    let standing = match settled(scene, &verdicts, &normal) {
+    let standing = match settled(placed, &verdicts, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => Standing::Left,
         Settled::Found(normal) => {
@@ -173,15 +155,15 @@ enum Settled<N: Real, const D: usize> {
     Forced(Vector<N, D>),
 }
 
-/// Takes the verdicts together; `normal` is the one that both are about. All in the moved frame of
+/// Takes the verdicts together; `normal` is the one that both are about. All in the frame of
 /// the first shape.
 fn settled<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
+    placed: &PartPair<'_, N, D>,
     verdicts: &[Verdict<N, D>; 2],
     normal: &Vector<N, D>,
 ) -> Settled<N, D> {
     use Verdict::{Admitted, Face, Nothing, Refused, Snapped};
-    let of_second = |face: &Vector<N, D>| -scene.pose12.vector(face);
+    let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
     match verdicts {
         [Nothing, _] | [_, Nothing] => Settled::Nothing,
         [Snapped(face1), Snapped(face2)] => {

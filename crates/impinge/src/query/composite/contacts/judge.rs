@@ -1,8 +1,7 @@
 //! Whether a contact with one part of a surface is one of the whole.
 
-use super::scene::Side;
 use crate::math::{Point, Real, Space, Vector};
-use crate::shape::FeatureId;
+use crate::shape::{FeatureId, Surface};
 
 /// Normals this many rounding units from a face's own are that one.
 const ROUNDING: f64 = 4096.0;
@@ -40,19 +39,19 @@ pub(super) struct Case<N: Real, const D: usize> {
 
 /// The solid at `center` can touch the part.
 pub(super) fn faces<N: Space<D>, const D: usize>(
-    side: &Side<'_, N, D>,
+    surface: Option<&dyn Surface<N, D>>,
     part: u32,
     center: &Point<N, D>,
 ) -> bool {
-    side.surface.is_none_or(|surface| surface.faces(part, center))
+    surface.is_none_or(|surface| surface.faces(part, center))
 }
 
 /// What the surface of a shape, if it has one, says of a contact.
 pub(super) fn judge<N: Space<D>, const D: usize>(
-    side: &Side<'_, N, D>,
+    surface: Option<&dyn Surface<N, D>>,
     case: &Case<N, D>,
 ) -> Verdict<N, D> {
-    let Some(surface) = side.surface else { return Verdict::Admitted };
+    let Some(surface) = surface else { return Verdict::Admitted };
     let is_admitted = || surface.admits(case.part, case.feature, &case.outward);
     let Some(face) = surface.snapped(case.part, &case.toward) else {
         return if is_admitted() { Verdict::Admitted } else { Verdict::Refused };

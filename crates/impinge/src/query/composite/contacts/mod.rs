@@ -18,11 +18,14 @@ mod view;
 
 use self::facts::{Finding, Reference, Standing};
 use self::scene::Scene;
+use super::between::Between;
+use super::ray::RayQuestion;
 use crate::bounding_volume::Ray;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::math::{Point, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, merge};
-use crate::query::pair::{Placed, canonical};
+use crate::query::pair::Placed;
+use crate::query::separation::placed;
 use crate::query::{ManifoldRequest, Pair, PairIds};
 use crate::shape::Geometry;
 
@@ -59,17 +62,17 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Computes the contacts for a new pose, of two shapes or of one with itself; points whose parts
+    /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
     /// and features stay keep their numbers.
     pub(crate) fn update(
         &mut self,
-        pair: &Pair<'_, N, D>,
+        between: &Between<'_, N, D>,
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        let center = middle_of_first(pair);
-        let reference = center.map(|center| advanced(pair, self.reference, center));
-        let query = Query { pair, is_self, reference: &reference, request };
+        let center = middle_of_first(between);
+        let reference = center.map(|center| advanced(between, self.reference, center));
+        let query = Query { between, is_self, reference: &reference, request };
         let findings = query.findings();
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
@@ -82,58 +85,60 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// The middle of a convex first shape, in the frame of the second.
-fn middle_of_first<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> Option<Point<N, D>> {
-    let map = Geometry(pair.first).as_support_map()?;
-    Some(pair.pose12.inverse_point(&map.center()))
+fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
+    let map = Geometry(between.pair.first).as_support_map()?;
+    Some(between.pose21.point(&map.center()))
 }
 
 /// Where the middle of the first shape counts as being: where it is, unless the straight way there
 /// from where it was leads through the surface and is no longer than the shape is.
 fn advanced<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
+    between: &Between<'_, N, D>,
     old: Reference<N, D>,
     center: Point<N, D>,
 ) -> Point<N, D> {
-    let composite = Geometry(pair.second).as_composite();
+    let [_, composite] = between.composites();
     let composite = composite.filter(|composite| composite.surface().is_some());
-    let map = Geometry(pair.first).as_support_map();
+    let map = Geometry(between.pair.first).as_support_map();
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
     let way = center - old;
     if way == Vector::<N, D>::zeros() || way.norm() > N::TWO * (map.reach() + map.rounding()) {
         return center;
     }
-    let hit = super::first_hit(composite, &Ray::new(old, way), false);
-    if hit.is_some_and(|hit| hit.toi <= N::ONE) { old } else { center }
+    let ray = Ray::new(old, way);
+    let (question, mut is_hit) = (RayQuestion { ray, max_time: N::ONE, solid: false }, false);
+    (N::tables().each_hit)(composite, &question, &mut |_| {
+        is_hit = true;
+        -N::ONE
+    });
+    if is_hit { old } else { center }
 }
 
 /// What is asked of a pair.
 struct Query<'a, N: Real, const D: usize> {
-    pair: &'a Pair<'a, N, D>,
+    between: &'a Between<'a, N, D>,
     is_self: bool,
     reference: &'a Reference<N, D>,
     request: &'a ManifoldRequest<N>,
 }
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// What the parts say, in the frame of the first shape; which of it holds is settled.
+    /// What the parts say; which of it holds is settled.
     fn findings(&self) -> Vec<Finding<N, D>> {
         let request = self.of_parts();
         let reach = request.prediction;
-        let candidates = candidates::candidates(self.pair, self.is_self, reach);
-        let scene = Scene::new(self.pair, &candidates::middle(self.pair, &candidates));
+        let candidates = candidates::candidates(self.between, self.is_self, reach);
+        let scene = Scene::new(self.between);
         let one = |&parts| facts::finding(&scene, parts, self.reference, &request);
         let mut findings: Vec<_> = candidates.iter().filter_map(one).collect();
         resolve::resolve(&scene, &mut findings);
-        for point in findings.iter_mut().flat_map(|finding| &mut finding.patch.points) {
-            point.raw.point1 += scene.first.origin;
-        }
         findings
     }
 
     /// What is asked of two parts: of points that turning brings near, the nearest point may lie on
     /// another part, so that is looked at when all are known.
     fn of_parts(&self) -> ManifoldRequest<N> {
-        let map = Geometry(self.pair.first).as_support_map();
+        let map = Geometry(self.between.pair.first).as_support_map();
         let size = map.map_or(N::ZERO, |map| N::TWO * (map.reach() + map.rounding()));
         let ManifoldRequest { prediction, sine, .. } = *self.request;
         let prediction = prediction + sine * size;
@@ -141,60 +146,44 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 }
 
-/// The contact of two placed shapes in the world frame, `None` beyond `limit`: the deepest of what
-/// manifolds are made of.
+/// The contact of two placed shapes in the world frame, `None` beyond `limit`: of composites the
+/// deepest of what their manifolds are made of.
 pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let is_composite = |placed: &Placed<'_, N, D>| placed.shape.as_composite().is_some();
-    if !is_composite(placed1) && !is_composite(placed2) {
-        return (N::tables().separation_in_world)(placed1, placed2, limit);
+    let nearest = (N::tables().separation_in_world)(placed1, placed2, limit)?;
+    let (between, is_swapped) = Between::canonical(placed1, placed2);
+    if let [None, None] = between.composites() {
+        return Some(nearest);
     }
-    let (pair, is_swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
-    if !pair.pose12.is_finite() {
-        return None;
-    }
-    let found = deepest(&pair, limit)?;
     let first = if is_swapped { &placed2.pose } else { &placed1.pose };
-    Some(in_world(&found, first, is_swapped))
+    let found = deepest(&between, nearest.distance, limit)?;
+    Some(placed(&found, first, is_swapped))
 }
 
-fn in_world<N: Real, const D: usize>(
-    found: &Separation<N, D>,
-    first: &Pose<N, D>,
-    is_swapped: bool,
-) -> Separation<N, D> {
-    let distance = found.distance;
-    let (normal, point1, point2) =
-        (first.vector(&found.normal), first.point(&found.point1), first.point(&found.point2));
-    if is_swapped {
-        return Separation { distance, normal: -normal, point1: point2, point2: point1 };
-    }
-    Separation { distance, normal, point1, point2 }
-}
-
-/// The deepest contact of a pair. Of shapes that are apart only the parts as near as the nearest
-/// are looked at, unless that is one that cannot be touched.
+/// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
+/// near as the nearest are looked at, unless that is one that cannot be touched.
 fn deepest<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
+    between: &Between<'_, N, D>,
+    distance: N,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let nearest = (N::tables().separation)(pair, limit)?;
-    let reach = max(nearest.distance, N::ZERO);
+    let reach = max(distance, N::ZERO);
     let reach = reach + N::lit(64.0) * N::EPSILON * reach;
-    let found = deepest_within(pair, reach).or_else(|| deepest_within(pair, max(limit, N::ZERO)));
+    let found =
+        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)));
     found.filter(|found| found.distance <= limit)
 }
 
 fn deepest_within<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
+    between: &Between<'_, N, D>,
     reach: N,
 ) -> Option<Separation<N, D>> {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
-    let reference = middle_of_first(pair);
-    let query = Query { pair, is_self: false, reference: &reference, request: &request };
+    let reference = middle_of_first(between);
+    let query = Query { between, is_self: false, reference: &reference, request: &request };
     let findings = query.findings();
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
     let points = kept.flat_map(|finding| {
@@ -208,19 +197,16 @@ fn deepest_within<N: Space<D>, const D: usize>(
     })
 }
 
-/// How far two shapes are apart, or the parts of one that do not hang together; negative where they
-/// overlap, `None` beyond `limit`.
-pub(crate) fn distance_within<N: Space<D>, const D: usize>(
+/// How far those parts of one composite are apart that do not hang together; negative where they
+/// overlap, `None` beyond `limit`. The pair is that of the shape with itself.
+pub(crate) fn own_distance<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    is_self: bool,
     limit: N,
 ) -> Option<N> {
-    if !is_self {
-        return (N::tables().separation)(pair, limit).map(|found| found.distance);
-    }
-    let candidates = candidates::candidates(pair, true, max(limit, N::ZERO));
-    let scene = Scene::new(pair, &candidates::middle(pair, &candidates));
+    let between = Between::of_pair(pair);
+    let candidates = candidates::candidates(&between, true, max(limit, N::ZERO));
+    let scene = Scene::new(&between);
     let one = |&parts| (N::tables().separation)(&scene.pair(parts).pair(), limit);
     let distances = candidates.iter().filter_map(one).map(|found| found.distance);
-    distances.reduce(crate::math::min)
+    distances.reduce(min)
 }

@@ -2,32 +2,22 @@
 
 use smallvec::SmallVec;
 
+use super::super::between::{Between, anchor, recentred};
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::manifold_build::{Patch, PatchPoint, extremes};
 use crate::query::{Pair, RawManifold};
-use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Surface, Triangle};
-
-/// One of the two shapes.
-#[derive(Clone, Copy)]
-pub(super) struct Side<'a, N: Real, const D: usize> {
-    kind: Kind<'a, N, D>,
-    composite: Option<&'a dyn CompositeShape<N, D>>,
-    pub(super) surface: Option<&'a dyn Surface<N, D>>,
-    /// The point of the shape's frame that is computed from: near the other shape, so that nothing
-    /// is lost by being far from the shape's own origin.
-    pub(super) origin: Vector<N, D>,
-}
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
 /// Two shapes, one of them a composite at least.
 pub(super) struct Scene<'a, N: Real, const D: usize> {
-    pub(super) first: Side<'a, N, D>,
-    pub(super) second: Side<'a, N, D>,
-    /// The second's frame in the first's, both moved to their origins.
-    pub(super) pose12: Pose<N, D>,
+    between: &'a Between<'a, N, D>,
+    /// What holds the parts of each together.
+    pub(super) surfaces: [Option<&'a dyn Surface<N, D>>; 2],
 }
 
-/// A part of one of the shapes, in that shape's moved frame; a convex shape is its own part.
+/// A part of one of the shapes; a convex shape is its own part.
 struct Body<'a, N: Real, const D: usize> {
+    /// Where it lies to the axes of its shape put through the point that it is seen from.
     pose: Pose<N, D>,
     solid: Solid<'a, N, D>,
 }
@@ -38,57 +28,38 @@ enum Solid<'a, N: Real, const D: usize> {
 }
 
 /// A part of the first shape and one of the second, in the order of their kinds.
+///
+/// Both are seen from one point close to them, as [`Between::parts`] does; so this is the same
+/// pair, up to the order.
 pub(super) struct PartPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [Body<'a, N, D>; 2],
     pose12: Pose<N, D>,
-    /// The frame of the first of the bodies, in the moved frame of the first shape.
-    frame: Pose<N, D>,
     /// The first of the bodies is the part of the second shape.
     is_turned: bool,
-}
-
-impl<'a, N: Space<D>, const D: usize> Side<'a, N, D> {
-    pub(super) fn new(kind: Kind<'a, N, D>, origin: Vector<N, D>) -> Self {
-        let composite = Geometry(kind).as_composite();
-        let surface = composite.and_then(CompositeShape::surface);
-        Self { kind, composite, surface, origin }
-    }
-
-    fn body(&self, part: u32) -> Body<'a, N, D> {
-        match self.composite {
-            None => Body { pose: Pose::identity(), solid: Solid::Whole(self.kind) },
-            Some(composite) => moved(&composite.part(part), &self.origin),
-        }
-    }
+    /// The frame of the first of the bodies, in that of the first shape put through the point.
+    frame: Pose<N, D>,
+    /// The rotation of the second shape's frame in that of the first.
+    turn: Pose<N, D>,
+    /// The point in the frames of the two shapes.
+    origins: [Point<N, D>; 2],
 }
 
 /// A part seen from another origin. Corners are moved rather than the pose, so that solids that share
 /// corners still do.
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
-    origin: &Vector<N, D>,
+    origin: &Point<N, D>,
 ) -> Body<'a, N, D> {
-    let local = part.pose.inverse_point(&Point::from(*origin)).coords;
-    let corners = match part.solid {
-        PartSolid::Triangle(triangle) => {
-            let [a, b, c] = triangle.corners().map(|corner| corner - local);
-            Triangle::try_new(a, b, c).ok().map(PartSolid::Triangle)
-        }
-        PartSolid::Segment(segment) => {
-            let moved = Segment::try_new(segment.a() - local, segment.b() - local);
-            moved.ok().map(PartSolid::Segment)
-        }
-        PartSolid::Shape(_) => None,
-    };
+    let local = part.pose.inverse_point(origin).coords;
     let Pose { rotation, translation } = part.pose;
-    match corners {
+    match recentred(&part.solid, &local) {
         Some(solid) => {
-            let translation = rotation * local + translation - origin;
+            let translation = Vector::<N, D>::zeros();
             Body { pose: Pose { rotation, translation }, solid: Solid::Part(solid) }
         }
         None => {
-            let translation = translation - origin;
+            let translation = translation - origin.coords;
             Body { pose: Pose { rotation, translation }, solid: Solid::Part(part.solid) }
         }
     }
@@ -110,42 +81,51 @@ impl<N: Real, const D: usize> Body<'_, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
-    /// The shapes of a pair, seen from a point of the first shape's frame; a convex shape stays in
-    /// its own.
-    pub(super) fn new(pair: &Pair<'a, N, D>, near: &Point<N, D>) -> Self {
-        let origin2 = pair.pose12.inverse_point(near).coords;
-        let is_composite = Geometry(pair.first).as_composite().is_some();
-        let origin1 = if is_composite { near.coords } else { Vector::zeros() };
-        let Pose { rotation, translation } = pair.pose12;
-        Self {
-            first: Side::new(pair.first, origin1),
-            second: Side::new(pair.second, origin2),
-            pose12: Pose { rotation, translation: rotation * origin2 + translation - origin1 },
-        }
+    pub(super) fn new(between: &'a Between<'a, N, D>) -> Self {
+        let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
+        Self { between, surfaces: between.composites().map(surface) }
     }
 
     /// Two parts.
     pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
-        let (body1, body2) = (self.first.body(part1), self.second.body(part2));
-        let seen2 = self.pose12.compose(&body2.pose);
+        let [composite1, composite2] = self.between.composites();
+        let piece1 = composite1.map(|composite| composite.part(part1));
+        let piece2 = composite2.map(|composite| composite.part(part2));
+        let pose21 = &self.between.pose21;
+        let origins = match &piece1 {
+            None => [Point::origin(), Point::from(pose21.translation)],
+            Some(piece1) => {
+                let origin1 = anchor(piece1);
+                [origin1, pose21.point(&origin1)]
+            }
+        };
+        let body = |kind, piece: Option<Part<'a, N, D>>, origin| match piece {
+            None => Body { pose: Pose::identity(), solid: Solid::Whole(kind) },
+            Some(piece) => moved(&piece, origin),
+        };
+        let whole = &self.between.pair;
+        let bodies =
+            [body(whole.first, piece1, &origins[0]), body(whole.second, piece2, &origins[1])];
+        PartPair::new(bodies, Pose { rotation: whole.pose12.rotation, ..Pose::identity() }, origins)
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
+    fn new(
+        [body1, body2]: [Body<'a, N, D>; 2],
+        turn: Pose<N, D>,
+        origins: [Point<N, D>; 2],
+    ) -> Self {
         let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();
         let is_turned = kind(&body1) > kind(&body2);
-        if is_turned {
-            let pose12 = seen2.inverse().compose(&body1.pose);
-            return PartPair { bodies: [body2, body1], pose12, frame: seen2, is_turned };
-        }
-        let (pose12, frame) = (body1.pose.inverse().compose(&seen2), body1.pose);
-        PartPair { bodies: [body1, body2], pose12, frame, is_turned }
-    }
-
-    /// A point of the first's moved frame, in the frame of the second composite.
-    pub(super) fn in_second(&self, point: &Point<N, D>) -> Point<N, D> {
-        self.pose12.inverse_point(point) + self.second.origin
-    }
-
-    /// A point of the second's moved frame, in the frame of the first composite.
-    pub(super) fn in_first(&self, point: &Point<N, D>) -> Point<N, D> {
-        self.pose12.point(point) + self.first.origin
+        let (frame1, frame2) = (body1.pose, turn.compose(&body2.pose));
+        let (bodies, frame, other) = if is_turned {
+            ([body2, body1], frame2, frame1)
+        } else {
+            ([body1, body2], frame1, frame2)
+        };
+        let pose12 = Pose::relative(&frame, &other);
+        Self { bodies, pose12, is_turned, frame, turn, origins }
     }
 }
 
@@ -156,11 +136,13 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         Pair { first: first.kind(), second: second.kind(), pose12: self.pose12 }
     }
 
-    /// Points well inside the part of the first shape and that of the second, each in its shape's
-    /// moved frame; `None` of half-spaces.
-    pub(super) fn centers(&self) -> [Option<Point<N, D>>; 2] {
-        let [a, b] = &self.bodies;
-        if self.is_turned { [b.center(), a.center()] } else { [a.center(), b.center()] }
+    /// Points well inside the part of the first shape and that of the second, each as seen by the
+    /// first shape and by the second; `None` if one is a half-space.
+    pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
+        let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
+        let [origin1, origin2] = self.origins.map(|origin| origin.coords);
+        let [in1, in2] = [self.turn.inverse_point(&center1), self.turn.point(&center2)];
+        Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
     /// Lengths below this are rounding errors of the pair.
@@ -176,6 +158,16 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
     /// Something given for the first shape and the second, in the order of the kinds, or back.
     pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
         if self.is_turned { [b, a] } else { [a, b] }
+    }
+
+    /// A direction in the second shape's frame, in the first's.
+    pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.turn.vector(direction)
+    }
+
+    /// A direction in the first shape's frame, in the second's.
+    pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.turn.inverse_vector(direction)
     }
 
     /// A direction from the first body to the second, as one from the first shape to the second.
@@ -196,16 +188,16 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         extremes(&self.pair(), &self.inward(normal)).map(|found| found.distance)
     }
 
-    /// A manifold of the bodies as one of the shapes, in the first shape's moved frame.
+    /// A manifold of the bodies as one of the shapes, in the frame of the first.
     pub(super) fn patch(&self, raw: &RawManifold<N, D>, parts: [u32; 2]) -> Patch<N, D> {
         let mut points = SmallVec::new();
         for point in &raw.points {
-            let mut raw_point = *point;
-            let foot = if self.is_turned { raw.normal * point.distance } else { Vector::zeros() };
-            raw_point.point1 = self.frame.point(&(point.point1 + foot));
-            [raw_point.feature1, raw_point.feature2] =
-                self.turned([point.feature1, point.feature2]);
-            points.push(PatchPoint { raw: raw_point, parts });
+            let mut placed = *point;
+            let across = if self.is_turned { point.distance } else { N::ZERO };
+            let foot = self.frame.point(&(point.point1 + raw.normal * across));
+            placed.point1 = self.origins[0] + foot.coords;
+            [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
+            points.push(PatchPoint { raw: placed, parts });
         }
         Patch { normal: self.outward(&raw.normal), points }
     }
