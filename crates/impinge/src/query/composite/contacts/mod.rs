@@ -19,10 +19,11 @@ mod view;
 use self::facts::{Finding, Reference, Standing};
 use self::scene::Scene;
 use super::between::Between;
+use super::bounds::aabb_of;
 use super::ray::RayQuestion;
 use crate::bounding_volume::Ray;
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector, max, min};
+use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, merge};
 use crate::query::pair::Placed;
 use crate::query::separation::placed;
@@ -32,6 +33,10 @@ use crate::shape::Geometry;
 /// So many points of two parts are kept before they are merged with those of others: all that two
 /// facets of usual solids have.
 const PART_POINTS: usize = 16;
+
+/// Parts that are farther than the nearest by no more than this part of its distance are looked at
+/// too.
+const NEARLY: f64 = 1.0 / 64.0;
 
 /// The contacts of two shapes of which one at least is a composite, kept from update to update; in
 /// the frame of the first.
@@ -170,11 +175,22 @@ fn deepest<N: Space<D>, const D: usize>(
     distance: N,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let reach = max(distance, N::ZERO);
-    let reach = reach + N::lit(64.0) * N::EPSILON * reach;
+    // Along the normal of its face a part may be a little farther than it is.
+    let near = max(distance, N::ZERO);
+    let reach = near + near * N::lit(NEARLY) + rounding(between);
     let found =
         deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)));
     found.filter(|found| found.distance <= limit)
+}
+
+/// Lengths below this are rounding errors of the pair.
+fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
+    let size = |kind| {
+        let aabb = aabb_of(kind, &Pose::identity());
+        if aabb.is_bounded() { aabb.half_extents().norm() } else { N::ZERO }
+    };
+    let sizes = size(between.pair.first) + size(between.pair.second);
+    N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
 }
 
 fn deepest_within<N: Space<D>, const D: usize>(
