@@ -28,7 +28,7 @@ use crate::query::manifold_build::{Merging, Patch, merge};
 use crate::query::pair::Placed;
 use crate::query::separation::placed;
 use crate::query::{ManifoldRequest, Pair, PairIds};
-use crate::shape::Geometry;
+use crate::shape::{Geometry, Kind};
 
 /// So many points of two parts are kept before they are merged with those of others: all that two
 /// facets of usual solids have.
@@ -185,7 +185,7 @@ fn deepest<N: Space<D>, const D: usize>(
 
 /// Lengths below this are rounding errors of the pair.
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
-    let size = |kind| {
+    let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());
         if aabb.is_bounded() { aabb.half_extents().norm() } else { N::ZERO }
     };
