@@ -22,7 +22,6 @@ mod triangle2;
 mod triangle3;
 mod volume;
 
-pub(super) use rounded::feature_below;
 pub(super) use segment::{feature_at, nearest as nearest_on_segment};
 pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
