@@ -135,7 +135,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, PartPath,
-        PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// A box.

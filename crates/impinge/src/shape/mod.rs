@@ -33,6 +33,8 @@ mod rounded;
 mod segment;
 mod support_map;
 mod tapered_capsule;
+mod tetrahedron;
+mod tetrahedron_flat;
 mod tilt;
 mod triangle;
 mod triangle_feature;
@@ -59,7 +61,9 @@ pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;
 pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, SupportMap};
+pub(crate) use tapered_capsule::Taper;
 pub use tapered_capsule::TaperedCapsule;
+pub use tetrahedron::Tetrahedron;
 pub(crate) use tilt::FACING_SINE_SQUARED;
 pub use triangle::Triangle;
 
