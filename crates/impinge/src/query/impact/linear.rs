@@ -47,9 +47,10 @@ impl<N: Real, const D: usize> Path<N, D> {
 
     /// Whether a contact at the start counts: one that gets deeper does; one that is neither deep nor
     /// gets deeper, or gets less deep, does not. What overlaps without bound is never parted.
-    fn counts_at_start(&self, found: &Separation<N, D>, deep: bool) -> bool {
-        let (closing, noise) = (self.closing(&found.normal), self.noise());
-        closing > noise || (deep && (closing >= -noise || found.distance == -N::INFINITY))
+    fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
+        let (closing, noise) = (self.closing(normal), self.noise());
+        let deep = gap < -tolerance;
+        closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
     }
 }
 
@@ -73,7 +74,7 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     }
     let gap = found.distance - path.target;
     if gap <= tolerance {
-        let counts = path.counts_at_start(&found, gap < -tolerance);
+        let counts = path.counts_at_start(&found.normal, gap, tolerance);
         return counts.then_some(Arrival {
             along: N::ZERO,
             separation: found,

@@ -64,7 +64,7 @@ impl<N: Real> HeightField<N, 3> {
         let [start, end] = [a, b].map(|[row, column]| self.grid.point(row, column));
         let mut seam = Seam::of_faces(self.front_of(&own), normal);
         let mut add = |corners: &[GridPoint; 3], [row, column]: GridPoint| {
-            if let Some(inward) = inward_of(&start, &end, &self.grid.point(row, column)) {
+            if let Some(inward) = inward_of(&[start, end, self.grid.point(row, column)]) {
                 seam.add_face(inward.dot(normal), &self.front_of(corners));
             }
         };

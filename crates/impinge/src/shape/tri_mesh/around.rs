@@ -93,25 +93,25 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.
     pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
         let corners = self.corners(triangle);
-        let [a, b, c] = array::from_fn(|turn| corners[(side + turn) % 3]);
-        inward_of(&a, &b, &c)
+        inward_of(&array::from_fn(|turn| corners[(side + turn) % 3]))
     }
 }
 
-/// Unit, perpendicular to the side from `a` to `b`, towards `c`; `None` without area.
+/// Unit, in the plane of a triangle, from the side between its first two corners towards the third;
+/// `None` without area.
 pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
-    a: &Point<N, D>,
-    b: &Point<N, D>,
-    c: &Point<N, D>,
+    corners: &[Point<N, D>; 3],
 ) -> Option<Vector<N, D>> {
+    let [a, b, c] = corners;
     let (along, length) = unit(&(b - a))?;
     let (from_a, from_b) = (length_of(&(c - a)), length_of(&(c - b)));
     let rest = if from_a < from_b { c - a } else { c - b };
     let without = |v: &Vector<N, D>| v - along * along.dot(v);
     let (inward, height) = unit(&without(&rest))?;
-    // The height over the longest side is the least, and says whether there is an area.
+    // That of the longest side is the least, and says whether there is an area.
     let longest = max(length, max(from_a, from_b));
-    let has_area = height * (length / longest) > noise(&[*a, *b, *c], longest);
+    let least = height * (length / longest);
+    let has_area = least > noise(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
