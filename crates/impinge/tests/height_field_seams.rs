@@ -167,6 +167,22 @@ fn compare<N: Real, const D: usize>(
     admits
 }
 
+/// A part, by its number, of a surface.
+type PartOf<'a, N, const D: usize> = (&'a dyn Surface<N, D>, u32);
+
+/// All features of a triangle; how many admit the normal, and how many do not.
+fn compare_features<N: Real>(
+    (side1, side2): (PartOf<'_, N, 3>, PartOf<'_, N, 3>),
+    normal: &Vector<N, 3>,
+) -> (usize, usize) {
+    let features =
+        (0..3).flat_map(|k| [FeatureId::Vertex(k), FeatureId::Edge(k), FeatureId::Face(0)]);
+    let answers: Vec<_> =
+        features.map(|feature| compare(side1, side2, (feature, feature), normal)).collect();
+    let yes = answers.iter().filter(|admits| **admits).count();
+    (yes, answers.len() - yes)
+}
+
 fn check_against_meshes<N: Real>() {
     let mut random = Random::new(81);
     let (mut admitted, mut refused) = (0, 0);
@@ -194,15 +210,10 @@ fn check_against_meshes<N: Real>() {
                 let other = surface1.snapped(other, &snapped).expect("an area");
                 let between = (snapped + other).try_normalize(N::lit(1e-3)).unwrap_or(normal);
                 for normal in [normal, snapped, other, between] {
-                    for k in 0..3 {
-                        for feature in
-                            [FeatureId::Vertex(k), FeatureId::Edge(k), FeatureId::Face(0)]
-                        {
-                            let sides = ((surface1, part), (surface2, index));
-                            let admits = compare(sides.0, sides.1, (feature, feature), &normal);
-                            if admits { admitted += 1 } else { refused += 1 }
-                        }
-                    }
+                    let sides = ((surface1, part), (surface2, index));
+                    let (yes, no) = compare_features(sides, &normal);
+                    admitted += yes;
+                    refused += no;
                 }
             }
         }
@@ -244,19 +255,16 @@ fn check_against_polylines<N: Real>() {
                 };
                 let snapped = surface1.snapped(part, &normal).expect("a length");
                 for normal in [normal, snapped] {
-                    for k in [0, 1] {
+                    let vertex = |k: u32| {
                         let same = if is_turned { 1 - k } else { k };
-                        for features in [
-                            (FeatureId::Vertex(k), FeatureId::Vertex(same)),
-                            (FeatureId::Edge(0), FeatureId::Edge(0)),
-                        ] {
-                            let what = (
-                                surface1.admits(part, features.0, &normal),
-                                surface2.admits(index, features.1, &normal),
-                            );
-                            assert_eq!(what.0, what.1, "part {part}, {features:?}, {normal}");
-                            if what.0 { admitted += 1 } else { refused += 1 }
-                        }
+                        (FeatureId::Vertex(k), FeatureId::Vertex(same))
+                    };
+                    for features in [vertex(0), vertex(1), (FeatureId::Edge(0), FeatureId::Edge(0))]
+                    {
+                        let admits = surface1.admits(part, features.0, &normal);
+                        let what = format!("part {part}, {features:?}, {normal}");
+                        assert_eq!(admits, surface2.admits(index, features.1, &normal), "{what}");
+                        if admits { admitted += 1 } else { refused += 1 }
                     }
                     let (own, other) =
                         (surface1.snapped(part, &normal), surface2.snapped(index, &normal));
