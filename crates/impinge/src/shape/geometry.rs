@@ -2,8 +2,10 @@
 
 use core::fmt;
 
+use super::rounded::RoundedSolid;
 use super::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, SupportMap, Triangle,
+    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
+    SupportMap, TaperedCapsule, Triangle,
 };
 use crate::math::Real;
 
@@ -27,10 +29,18 @@ pub enum ShapeKind {
     Cylinder,
     /// [`Cone`].
     Cone,
+    /// [`Ellipsoid`]: an ellipse in the plane.
+    Ellipsoid,
+    /// [`TaperedCapsule`].
+    TaperedCapsule,
+    /// A convex solid swollen by a radius: [`Rounded`](super::Rounded).
+    Rounded,
     /// A convex solid known by its support points only.
     SupportMap,
     /// [`Plane`]: the half-space.
     Plane,
+    /// A union of solids: [`CompositeShape`].
+    Composite,
 }
 
 /// A shape as queries see it. Users get one from a built-in shape or from [`Self::support_map`].
@@ -49,14 +59,23 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Polytope(&'a Polytope<N, D>),
     Cylinder(&'a Cylinder<N>, &'a dyn SupportMap<N, D>),
     Cone(&'a Cone<N>, &'a dyn SupportMap<N, D>),
+    Ellipsoid(&'a Ellipsoid<N, D>),
+    TaperedCapsule(&'a TaperedCapsule<N, D>),
+    Rounded(&'a dyn RoundedSolid<N, D>),
     SupportMap(&'a dyn SupportMap<N, D>),
     Plane(&'a Plane<N, D>),
+    Composite(&'a dyn CompositeShape<N, D>),
 }
 
 impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
     /// A convex solid of the user's own.
     pub fn support_map(map: &'a dyn SupportMap<N, D>) -> Self {
         Self(Kind::SupportMap(map))
+    }
+
+    /// A composite of the user's own.
+    pub fn composite(composite: &'a dyn CompositeShape<N, D>) -> Self {
+        Self(Kind::Composite(composite))
     }
 
     /// Which kind it is.
@@ -71,12 +90,17 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Polytope(_) => ShapeKind::Polytope,
             Kind::Cylinder(..) => ShapeKind::Cylinder,
             Kind::Cone(..) => ShapeKind::Cone,
+            Kind::Ellipsoid(_) => ShapeKind::Ellipsoid,
+            Kind::TaperedCapsule(_) => ShapeKind::TaperedCapsule,
+            Kind::Rounded(_) => ShapeKind::Rounded,
             Kind::SupportMap(_) => ShapeKind::SupportMap,
             Kind::Plane(_) => ShapeKind::Plane,
+            Kind::Composite(_) => ShapeKind::Composite,
         }
     }
 
-    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points.
+    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points, and for a
+    /// composite, which is not convex.
     #[must_use]
     pub fn as_support_map(&self) -> Option<&'a dyn SupportMap<N, D>> {
         Some(match self.0 {
@@ -86,15 +110,27 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Triangle(triangle) => triangle,
             Kind::Cuboid(cuboid) => cuboid,
             Kind::Polytope(polytope) => polytope,
+            Kind::Ellipsoid(ellipsoid) => ellipsoid,
+            Kind::TaperedCapsule(capsule) => capsule,
+            Kind::Rounded(solid) => solid,
             Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => map,
-            Kind::Plane(_) => return None,
+            Kind::Plane(_) | Kind::Composite(_) => return None,
         })
+    }
+
+    /// The parts of a composite; `None` for a convex solid.
+    #[must_use]
+    pub fn as_composite(&self) -> Option<&'a dyn CompositeShape<N, D>> {
+        match self.0 {
+            Kind::Composite(composite) => Some(composite),
+            _ => None,
+        }
     }
 }
 
 impl ShapeKind {
     /// How many kinds there are.
-    pub(crate) const COUNT: usize = Self::Plane as usize + 1;
+    pub(crate) const COUNT: usize = Self::Composite as usize + 1;
 }
 
 impl<N: Real, const D: usize> fmt::Debug for Geometry<'_, N, D> {

@@ -50,7 +50,7 @@ impl<N: Real, const D: usize> Side<N, D> {
 
     fn of_core(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
         let map: &dyn SupportMap<N, D> =
-            Geometry(kind).as_support_map().expect("only half-spaces are no support maps");
+            Geometry(kind).as_support_map().expect("neither a half-space nor a composite");
         let mut feature = Feature::default();
         map.core_feature(&outward, &mut feature);
         Self { rounding: map.rounding(), outward, facing: Facing::Feature(feature) }

@@ -37,7 +37,7 @@ impl<N: Real, const D: usize> Crossing<N, D> {
         let Self { t, normal, feature } = self;
         // Adding to zero, so that minus zero does not come out.
         let toi = N::ZERO + t;
-        toi.is_finite_number().then_some(RayIntersection { toi, normal, feature })
+        toi.is_finite_number().then_some(RayIntersection { toi, normal, feature, part: 0 })
     }
 }
 
@@ -87,6 +87,6 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
         let behind = -self.enter.t < self.leave.t;
         let feature = if behind { self.enter.feature } else { self.leave.feature };
-        Some(RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature })
+        Some(RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 })
     }
 }

@@ -57,7 +57,8 @@ mod tests {
         let aabb = Aabb::new(P::new(1.0, -1.0), P::new(3.0, 1.0));
         let sphere = BoundingSphere::new(P::new(2.0, 0.0), 1.0);
         let ray = Ray::new(P::origin(), V::new(0.5, 0.0));
-        let expected = RayIntersection { toi: 2.0, normal: -V::x(), feature: FeatureId::Face(1) };
+        let expected =
+            RayIntersection { toi: 2.0, normal: -V::x(), feature: FeatureId::Face(1), part: 0 };
         assert_eq!(aabb.toi_and_normal_with_ray(&ray, true), Some(expected), "the left face");
         let expected = RayIntersection { feature: FeatureId::Face(0), ..expected };
         assert_eq!(sphere.toi_and_normal_with_ray(&ray, true), Some(expected), "the left pole");

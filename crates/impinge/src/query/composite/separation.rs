@@ -1,0 +1,154 @@
+//! How far a composite is from another shape: as far as the nearest of its parts.
+
+use super::between::Between;
+use super::bounds::{aabb_of, enclosing, loosened};
+use crate::convex::Separation;
+use crate::math::{Real, Space, max};
+use crate::query::Pair;
+use crate::query::separation::separation as of_convex;
+use crate::shape::{CompositeShape, Geometry};
+
+/// The separation of two parts, in the frame of the first shape, and which parts they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartSeparation<N: Real, const D: usize> {
+    pub(crate) separation: Separation<N, D>,
+    /// The same in the frame of the first part: [`Between::parts`].
+    pub(crate) local: Separation<N, D>,
+    /// The part of the first and of the second; 0 of a solid that is no composite.
+    pub(crate) parts: [u32; 2],
+}
+
+/// Which of the pairs of parts is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// The nearest, or where parts overlap the deepest; of several the first by numbers.
+    Deepest,
+    /// The nearest, or any that touches or overlaps: enough to know the distance.
+    Touching,
+}
+
+/// The entry of the pair table.
+pub(in crate::query) fn separation<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    nearest(pair, limit).map(|found| found.separation)
+}
+
+/// The separation of the two parts that are nearest to each other, or deepest in each other; of
+/// several the first by number.
+pub(crate) fn nearest<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<PartSeparation<N, D>> {
+    nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest)
+}
+
+/// [`nearest`] for shapes of which both relative poses are known.
+///
+/// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
+/// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
+/// number, as long as parts do not all overlap. Half-spaces that do not lie along an axis have no box:
+/// they are held against every part.
+pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    limit: N,
+    wanted: Wanted,
+) -> Option<PartSeparation<N, D>> {
+    let search = Search { between, limit, wanted, best: None };
+    match between.composites() {
+        [None, None] => search.of_convex(),
+        [Some(parts1), None] => search.of_one(1, 0, parts1),
+        [None, Some(parts2)] => search.of_one(0, 0, parts2),
+        [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
+    }
+}
+
+/// The best pair of parts so far.
+struct Search<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    limit: N,
+    wanted: Wanted,
+    best: Option<PartSeparation<N, D>>,
+}
+
+impl<N: Space<D>, const D: usize> Search<'_, N, D> {
+    fn of_convex(mut self) -> Option<PartSeparation<N, D>> {
+        self.hold([0, 0]);
+        self.best
+    }
+
+    /// One convex solid, which is the first or the second, against all parts of the other shape.
+    fn of_one(
+        mut self,
+        which: usize,
+        part: u32,
+        others: &dyn CompositeShape<N, D>,
+    ) -> Option<PartSeparation<N, D>> {
+        self.each_near(which, part, others);
+        self.best
+    }
+
+    /// The parts of the composite with fewer of them, each against all of the other.
+    fn of_many(
+        mut self,
+        parts1: &dyn CompositeShape<N, D>,
+        parts2: &dyn CompositeShape<N, D>,
+    ) -> Option<PartSeparation<N, D>> {
+        let which = usize::from(parts2.num_parts() < parts1.num_parts());
+        let (fewer, more) = if which == 0 { (parts1, parts2) } else { (parts2, parts1) };
+        let pose = [&self.between.pair.pose12, &self.between.pose21][which];
+        let aabb = enclosing(&more.search().bounds().transformed_by(pose), pose);
+        let bound = self.bound();
+        fewer.search().nearest(&aabb, bound, &mut |part, _| {
+            self.each_near(which, part, more);
+            self.bound()
+        });
+        self.best
+    }
+
+    /// Holds one part of one shape against those of the other that are near.
+    fn each_near(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+        let pair = &self.between.pair;
+        let pose = [&self.between.pose21, &pair.pose12][which];
+        let kind = [pair.first, pair.second][which];
+        let aabb = match Geometry(kind).as_composite() {
+            None => aabb_of(kind, pose),
+            Some(own) => {
+                let own = own.part(part);
+                own.solid.as_shape().aabb(&pose.compose(&own.pose))
+            }
+        };
+        let bound = self.bound();
+        others.search().nearest(&enclosing(&aabb, pose), bound, &mut |other, _| {
+            self.hold(if which == 0 { [part, other] } else { [other, part] });
+            self.bound()
+        });
+    }
+
+    /// Holds two parts against each other.
+    fn hold(&mut self, parts: [u32; 2]) {
+        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
+        let placed = self.between.parts(parts);
+        let Some(found) = of_convex(&placed.pair(), reach) else { return };
+        let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
+        if self.best.is_none_or(|best| found.is_before(&best)) {
+            self.best = Some(found);
+        }
+    }
+
+    /// How near boxes must be for their parts to matter; negative if none does any more.
+    fn bound(&self) -> N {
+        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
+        let is_known = self.best.is_some() && reach <= N::ZERO && self.wanted == Wanted::Touching;
+        if is_known { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+    }
+}
+
+impl<N: Real, const D: usize> PartSeparation<N, D> {
+    /// Nearer, or as near and earlier by number.
+    fn is_before(&self, other: &Self) -> bool {
+        let (distance, others) = (self.separation.distance, other.separation.distance);
+        distance < others || (distance == others && self.parts < other.parts)
+    }
+}

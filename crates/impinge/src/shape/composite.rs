@@ -1,0 +1,144 @@
+//! Shapes made of parts: what a composite offers to the queries.
+//!
+//! Parts are numbered from 0, those of nested composites in a row, so that one number names a part
+//! however deep it lies; `path_to_part` on `dyn Shape` spells it out. Algorithms never see
+//! a composite as a whole: they ask for the parts that may matter ([`PartSearch`]) and treat each as
+//! a solid of its own.
+
+use smallvec::SmallVec;
+
+use super::{FeatureId, Geometry, Segment, Shape, Triangle};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector};
+
+/// The way to a part: the index of the child, of its child, … of the part in the last.
+pub type PartPath = SmallVec<[u32; 4]>;
+
+/// A shape that is the union of simple solids, its parts.
+///
+/// Implement it, and [`Shape::geometry`] by [`Geometry::composite`], for a composite of your own: keep
+/// a [`BoxTree`](crate::partitioning::BoxTree) over the boxes of the parts and give it as the search.
+/// All is in the frame of the composite.
+pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
+    /// How many parts there are; they are numbered from 0.
+    fn num_parts(&self) -> u32;
+
+    /// One part: a solid, itself not a composite, and where it lies.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    fn part(&self, part: u32) -> Part<'_, N, D>;
+
+    /// Where to look for parts.
+    fn search(&self) -> &dyn PartSearch<N, D>;
+
+    /// What holds the parts together, where they are pieces of one surface: so that the seams
+    /// between them are not taken for edges. `None` for solids side by side.
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        None
+    }
+
+    /// Two different parts share a corner, so that their touching says nothing: such parts are left
+    /// out when the shape is tested against itself.
+    fn are_adjacent(&self, _part1: u32, _part2: u32) -> bool {
+        false
+    }
+
+    /// Appends the way to a part.
+    fn extend_path(&self, part: u32, path: &mut PartPath) {
+        path.push(part);
+    }
+}
+
+/// One of the solids that a composite is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a, N: Real, const D: usize> {
+    /// Where it lies in the frame of the composite.
+    pub pose: Pose<N, D>,
+    /// What it is, in its own frame.
+    pub solid: PartSolid<'a, N, D>,
+}
+
+/// What a part is: made on the fly, or kept by the composite.
+#[derive(Clone, Copy, Debug)]
+pub enum PartSolid<'a, N: Real, const D: usize> {
+    /// A triangle.
+    Triangle(Triangle<N, D>),
+    /// A segment.
+    Segment(Segment<N, D>),
+    /// Any solid that is not a composite.
+    Shape(&'a dyn Shape<N, D>),
+}
+
+impl<N: Real, const D: usize> PartSolid<'_, N, D> {
+    /// The part as a shape.
+    #[must_use]
+    pub fn as_shape(&self) -> &dyn Shape<N, D> {
+        match self {
+            Self::Triangle(triangle) => triangle,
+            Self::Segment(segment) => segment,
+            Self::Shape(shape) => *shape,
+        }
+    }
+
+    /// How queries see the part.
+    #[must_use]
+    pub fn geometry(&self) -> Geometry<'_, N, D> {
+        self.as_shape().geometry()
+    }
+}
+
+/// Finding the parts of a composite by their boxes.
+///
+/// Parts are proposed by their boxes, which may be larger than they are: whoever asks looks at each.
+/// Each part is proposed at most once; near ones first is better, but no order is promised. What is
+/// not finite, except for the faces of an unbounded box, is near nothing.
+pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
+    /// A box around all parts, as small as is cheap: it is asked for in every query.
+    ///
+    /// The default is unbounded, which is always right; two composites are then held against each
+    /// other part by part of the smaller one, however far apart they are.
+    fn bounds(&self) -> Aabb<N, D> {
+        Aabb::unbounded()
+    }
+
+    /// Calls `visit` with each part whose box meets or touches `aabb`.
+    fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32));
+
+    /// Calls `visit` with each part whose box is at most `limit` from `aabb`, and a lower bound of
+    /// that distance. `visit` returns the new limit, which never grows: the distance of the nearest
+    /// part so far, to find the nearest. A negative one ends the search.
+    fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N);
+
+    /// Calls `visit` with each part whose box is met, at or before the time `limit`, by `aabb` moving
+    /// with `velocity`, and a lower bound of the time; as [`Self::nearest`]. A ray is a box of no
+    /// extent.
+    fn cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    );
+}
+
+/// How the parts of one surface hang together: what contacts need to slide over seams.
+///
+/// Seen one by one, triangles of a floor have edges that a sliding box would catch on. A surface
+/// knows which normals its parts have as pieces of the whole. All is in the frame of the composite.
+pub trait Surface<N: Real, const D: usize>: Send + Sync {
+    /// The unit vector `normal`, away from the part, is one that the whole surface has at the
+    /// feature of the part: the face's own; at a seam where the surface bends outwards, one between
+    /// those of the two faces; at a seam that is flat or bends inwards, none but the faces' own. With
+    /// a tolerance for rounding.
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
+
+    /// The normal that the whole surface has on the part and that stands for `normal`, which it does
+    /// not admit: that of the face, on the side that `normal` points to for a surface with two
+    /// sides. `None` if the part has no surface of its own, as a piece inside a filled shape.
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
+
+    /// The part can touch a solid whose middle is `center`: false on the back of a surface with one
+    /// side.
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
+}

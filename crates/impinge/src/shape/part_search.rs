@@ -1,0 +1,35 @@
+//! The tree over boxes as the search of a composite.
+
+use super::PartSearch;
+use crate::bounding_volume::Aabb;
+use crate::math::{Space, Vector};
+use crate::partitioning::BoxTree;
+
+impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        BoxTree::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
+    }
+
+    fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
+        self.visit_overlapping(aabb, |index| visit(number(index)));
+    }
+
+    fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
+        self.visit_nearest_to_box(aabb, limit, |index, apart| visit(number(index), apart));
+    }
+
+    fn cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.visit_cast(aabb, velocity, limit, |index, enter| visit(number(index), enter));
+    }
+}
+
+/// A tree numbers its boxes with 32 bits.
+fn number(index: usize) -> u32 {
+    u32::try_from(index).expect("a tree has fewer than 2^32 boxes")
+}
