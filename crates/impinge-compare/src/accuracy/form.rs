@@ -66,6 +66,9 @@ pub enum Kind {
     Convex,
     Cylinder,
     Cone,
+    Ellipsoid,
+    Tapered,
+    RoundCuboid,
     HalfSpace,
 }
 
@@ -77,6 +80,9 @@ impl Kind {
         Self::Segment,
         Self::Triangle,
         Self::Convex,
+        Self::Ellipsoid,
+        Self::Tapered,
+        Self::RoundCuboid,
         Self::HalfSpace,
     ];
     pub const SPACE: &[Self] = &[
@@ -88,6 +94,9 @@ impl Kind {
         Self::Convex,
         Self::Cylinder,
         Self::Cone,
+        Self::Ellipsoid,
+        Self::Tapered,
+        Self::RoundCuboid,
         Self::HalfSpace,
     ];
 
@@ -101,6 +110,9 @@ impl Kind {
             Self::Convex => "convex",
             Self::Cylinder => "cylinder",
             Self::Cone => "cone",
+            Self::Ellipsoid => "ellipsoid",
+            Self::Tapered => "tapered capsule",
+            Self::RoundCuboid => "round cuboid",
             Self::HalfSpace => "half-space",
         }
     }
@@ -118,6 +130,11 @@ impl Kind {
             Self::Convex => Form::Convex(around(random, scalar)),
             Self::Cylinder => Form::Cylinder { half_height, radius },
             Self::Cone => Form::Cone { half_height, radius },
+            Self::Ellipsoid => Form::Ellipsoid { half_axes: std::array::from_fn(|_| size()) },
+            Self::Tapered => Form::Tapered { half_height, radii: [radius, size()] },
+            Self::RoundCuboid => {
+                Form::RoundCuboid { half_extents: std::array::from_fn(|_| size()), radius }
+            }
             Self::HalfSpace => Form::HalfSpace { normal: scalar.unit(|| random.unit_vector()) },
         }
     }
@@ -151,7 +168,7 @@ fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
 /// Corners on an ellipsoid: none is inside the hull of the others.
 fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> {
     let axes: [f64; D] = std::array::from_fn(|_| random.magnitude(0.2, 3));
-    let count = if D == 2 { 5 + random.below(4) } else { 6 + random.below(7) };
+    let count = if D == 2 { 3 + random.below(6) } else { 4 + random.below(9) };
     let mut points: Vec<[f64; D]> = Vec::new();
     while points.len() < count {
         let direction: [f64; D] = random.unit_vector();
@@ -175,6 +192,10 @@ pub enum Form<const D: usize> {
     Convex(Vec<[f64; D]>),
     Cylinder { half_height: f64, radius: f64 },
     Cone { half_height: f64, radius: f64 },
+    Ellipsoid { half_axes: [f64; D] },
+    /// A ball at minus the half height along the second axis, then one at plus that.
+    Tapered { half_height: f64, radii: [f64; 2] },
+    RoundCuboid { half_extents: [f64; D], radius: f64 },
     HalfSpace { normal: [f64; D] },
 }
 
@@ -185,8 +206,16 @@ impl<const D: usize> Form<D> {
             Self::Ball { radius } => Solid::ball(*radius),
             Self::Cuboid { half_extents } => Solid::round_cuboid(*half_extents, 0.0),
             Self::Capsule { half_height, radius } => {
-                let up: [f64; D] = std::array::from_fn(|i| if i == 1 { *half_height } else { 0.0 });
+                let up = up(*half_height);
                 Solid::capsule(scale(&up, -1.0), up, *radius)
+            }
+            Self::Ellipsoid { half_axes } => Solid::ellipsoid(*half_axes),
+            Self::Tapered { half_height, radii: [low, high] } => {
+                let up = up(*half_height);
+                Solid::tapered_capsule(scale(&up, -1.0), *low, up, *high)
+            }
+            Self::RoundCuboid { half_extents, radius } => {
+                Solid::round_cuboid(*half_extents, *radius)
             }
             Self::Segment([a, b]) => Solid::capsule(*a, *b, 0.0),
             Self::Triangle(corners) => Solid::polytope(corners.to_vec()),
@@ -195,6 +224,10 @@ impl<const D: usize> Form<D> {
             Self::Cylinder { .. } | Self::Cone { .. } => return None,
         })
     }
+}
+
+fn up<const D: usize>(length: f64) -> [f64; D] {
+    std::array::from_fn(|i| if i == 1 { length } else { 0.0 })
 }
 
 /// Where a solid stands.

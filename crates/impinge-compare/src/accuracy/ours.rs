@@ -4,8 +4,8 @@ use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaterni
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::query::{contact, distance};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, ShapeHandle,
-    Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Plane, Rounded,
+    Segment, ShapeHandle, TaperedCapsule, Triangle,
 };
 
 use super::form::{Form, Outcome, Placement, Sample};
@@ -82,6 +82,15 @@ fn common<N: Space<D>, const D: usize>(form: &Form<D>) -> Option<ShapeHandle<N, 
         }
         Form::Segment([a, b]) => ShapeHandle::new(Segment::new(point(a), point(b))),
         Form::Triangle([a, b, c]) => ShapeHandle::new(Triangle::new(point(a), point(b), point(c))),
+        Form::Ellipsoid { half_axes } => ShapeHandle::new(Ellipsoid::new(vector(half_axes))),
+        Form::Tapered { half_height, radii: [low, high] } => {
+            let [half_height, low, high] = [*half_height, *low, *high].map(N::lit);
+            ShapeHandle::new(TaperedCapsule::new(half_height, low, high))
+        }
+        Form::RoundCuboid { half_extents, radius } => {
+            let cuboid = Cuboid::new(vector(half_extents));
+            ShapeHandle::new(Rounded::new(cuboid, N::lit(*radius)))
+        }
         Form::HalfSpace { normal } => {
             ShapeHandle::new(Plane::new(Unit::new_unchecked(vector(normal))))
         }

@@ -22,6 +22,10 @@ fn particular(form: &Form<2>) -> Option<SharedShape> {
             let points: Vec<Vector> = points.iter().map(vector).collect();
             SharedShape::convex_hull(&points)
         }
+        Form::RoundCuboid { half_extents, radius } => {
+            let [x, y] = half_extents.map(|x| x as Real);
+            Some(SharedShape::round_cuboid(x, y, *radius as Real))
+        }
         _ => None,
     }
 }

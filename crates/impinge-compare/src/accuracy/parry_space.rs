@@ -27,6 +27,10 @@ fn particular(form: &Form<3>) -> Option<SharedShape> {
         Form::Cone { half_height, radius } => {
             Some(SharedShape::cone(*half_height as Real, *radius as Real))
         }
+        Form::RoundCuboid { half_extents, radius } => {
+            let [x, y, z] = half_extents.map(|x| x as Real);
+            Some(SharedShape::round_cuboid(x, y, z, *radius as Real))
+        }
         _ => None,
     }
 }

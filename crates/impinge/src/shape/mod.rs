@@ -73,7 +73,7 @@ pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;
 pub use scale::ScaleError;
 pub use segment::Segment;
-pub use support_map::{ConvexPolyhedron, SupportMap};
+pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 pub use tapered_capsule::TaperedCapsule;
 pub(crate) use tilt::FACING_SINE_SQUARED;
 pub(crate) use tri_mesh::MeshTable;
