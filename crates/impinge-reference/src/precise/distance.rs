@@ -6,7 +6,7 @@ use super::polytope::{self, Polytope};
 use super::search::{Bracket, Task};
 use super::solid::{Kind, Placed, Pose, Solid, extent, height, placed, support64};
 use super::topology::Topology;
-use super::vector::{Vector, dot, exact, negate, norm, rounded, sub, unit};
+use super::vector::{Vector, dot, exact, negate, norm, rounded, scale, sub, unit};
 use crate::geometry::vector as plain;
 
 /// What [`signed_distance`] found.
@@ -168,9 +168,12 @@ fn curved<const D: usize>(pair: Pair<'_, D>, size: f64) -> (Polished<D>, f64) {
     if proven.is_some_and(|gap| gap <= 1e-22 * size) {
         return (best, proven.unwrap_or(0.0));
     }
+    if best.miss() > 1e-21 * size {
+        best = coaxed(pair, best, size);
+    }
     let bracket = search(1e-11, &[rounded(&best.normal)]);
-    if bracket.lower > best.height.to_f64() + 1e-14 * size {
-        let other = polished(pair, &bracket.normal);
+    if bracket.lower > best.height.to_f64() + 1e-14 * size || best.miss() > 1e-21 * size {
+        let other = coaxed(pair, polished(pair, &bracket.normal), size);
         best = if is_better(&other, &best) { other } else { best };
     }
     let searched = (Quad::new(bracket.upper) - best.height).to_f64().max(0.0);
@@ -179,7 +182,35 @@ fn curved<const D: usize>(pair: Pair<'_, D>, size: f64) -> (Polished<D>, f64) {
 
 fn polished<const D: usize>(pair: Pair<'_, D>, start: &[f64; D]) -> Polished<D> {
     let start = unit(&exact(start)).unwrap_or_else(|| exact(&plain::axis(0)));
-    polish(pair, &start)
+    polish(pair, &start, 1)
+}
+
+/// Goes on from where Newton's method got stuck.
+///
+/// Near touching the height is all but flat along whole arcs, and a small error throws the normal far
+/// along them. So the second solid is moved away along the normal first; the best normal m of the
+/// moved pair maximises `h(m) + s m·n`, so its height is no less, and there is nothing flat about it
+/// (the proximal point method). After a few of these the original pair is tried again, with more
+/// choices of what is active.
+fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> Polished<D> {
+    const ROUNDS: usize = 6;
+    let mut best = found;
+    for _ in 0..ROUNDS {
+        let by = scale(&best.normal, Quad::new(0.25 * size));
+        let moved: Vec<Placed<D>> = pair.parts2.iter().map(|part| part.moved(&by)).collect();
+        let away = Pair { parts1: pair.parts1, parts2: &moved };
+        let start = polish(away, &best.normal, 4).normal;
+        for breadth in [1, 4] {
+            let next = polish(pair, &start, breadth);
+            if is_better(&next, &best) {
+                best = next;
+            }
+        }
+        if best.miss() <= 1e-24 * size {
+            break;
+        }
+    }
+    best
 }
 
 /// Where the solids are apart: how much longer the way across is than the height.

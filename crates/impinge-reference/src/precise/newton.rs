@@ -42,8 +42,14 @@ pub(super) struct Pair<'a, const D: usize> {
     pub(super) parts2: &'a [Placed<D>],
 }
 
-/// The best normal near `start`.
-pub(super) fn polish<const D: usize>(pair: Pair<'_, D>, start: &Vector<D>) -> Polished<D> {
+/// The best normal near `start`. The active parts are looked for among the `breadth` most extreme of
+/// each solid; more than one is needed where edges or faces are parallel, so that some choices of
+/// active parts have no solution.
+pub(super) fn polish<const D: usize>(
+    pair: Pair<'_, D>,
+    start: &Vector<D>,
+    breadth: usize,
+) -> Polished<D> {
     let mut best = Polished {
         normal: *start,
         height: height(pair.parts1, pair.parts2, start),
@@ -54,15 +60,7 @@ pub(super) fn polish<const D: usize>(pair: Pair<'_, D>, start: &Vector<D>) -> Po
         let order1 = by_extent(pair.parts1, &best.normal);
         let order2 = by_extent(pair.parts2, &negate(&best.normal));
         let around = best.normal;
-        for (count1, count2) in [(1, 1), (2, 1), (1, 2), (3, 1), (2, 2), (1, 3)] {
-            let fits = count1 + count2 <= D + 1;
-            if !fits || count1 > order1.len() || count2 > order2.len() {
-                continue;
-            }
-            let active = Active {
-                parts1: order1[..count1].iter().map(|&i| &pair.parts1[i]).collect(),
-                parts2: order2[..count2].iter().map(|&i| &pair.parts2[i]).collect(),
-            };
+        for active in choices(pair, &order1, &order2, breadth) {
             if let Some(found) = active.polished(pair, &around)
                 && is_better(&found, &best)
             {
@@ -74,6 +72,40 @@ pub(super) fn polish<const D: usize>(pair: Pair<'_, D>, start: &Vector<D>) -> Po
         }
     }
     best
+}
+
+/// The sets of parts that may be active.
+fn choices<'a, const D: usize>(
+    pair: Pair<'a, D>,
+    order1: &[usize],
+    order2: &[usize],
+    breadth: usize,
+) -> Vec<Active<'a, D>> {
+    let mut found = Vec::new();
+    for (count1, count2) in [(1, 1), (2, 1), (1, 2), (3, 1), (2, 2), (1, 3)] {
+        if count1 + count2 > D + 1 {
+            continue;
+        }
+        for chosen1 in subsets(order1, count1, breadth) {
+            for chosen2 in subsets(order2, count2, breadth) {
+                let parts1 = chosen1.iter().map(|&i| &pair.parts1[i]).collect();
+                let parts2 = chosen2.iter().map(|&i| &pair.parts2[i]).collect();
+                found.push(Active { parts1, parts2 });
+            }
+        }
+    }
+    found
+}
+
+/// The choices of `count` among the first `breadth`, or `count` if that is more.
+fn subsets(order: &[usize], count: usize, breadth: usize) -> Vec<Vec<usize>> {
+    let first = &order[..breadth.max(count).min(order.len())];
+    let masks = (0_u32..1 << first.len()).filter(|mask| mask.count_ones() as usize == count);
+    let chosen = |mask: u32| {
+        let places = (0..first.len()).filter(|place| mask >> place & 1 == 1);
+        places.map(|place| first[place]).collect()
+    };
+    masks.map(chosen).collect()
 }
 
 /// The better normal; of equals the one that is proven better.
@@ -92,24 +124,83 @@ pub(super) fn across_disk<const D: usize>(
 ) -> Polished<D> {
     let outward = if is_second { negate(normal) } else { *normal };
     let others = if is_second { pair.parts1 } else { pair.parts2 };
-    let on_other = touched(others, &negate(&outward));
-    let on_disk = disk.nearest_in_disk(&on_other);
-    let (on1, on2) = if is_second { (on_other, on_disk) } else { (on_disk, on_other) };
-    Polished {
-        normal: *normal,
-        height: height(pair.parts1, pair.parts2, normal),
-        point: sub(&on2, &on1),
+    let height = height(pair.parts1, pair.parts2, normal);
+    let touching = touching_points(others, &negate(&outward), &disk.center);
+    let candidate = |on_other: &Vector<D>| {
+        let on_disk = disk.nearest_in_disk(on_other);
+        let (on1, on2) = if is_second { (*on_other, on_disk) } else { (on_disk, *on_other) };
+        Polished { normal: *normal, height, point: sub(&on2, &on1) }
+    };
+    let candidates = common_candidates(&touching, &disk.center, &outward);
+    let mut found = candidate(&touching[0]);
+    for other in candidates.iter().map(candidate) {
+        if other.miss() < found.miss() {
+            found = other;
+        }
     }
+    found
 }
 
-/// The mean of the support points of the parts that reach farthest along a normal.
-fn touched<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vector<D> {
+/// The support points of the parts that reach farthest along a normal; of a disk that lies flat, the
+/// point nearest to `center`.
+fn touching_points<const D: usize>(
+    parts: &[Placed<D>],
+    normal: &Vector<D>,
+    center: &Vector<D>,
+) -> Vec<Vector<D>> {
     let order = by_extent(parts, normal);
     let most = parts[order[0]].extent(normal);
     let slack = 1e-27 * (most.to_f64().abs() + norm(&parts[order[0]].center).to_f64());
     let equal = |i: &&usize| (most - parts[**i].extent(normal)).to_f64() <= slack;
-    let points: Vec<Vector<D>> =
-        order.iter().take_while(equal).map(|&i| parts[i].support(normal)).collect();
+    let point = |&i: &usize| {
+        let part = &parts[i];
+        let flat = !part.is_point() && {
+            let components = part.components(normal);
+            components.iter().all(|x| x.to_f64().abs() <= 1e-25 * norm(&part.columns[0]).to_f64())
+        };
+        if flat { part.nearest_in_disk(center) } else { part.support(normal) }
+    };
+    order.iter().take_while(equal).map(point).collect()
+}
+
+/// Points of a flat polygon of which one lies in a disk with this center, if any does: the nearest to
+/// the center, seen along the normal, on all lines between two corners, and the center itself where
+/// it lies within.
+fn common_candidates<const D: usize>(
+    corners: &[Vector<D>],
+    center: &Vector<D>,
+    normal: &Vector<D>,
+) -> Vec<Vector<D>> {
+    let mut found = corners.to_vec();
+    let away = dot(&sub(&corners[0], center), normal);
+    let projected = add(center, &scale(normal, away));
+    for (i, a) in corners.iter().enumerate() {
+        for (j, b) in corners.iter().enumerate().skip(i + 1) {
+            let along = sub(b, a);
+            let share = dot(&sub(&projected, a), &along) / dot(&along, &along);
+            found.push(add(a, &scale(&along, share.max(Quad::ZERO).min(Quad::ONE))));
+            for c in &corners[j + 1..] {
+                if D == 3 && holds(&[*a, *b, *c], &projected, normal) {
+                    found.push(projected);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Whether a point of the plane of a triangle lies in it.
+fn holds<const D: usize>([a, b, c]: &[Vector<D>; 3], p: &Vector<D>, normal: &Vector<D>) -> bool {
+    let side = |from: &Vector<D>, to: &Vector<D>| {
+        dot(&super::vector::perpendicular(&[sub(to, from), sub(p, from)]), normal)
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    sides.iter().all(|s| *s >= Quad::ZERO) || sides.iter().all(|s| *s <= Quad::ZERO)
+}
+
+/// The mean of the support points of the parts that reach farthest along a normal.
+fn touched<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vector<D> {
+    let points = touching_points(parts, normal, &parts[0].center);
     mixed(&points, &vec![Quad::ONE / Quad::new(points.len() as f64); points.len()])
 }
 

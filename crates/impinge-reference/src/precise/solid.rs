@@ -218,6 +218,12 @@ impl<const D: usize> Placed<D> {
         Self { center64: rounded(&center), center, columns, columns64 }
     }
 
+    /// The same part elsewhere.
+    pub(super) fn moved(&self, by: &Vector<D>) -> Self {
+        let center = add(&self.center, by);
+        Self { center64: rounded(&center), center, ..self.clone() }
+    }
+
     /// The columns' components of a direction: `columnsᵀ · n`.
     pub(super) fn components(&self, normal: &Vector<D>) -> Vec<Quad> {
         self.columns.iter().map(|column| dot(column, normal)).collect()
