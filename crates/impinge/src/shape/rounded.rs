@@ -1,7 +1,7 @@
 //! Any convex solid, swollen by a radius.
 
 use super::error::{or_panic, size};
-use super::{Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{CurvedSupport, Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -95,6 +95,14 @@ impl<N: Real, const D: usize, S: Shape<N, D>> RoundedSolid<N, D> for Rounded<N, 
 impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D, S> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         self.map().core_support(direction)
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        self.map().curved_support(point, direction)
     }
 
     fn rounding(&self) -> N {
