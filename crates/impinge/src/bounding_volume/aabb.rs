@@ -238,6 +238,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
 impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     type Point = Point<N, D>;
     type Ray = Ray<N, D>;
+    type Vector = Vector<N, D>;
 
     #[inline]
     fn intersects(&self, other: &Self) -> bool {
@@ -261,6 +262,13 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     fn loosened(&self, margin: N) -> Self {
         let reach = Vector::<N, D>::repeat(margin);
         Self { mins: self.mins - reach, maxs: self.maxs + reach }
+    }
+
+    fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
+        // What rests goes nowhere, not even in infinite time.
+        let way = velocity.map(|v| if v == N::ZERO { N::ZERO } else { v * max_time });
+        let (back, forth) = (way.map(|x| min(x, N::ZERO)), way.map(|x| max(x, N::ZERO)));
+        Self { mins: self.mins + back, maxs: self.maxs + forth }
     }
 
     fn contains_point(&self, point: &Point<N, D>) -> bool {
@@ -337,6 +345,15 @@ mod tests {
         let halves = Aabb::new(P::new(f64::NEG_INFINITY, 0.0), P::new(-1.0, f64::INFINITY));
         let found = unit_box().sweep_interval(&halves, &Vector::<f64, 2>::new(0.5, -1.0));
         assert_eq!(found, Some((2.0, f64::INFINITY)), "a box without an end never leaves");
+    }
+
+    #[test]
+    fn boxes_around_a_way() {
+        let swept = unit_box().swept(&Vector::<f64, 2>::new(-2.0, 0.0), 1.5);
+        assert_eq!(swept, Aabb::new(P::new(-3.0, 0.0), P::new(1.0, 1.0)), "three to the left");
+        let swept = unit_box().swept(&Vector::<f64, 2>::new(0.0, 1.0), f64::INFINITY);
+        assert_eq!(swept.maxs(), &P::new(1.0, f64::INFINITY), "up for ever");
+        assert_eq!(swept.mins(), unit_box().mins(), "and nowhere else");
     }
 
     #[test]

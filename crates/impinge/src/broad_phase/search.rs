@@ -34,6 +34,30 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
+    /// Calls `visit` with each object whose exact box is at most `max_distance` from `aabb` and the
+    /// distance, in ascending order of (distance, id); `visit` returns the new `max_distance`, which
+    /// never grows.
+    pub fn visit_nearest(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_distance(aabb, max_distance, visit);
+    }
+
+    /// Calls `visit` with each object whose exact box the moving one touches at or before `max_time`
+    /// and the first time of that, in ascending order of (time, id); `visit` returns the new
+    /// `max_time`, which never grows.
+    pub(crate) fn visit_cast(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_time(sweep, max_time, visit);
+    }
+
     fn search(&self) -> Search<'_, N, D, 2> {
         Search {
             exact: &self.exact,

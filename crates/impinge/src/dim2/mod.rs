@@ -99,6 +99,10 @@ pub mod world {
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 2, T>;
     /// The objects of a world.
     pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 2, T>;
+    /// Which objects a query is about.
+    pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 2, T>;
+    /// An object near what was asked about.
+    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 2, T>;
 }
 
 /// Questions about one solid or two.
@@ -141,8 +145,8 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, PartPath, PartSearch,
-        Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// A rectangle.
@@ -155,6 +159,16 @@ pub mod shape {
     pub type Segment<N> = crate::shape::Segment<N, 2>;
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 2>;
+    /// The points within a radius of a convex shape.
+    pub type Rounded<N, S> = crate::shape::Rounded<N, 2, S>;
+    /// The hull of two balls.
+    pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 2>;
+    /// A stretched disk.
+    pub type Ellipse<N> = crate::shape::Ellipsoid<N, 2>;
+    /// A filled shape of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 2>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 2>;
     /// A vertex or a side, as points.
     pub type Feature<N> = crate::shape::Feature<N, 2>;
     /// How queries see a shape.
@@ -163,6 +177,10 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 2>;
     /// What a part is.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 2>;
+    /// Shapes side by side, as one.
+    pub type Compound<N> = crate::shape::Compound<N, 2>;
+    /// A line given by heights over a grid.
+    pub type HeightField<N> = crate::shape::HeightField<N, 2>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 2>;
 }

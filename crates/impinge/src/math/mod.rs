@@ -19,7 +19,8 @@ pub use pose::Pose;
 pub use real::Real;
 pub use space::Space;
 pub use vector::{
-    centroid, cross, cross2, max, max_component, min, orthonormal_basis, perp, unit, unit_or,
+    centroid, cross, cross2, max, max_component, min, orthonormal_basis, perp, perpendicular_to,
+    unit, unit_or,
 };
 
 /// A vector of `D` components.

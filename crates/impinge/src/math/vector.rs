@@ -64,6 +64,20 @@ pub fn cross<N: Real>(a: &Vector<N, 3>, b: &Vector<N, 3>) -> Vector<N, 3> {
     Vector::<N, 3>::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
+/// A unit vector perpendicular to the unit vector `d`, as close as possible to the axis that `d`
+/// runs along least (the first of equals).
+pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, D> {
+    let mut least = 0;
+    for axis in 1..D {
+        if d[axis].abs() < d[least].abs() {
+            least = axis;
+        }
+    }
+    let mut v = -d * d[least];
+    v[least] += N::ONE;
+    unit_or(&v, v)
+}
+
 /// Two unit vectors that complete the unit vector `n` to a right-handed basis `(u, v, n)`.
 ///
 /// Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017): no branch but the sign.

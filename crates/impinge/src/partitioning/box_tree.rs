@@ -78,6 +78,41 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         (N::tables().partitioning.build)(boxes)
     }
 
+    /// Gives the boxes other places and sizes; see [`Self::try_refit`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_refit`] returns an error.
+    #[track_caller]
+    pub fn refit(&mut self, boxes: &[Aabb<N, D>]) {
+        if let Err(error) = self.try_refit(boxes) {
+            panic!("{error}");
+        }
+    }
+
+    /// Gives the boxes other places and sizes, all of them, in the order of [`Self::boxes`].
+    ///
+    /// Answers are those of a tree made anew. The order of the tree is kept and its upper layers follow:
+    /// O(n), without a sort. When the boxes have grown together by a fifth of their surface the order
+    /// is renewed, over several calls of O(n) each; until then searches are slower. On an error nothing
+    /// has changed.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::Point;
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let strip = |x: f32| Aabb::new(Point::<f32, 2>::new(x, 0.0), Point::<f32, 2>::new(x + 1.0, 1.0));
+    /// let mut tree = BoxTree::from_boxes(&[strip(0.0), strip(5.0)]);
+    /// tree.refit(&[strip(0.0), strip(9.0)]);
+    /// assert_eq!(tree.containing(&Point::<f32, 2>::new(9.5, 0.5)), [1]);
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::try_from_boxes`], and if their number differs.
+    pub fn try_refit(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+        (N::tables().partitioning.refit)(self, boxes)
+    }
+
     /// The boxes whose volume meets `aabb`, ascending.
     #[must_use]
     pub fn overlapping(&self, aabb: &Aabb<N, D>) -> Vec<usize> {
@@ -324,9 +359,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         let count = count(boxes.len())?;
         let (lanes, mut unbounded) = (Lanes::detect(), Vec::new());
         let mut tree = Tree::new(lanes);
-        for (index, (id, aabb)) in (0..count).zip(boxes).enumerate() {
-            Aabb::try_new(*aabb.mins(), *aabb.maxs())
-                .map_err(|error| BoxTreeError::BadBox { index, error })?;
+        check(boxes)?;
+        for (id, aabb) in (0..count).zip(boxes) {
             let tight = Bounds::enclosing(aabb);
             if tight.is_finite() {
                 tree.insert_still(id, &tight);
@@ -336,8 +370,36 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         }
         tree.refit();
         tree.settle();
-        let bounds = boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb));
-        Ok(Self { boxes: boxes.to_vec(), bounds, tree, unbounded, lanes })
+        Ok(Self { boxes: boxes.to_vec(), bounds: around(boxes), tree, unbounded, lanes })
+    }
+
+    /// See [`Self::try_refit`].
+    pub(crate) fn refit_to(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+        let (given, needed) = (boxes.len(), self.boxes.len());
+        if given != needed {
+            return Err(BoxTreeError::WrongCount { given, needed });
+        }
+        check(boxes)?;
+        self.unbounded.clear();
+        for (id, aabb) in (0..count(given)?).zip(boxes) {
+            let (tight, kept) = (Bounds::enclosing(aabb), self.tree.bounds(id));
+            let is_listed = !tight.is_finite();
+            match kept {
+                Some(_) if is_listed => self.tree.remove(id),
+                Some(kept) if *kept != tight => self.tree.set(id, &tight),
+                None if !is_listed => _ = self.tree.insert_still(id, &tight),
+                _ => (),
+            }
+            if is_listed {
+                self.unbounded.push(id);
+            }
+        }
+        self.tree.refit();
+        self.tree.settle();
+        self.tree.maintain();
+        self.boxes.copy_from_slice(boxes);
+        self.bounds = around(boxes);
+        Ok(())
     }
 
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
@@ -370,6 +432,20 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         let (exact, trees) = (self.boxes.as_slice(), [&self.tree]);
         Search { exact, trees, unbounded: &self.unbounded, lanes: self.lanes }
     }
+}
+
+/// No box is inverted or holds a NaN.
+fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+    for (index, aabb) in boxes.iter().enumerate() {
+        Aabb::try_new(*aabb.mins(), *aabb.maxs())
+            .map_err(|error| BoxTreeError::BadBox { index, error })?;
+    }
+    Ok(())
+}
+
+/// The smallest box around some boxes.
+fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aabb<N, D>> {
+    boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
 }
 
 /// The number of boxes as the tree counts them, which keeps one number for "none".

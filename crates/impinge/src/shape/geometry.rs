@@ -2,9 +2,10 @@
 
 use core::fmt;
 
+use super::rounded::RoundedSolid;
 use super::{
-    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, SupportMap,
-    Triangle,
+    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
+    SupportMap, TaperedCapsule, Triangle,
 };
 use crate::math::Real;
 
@@ -28,6 +29,12 @@ pub enum ShapeKind {
     Cylinder,
     /// [`Cone`].
     Cone,
+    /// [`Ellipsoid`]: an ellipse in the plane.
+    Ellipsoid,
+    /// [`TaperedCapsule`].
+    TaperedCapsule,
+    /// A convex solid swollen by a radius: [`Rounded`](super::Rounded).
+    Rounded,
     /// A convex solid known by its support points only.
     SupportMap,
     /// [`Plane`]: the half-space.
@@ -52,6 +59,9 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Polytope(&'a Polytope<N, D>),
     Cylinder(&'a Cylinder<N>, &'a dyn SupportMap<N, D>),
     Cone(&'a Cone<N>, &'a dyn SupportMap<N, D>),
+    Ellipsoid(&'a Ellipsoid<N, D>),
+    TaperedCapsule(&'a TaperedCapsule<N, D>),
+    Rounded(&'a dyn RoundedSolid<N, D>),
     SupportMap(&'a dyn SupportMap<N, D>),
     Plane(&'a Plane<N, D>),
     Composite(&'a dyn CompositeShape<N, D>),
@@ -80,6 +90,9 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Polytope(_) => ShapeKind::Polytope,
             Kind::Cylinder(..) => ShapeKind::Cylinder,
             Kind::Cone(..) => ShapeKind::Cone,
+            Kind::Ellipsoid(_) => ShapeKind::Ellipsoid,
+            Kind::TaperedCapsule(_) => ShapeKind::TaperedCapsule,
+            Kind::Rounded(_) => ShapeKind::Rounded,
             Kind::SupportMap(_) => ShapeKind::SupportMap,
             Kind::Plane(_) => ShapeKind::Plane,
             Kind::Composite(_) => ShapeKind::Composite,
@@ -97,6 +110,9 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Triangle(triangle) => triangle,
             Kind::Cuboid(cuboid) => cuboid,
             Kind::Polytope(polytope) => polytope,
+            Kind::Ellipsoid(ellipsoid) => ellipsoid,
+            Kind::TaperedCapsule(capsule) => capsule,
+            Kind::Rounded(solid) => solid,
             Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => map,
             Kind::Plane(_) | Kind::Composite(_) => return None,
         })

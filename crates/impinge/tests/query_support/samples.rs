@@ -2,7 +2,8 @@
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Plane, Segment, Shape, ShapeKind, Triangle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Rounded, Segment, Shape, ShapeKind,
+    TaperedCapsule, Triangle,
 };
 
 use super::corpus::{hull, polygon};
@@ -10,19 +11,22 @@ use super::random::Random;
 use super::solids::RoundHull;
 
 /// The kinds of the plane.
-pub const PLANE: [ShapeKind; 8] = [
+pub const PLANE: [ShapeKind; 11] = [
     ShapeKind::Ball,
     ShapeKind::Segment,
     ShapeKind::Capsule,
     ShapeKind::Triangle,
     ShapeKind::Cuboid,
     ShapeKind::Polytope,
+    ShapeKind::Ellipsoid,
+    ShapeKind::TaperedCapsule,
+    ShapeKind::Rounded,
     ShapeKind::SupportMap,
     ShapeKind::Plane,
 ];
 
 /// The kinds of space.
-pub const SPACE: [ShapeKind; 10] = [
+pub const SPACE: [ShapeKind; 13] = [
     ShapeKind::Ball,
     ShapeKind::Segment,
     ShapeKind::Capsule,
@@ -31,6 +35,9 @@ pub const SPACE: [ShapeKind; 10] = [
     ShapeKind::Polytope,
     ShapeKind::Cylinder,
     ShapeKind::Cone,
+    ShapeKind::Ellipsoid,
+    ShapeKind::TaperedCapsule,
+    ShapeKind::Rounded,
     ShapeKind::SupportMap,
     ShapeKind::Plane,
 ];
@@ -69,12 +76,35 @@ fn common<N: Real, const D: usize>(
         ShapeKind::Cuboid => {
             Box::new(Cuboid::new(Vector::<N, D>::from_fn(|_, _| size(random, scale))))
         }
+        ShapeKind::Ellipsoid => {
+            Box::new(Ellipsoid::new(Vector::<N, D>::from_fn(|_, _| size(random, scale))))
+        }
+        ShapeKind::TaperedCapsule => {
+            let (a, b) = (point(random, scale), point(random, scale));
+            let radii = [size(random, scale), size(random, scale)];
+            Box::new(TaperedCapsule::<N, D>::try_from_ends(a, b, radii).expect("finite"))
+        }
+        ShapeKind::Rounded => rounded(random, scale),
         ShapeKind::SupportMap => {
             let points = (0..7).map(|_| point::<N, D>(random, scale)).collect();
             Box::new(RoundHull { points, rounding: size(random, scale) })
         }
         ShapeKind::Plane => Box::new(Plane::new(Unit::new_unchecked(random.direction::<N, D>()))),
         other => unreachable!("{other:?} has no sample"),
+    }
+}
+
+/// A solid of a random kind of both dimensions, rounded.
+fn rounded<N: Real, const D: usize>(random: &mut Random, scale: N) -> Box<dyn Shape<N, D>> {
+    let radius = size(random, scale);
+    let extents = Vector::<N, D>::from_fn(|_, _| size(random, scale));
+    let [a, b, c] = [0; 3].map(|_| point(random, scale));
+    match random.bits() % 5 {
+        0 => Box::new(Rounded::new(Cuboid::new(extents), radius)),
+        1 => Box::new(Rounded::new(Segment::new(a, b), radius)),
+        2 => Box::new(Rounded::new(Triangle::new(a, b, c), radius)),
+        3 => Box::new(Rounded::new(Ellipsoid::new(extents), radius)),
+        _ => Box::new(Rounded::new(RoundHull { points: vec![a, b, c], rounding: radius }, radius)),
     }
 }
 

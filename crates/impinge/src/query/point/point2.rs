@@ -1,7 +1,8 @@
 //! The plane: which file answers for which solid.
 
 use super::{
-    SurfacePoint, ball, capsule, cuboid, plane, polytope, segment, support_map, triangle2,
+    SurfacePoint, ball, capsule, cuboid, ellipsoid, plane, polytope, rounded, segment, support_map,
+    tapered_capsule, triangle2,
 };
 use crate::math::{Point, Real};
 use crate::query::composite;
@@ -25,7 +26,10 @@ pub(crate) fn surface_point<N: Real>(
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
             support_map::surface_point(map, point)
         }
+        Kind::Ellipsoid(solid) => ellipsoid::surface_point(solid, point),
+        Kind::TaperedCapsule(solid) => tapered_capsule::surface_point(solid, point),
+        Kind::Rounded(solid) => rounded::surface_point(solid, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
-        Kind::Composite(parts) => composite::surface_point(parts, point).0,
+        Kind::Composite(parts) => composite::surface_point(parts, point),
     }
 }

@@ -1,8 +1,8 @@
 //! Space: which file answers for which solid.
 
 use super::{
-    SurfacePoint, ball, capsule, cone, cuboid, cylinder, plane, polytope, segment, support_map,
-    triangle3,
+    SurfacePoint, ball, capsule, cone, cuboid, cylinder, ellipsoid, plane, polytope, rounded,
+    segment, support_map, tapered_capsule, triangle3,
 };
 use crate::math::{Point, Real};
 use crate::query::composite;
@@ -26,7 +26,10 @@ pub(crate) fn surface_point<N: Real>(
         Kind::Cylinder(solid, _) => cylinder::surface_point(solid, point),
         Kind::Cone(solid, _) => cone::surface_point(solid, point),
         Kind::SupportMap(map) => support_map::surface_point(map, point),
+        Kind::Ellipsoid(solid) => ellipsoid::surface_point(solid, point),
+        Kind::TaperedCapsule(solid) => tapered_capsule::surface_point(solid, point),
+        Kind::Rounded(solid) => rounded::surface_point(solid, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
-        Kind::Composite(parts) => composite::surface_point(parts, point).0,
+        Kind::Composite(parts) => composite::surface_point(parts, point),
     }
 }

@@ -21,6 +21,9 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Spa
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
             support_map::span(map, ray)
         }
+        Kind::Ellipsoid(solid) => support_map::span(solid, ray),
+        Kind::TaperedCapsule(solid) => support_map::span(solid, ray),
+        Kind::Rounded(solid) => support_map::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
         // Its parts are asked instead.
         Kind::Composite(_) => None,

@@ -23,6 +23,9 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
         Kind::Cylinder(solid, _) => cylinder::span(solid, ray),
         Kind::Cone(solid, _) => cone::span(solid, ray),
         Kind::SupportMap(map) => support_map::span(map, ray),
+        Kind::Ellipsoid(solid) => support_map::span(solid, ray),
+        Kind::TaperedCapsule(solid) => support_map::span(solid, ray),
+        Kind::Rounded(solid) => support_map::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
         // Its parts are asked instead.
         Kind::Composite(_) => None,

@@ -13,8 +13,10 @@ mod ball_ball;
 mod ball_cone;
 mod ball_cuboid;
 mod ball_cylinder;
+pub(super) mod ball_ellipsoid;
 mod ball_polytope;
 mod ball_segment;
+pub(super) mod ball_tapered;
 mod ball_triangle;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
@@ -22,8 +24,9 @@ mod general;
 mod outline;
 mod plane_any;
 mod polygon_polygon;
-mod projection;
+pub(super) mod projection;
 pub(super) mod rectangle_axes;
+mod rounded;
 mod segment_segment;
 mod segments;
 mod table2;
@@ -39,7 +42,7 @@ use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
-pub(crate) use world::in_world;
+pub(crate) use world::{in_world, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;

@@ -3,15 +3,17 @@
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, unit};
 
+pub(super) use crate::math::perpendicular_to;
+
 /// A point seen from a solid, in the frame of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Projection<N: Real, const D: usize> {
+pub(in crate::query) struct Projection<N: Real, const D: usize> {
     /// Positive outside, negative inside: the signed distance of the point from the surface.
-    pub(super) distance: N,
+    pub(in crate::query) distance: N,
     /// The unit vector out of the solid along which that distance is measured.
-    pub(super) outward: Vector<N, D>,
+    pub(in crate::query) outward: Vector<N, D>,
     /// The point of the surface nearest to the given one.
-    pub(super) point: Point<N, D>,
+    pub(in crate::query) point: Point<N, D>,
 }
 
 impl<N: Real, const D: usize> Projection<N, D> {
@@ -46,20 +48,6 @@ pub(super) fn first_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut axis = Vector::<N, D>::zeros();
     axis[0] = N::ONE;
     axis
-}
-
-/// A unit vector perpendicular to the unit vector `d`, as close as possible to the axis that `d`
-/// runs along least (the first of equals).
-pub(super) fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, D> {
-    let mut least = 0;
-    for axis in 1..D {
-        if d[axis].abs() < d[least].abs() {
-            least = axis;
-        }
-    }
-    let mut v = -d * d[least];
-    v[least] += N::ONE;
-    unit(&v).map_or_else(first_axis, |(direction, _)| direction)
 }
 
 /// `v` made perpendicular to the unit vector `d`, of unit length; `None` where nothing certain

@@ -1,9 +1,9 @@
 //! Which algorithm serves which pair of kinds in space.
 
 use super::{
-    Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polytope,
-    ball_segment, ball_triangle, cuboid_cuboid, flipped, general, look_up, plane_any,
-    segment_segment,
+    Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
+    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, flipped, general,
+    look_up, plane_any, rounded, segment_segment,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -16,33 +16,38 @@ impl<N: Real> Space<N> {
     const TABLE: Table<N, 3> = {
         let bb: Algorithm<N, 3> = ball_ball::separation;
         let bs: Algorithm<N, 3> = ball_segment::separation;
-        let bt: Algorithm<N, 3> = ball_triangle::separation;
+        let b3: Algorithm<N, 3> = ball_triangle::separation;
         let bc: Algorithm<N, 3> = ball_cuboid::separation;
         let bh: Algorithm<N, 3> = ball_polytope::separation;
         let by: Algorithm<N, 3> = ball_cylinder::separation;
         let bo: Algorithm<N, 3> = ball_cone::separation;
         let ss: Algorithm<N, 3> = segment_segment::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
+        let be: Algorithm<N, 3> = ball_ellipsoid::separation;
+        let bt: Algorithm<N, 3> = ball_tapered::separation;
+        let rr: Algorithm<N, 3> = rounded::separation;
         let gg: Algorithm<N, 3> = general::space;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
         let __: Algorithm<N, 3> = flipped;
         // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
-        // support map, plane,
-        // composite.
+        // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
-            [bb, bs, bs, bt, bc, bh, by, bo, gg, gp, gx],
-            [__, ss, ss, gg, gg, gg, gg, gg, gg, gp, gx],
-            [__, __, ss, gg, gg, gg, gg, gg, gg, gp, gx],
-            [__, __, __, gg, gg, gg, gg, gg, gg, gp, gx],
-            [__, __, __, __, cc, gg, gg, gg, gg, gp, gx],
-            [__, __, __, __, __, gg, gg, gg, gg, gp, gx],
-            [__, __, __, __, __, __, gg, gg, gg, gp, gx],
-            [__, __, __, __, __, __, __, gg, gg, gp, gx],
-            [__, __, __, __, __, __, __, __, gg, gp, gx],
-            [__, __, __, __, __, __, __, __, __, pp, gx],
-            [__, __, __, __, __, __, __, __, __, __, gx],
+            [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
+            [__, ss, ss, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, __, rr, rr, rr, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, __, pp, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, __, __, gx],
         ]
     };
 }

@@ -1,0 +1,18 @@
+//! The nearest point of the surface of an ellipsoid.
+
+use super::SurfacePoint;
+use crate::math::{Point, Real};
+use crate::query::separation::ball_ellipsoid::project;
+use crate::shape::{Ellipsoid, FeatureId, SupportMap};
+
+/// What a ball of no radius there would touch. One without thickness is the set it is flattened to.
+pub(super) fn surface_point<N: Real, const D: usize>(
+    ellipsoid: &Ellipsoid<N, D>,
+    point: &Point<N, D>,
+) -> SurfacePoint<N, D> {
+    let (feature, seen) = (FeatureId::Face(0), project(ellipsoid, point));
+    if ellipsoid.half_axes().iter().any(|&half_axis| half_axis == N::ZERO) {
+        return SurfacePoint::on(seen.point, feature).snapped(point, ellipsoid.reach());
+    }
+    SurfacePoint { point: seen.point, feature, is_inside: seen.distance <= N::ZERO }
+}

@@ -1,0 +1,40 @@
+//! The nearest point of the surface of a rounded solid.
+
+use super::SurfacePoint;
+use crate::math::{Point, Pose, Space};
+use crate::query::{Pair, separation::separation};
+use crate::shape::{Ball, FeatureId, Geometry, Kind, RoundedSolid};
+
+/// Beyond the nearest point of what is rounded. A radius of zero changes nothing.
+pub(super) fn surface_point<N: Space<D>, const D: usize>(
+    solid: &dyn RoundedSolid<N, D>,
+    point: &Point<N, D>,
+) -> SurfacePoint<N, D> {
+    let (inner, radius) = (solid.inner(), solid.swelling());
+    if radius == N::ZERO {
+        return (N::tables().surface_point)(inner.0, point);
+    }
+    // As seen by a ball of no radius: near the surface and inside it knows the normal better than the
+    // difference of two points does.
+    let ball = Ball::new(N::ZERO);
+    let pose12 = Pose::from_translation(-point.coords);
+    let pair = Pair { first: Kind::Ball(&ball), second: inner.0, pose12 };
+    let Some(seen) = separation(&pair, N::INFINITY) else {
+        // The point is not finite.
+        return SurfacePoint::on(solid.center(), FeatureId::Face(0));
+    };
+    let nearest = point + seen.point2.coords - seen.normal * radius;
+    SurfacePoint {
+        point: nearest,
+        feature: feature_below(inner, &nearest),
+        is_inside: seen.distance <= radius,
+    }
+}
+
+/// The part of what is rounded that lies below a point of the surface.
+pub(in crate::query) fn feature_below<N: Space<D>, const D: usize>(
+    inner: Geometry<'_, N, D>,
+    place: &Point<N, D>,
+) -> FeatureId {
+    (N::tables().surface_point)(inner.0, place).feature
+}
