@@ -12,7 +12,7 @@ use impinge::query::{
     Impact, ImpactOptions, ImpactStatus, RigidMotion, distance, nonlinear_time_of_impact,
 };
 use impinge::shape::{
-    Ball, Capsule, Compound, Cuboid, Cylinder, Plane, Segment, Shape, ShapeHandle,
+    Ball, Capsule, Compound, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle,
 };
 use query_support::corpus::{placed2, regression};
 
@@ -91,6 +91,7 @@ fn a_rod_swings_against_a_wall() {
     let touch = Point::<f64, 2>::new(2.0_f64.sqrt(), 2.0_f64.sqrt());
     assert!((found.world1 - touch).norm() < 1e-12, "{found:?}");
     assert!((found.normal.into_inner() - V2::y()).norm() < 1e-12, "{found:?}");
+    assert_eq!((found.feature1, found.feature2), (FeatureId::Vertex(1), FeatureId::Face(0)));
     // In the other direction it takes half a turn more.
     let found = toi(
         (&spins(at(0.0, 0.0), -1.0), &rod),

@@ -124,10 +124,11 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         for _ in 0..MAX_SPANS {
             let wider = min(span * N::TWO, remaining);
             let found = min(safe(wider), wider);
-            if !(found > span * N::lit(1.125)) {
+            if found > span * N::lit(1.125) {
+                span = found;
+            } else {
                 break;
             }
-            span = found;
         }
         span
     }
@@ -155,13 +156,10 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
 
     /// The time in which the spheres around the bodies use up what they are apart.
     fn spheres(&self, apart: N, to: N) -> N {
-        let Some((direction, _)) = unit(&(self.centers[1] - self.centers[0])) else {
-            return N::ZERO;
-        };
-        if !(apart > N::ZERO) {
-            return N::ZERO;
-        }
-        Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
+        let between = unit(&(self.centers[1] - self.centers[0])).filter(|_| apart > N::ZERO);
+        between.map_or(N::ZERO, |(direction, _)| {
+            Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
+        })
     }
 
     /// By the largest speed that a point of either body can have at any time.

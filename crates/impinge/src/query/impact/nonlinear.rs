@@ -135,6 +135,7 @@ struct Search<'a, N: Space<D>, const D: usize> {
 /// How the bodies lie at a time.
 struct Sight<'b, 'a, N: Space<D>, const D: usize> {
     moment: Moment<'b, 'a, N, D>,
+    between: Between<'a, N, D>,
     found: PartSeparation<N, D>,
     /// The distance less the target distance.
     gap: N,
@@ -151,11 +152,11 @@ enum Mode<N> {
     Contact(N),
 }
 
-impl<N: Space<D>, const D: usize> Search<'_, N, D> {
+impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     fn run(&self) -> Option<Impact<N, D>> {
         let mut sight = self.look(N::ZERO)?;
-        // Written so that an end that is not a number is before the start.
-        if !(self.end >= N::ZERO) {
+        let starts = self.end >= N::ZERO;
+        if !starts {
             return None;
         }
         let mut mode = Mode::Apart;
@@ -200,7 +201,7 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
     }
 
     /// The bodies at a time; `None` if a pose is not finite, and for composites without parts.
-    fn look(&self, time: N) -> Option<Sight<'_, '_, N, D>> {
+    fn look(&self, time: N) -> Option<Sight<'_, 'a, N, D>> {
         let [one, two] = self.bodies.each_ref().map(|body| body.placed(&self.origin, time));
         let pose12 = Pose::relative(&one.pose, &two.pose);
         let finite = one.pose.is_finite() && two.pose.is_finite() && pose12.is_finite();
@@ -224,6 +225,7 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
                 centers,
                 time,
             },
+            between,
             found,
         })
     }
@@ -238,6 +240,8 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
 
     /// The impact at a moment, seen from the world.
     fn impact(&self, sight: &Sight<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
+        let parts = sight.between.parts(sight.found.parts);
+        let features = (N::tables().witness_features)(&parts.pair(), &sight.found.local);
         let [point1, point2] = sight.points().map(|point| (point + self.origin).into());
         Impact {
             toi: sight.moment.time,
@@ -246,6 +250,8 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
             normal: Unit::new_unchecked(sight.moment.normal),
             part1: sight.found.parts[0],
             part2: sight.found.parts[1],
+            feature1: features[0],
+            feature2: features[1],
             status,
         }
     }
