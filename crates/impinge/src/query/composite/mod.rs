@@ -7,6 +7,7 @@
 
 mod between;
 mod bounds;
+mod contacts;
 mod impact;
 mod point;
 mod ray;
@@ -14,6 +15,7 @@ mod separation;
 
 pub(crate) use between::Between;
 pub(crate) use between::PartPair;
+pub(crate) use contacts::{CompositeContacts, contact_in_world, own_distance};
 pub(crate) use impact::first_arrival;
 pub(in crate::query) use point::surface_point;
 pub(crate) use point::{Near, PartPoint, nearest_part};
