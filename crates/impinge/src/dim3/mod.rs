@@ -147,7 +147,7 @@ pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, SupportMap, Surface,
+        ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// A box.

@@ -15,7 +15,8 @@ pub use motion::{ConstantVelocities, RigidMotion};
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
-use super::pair::{Placed, canonical, indistinguishable};
+use super::composite::{Between, first_arrival};
+use super::pair::{Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
@@ -155,6 +156,10 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// their initial distance, and before that time they were not nearer by more: it is never late, and
 /// solids that pass each other that closely may count as touching.
 ///
+/// The impact of composites is the first impact of two of their parts, of several at one time that of the
+/// first by number; each pair of parts has the policy below for itself. So a shape that slides along
+/// some parts still meets others, and a surface is met from both sides.
+///
 /// # Starts in contact
 ///
 /// A contact at time zero counts by what the velocities do to it along its normal:
@@ -174,7 +179,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// A few computations of the distance, at most 128. Each step goes as far as the solids certainly
 /// stay apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996): Newton's
 /// method on a convex function, which squares the error where they meet head on and halves it where
-/// they graze.
+/// they graze. A composite is searched for the parts on the way; of two composites each part of the one
+/// with fewer searches the other.
 ///
 /// ```
 /// use impinge::dim2::na::{Isometry2, Point2, Vector2};
@@ -229,7 +235,12 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
-    let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    let (between, swapped) = Between::canonical(placed1, placed2);
+    let mirrored = indistinguishable(placed1, placed2);
+    if mirrored && is_later(moving1, moving2) {
+        return impact_of_pair(moving2, moving1, options).map(|found| found.flipped());
+    }
+    let pair = &between.pair;
     let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
     let velocity = second.velocity - first.velocity;
     let finite = pair.pose12.is_finite() && velocity.iter().all(|x| x.is_finite_number());
@@ -241,12 +252,26 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
         velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
         end: options.max_time * scale,
         target: max(options.target_distance, N::ZERO),
-        mirrored: indistinguishable(placed1, placed2),
+        mirrored,
     };
-    let arrival = advance(&pair, &path)?;
+    let (arrival, parts) = match between.composites() {
+        [None, None] => (advance(pair, &path)?, [0, 0]),
+        _ => first_arrival(&between, &path).map(|found| (found.arrival, found.parts))?,
+    };
     let toi = arrival.along / scale;
     let found = toi.is_finite_number().then(|| first.impact(&arrival, toi))?;
+    let found = Impact { part1: parts[0], part2: parts[1], ..found };
     Some(if swapped { found.flipped() } else { found })
+}
+
+/// Of two that nothing else tells apart: the first comes after the second by its velocity.
+fn is_later<N: Real, const D: usize>(
+    moving1: &Moving<'_, N, D>,
+    moving2: &Moving<'_, N, D>,
+) -> bool {
+    let components = moving1.velocity.iter().zip(moving2.velocity.iter());
+    let different = components.filter(|(x1, x2)| x1 != x2);
+    different.map(|(x1, x2)| x1 > x2).next().unwrap_or(false)
 }
 
 impl<N: Real, const D: usize> Moving<'_, N, D> {

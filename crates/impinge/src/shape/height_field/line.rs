@@ -159,7 +159,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     fn refresh(&mut self, cell: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }
@@ -205,6 +205,10 @@ impl<N: Real> Cells<N> for HeightField<N, 2> {
 }
 
 impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
+    fn bounds(&self) -> Aabb<N, 2> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 2>, visit: &mut dyn FnMut(u32)) {
         let Some(probe) = Probe::new(aabb) else { return };
         search(

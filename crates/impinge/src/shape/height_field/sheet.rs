@@ -259,7 +259,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     fn refresh(&mut self, row: usize, column: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }
@@ -388,6 +388,10 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
 }
 
 impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
+    fn bounds(&self) -> Aabb<N, 3> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 3>, visit: &mut dyn FnMut(u32)) {
         let Some(probe) = Probe::new(aabb) else { return };
         search(
