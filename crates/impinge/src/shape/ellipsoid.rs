@@ -3,9 +3,11 @@
 use super::error::{finite, or_panic, size};
 use super::scale::Scale;
 use super::segment::length_of;
-use super::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
+use super::{
+    CurvedSupport, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real, Vector, max_component, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit};
 
 /// The points whose coordinates, divided by the half axes, are within the unit ball: an ellipse in
 /// the plane.
@@ -64,6 +66,20 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
         let stretched = along(direction).map(|along| along.component_mul(&self.half_axes));
         let on_sphere = stretched.and_then(|v| along(&v)).unwrap_or_else(Vector::<N, D>::zeros);
         Point::from(on_sphere.component_mul(&self.half_axes))
+    }
+
+    fn curved_support(
+        &self,
+        _point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let (on_sphere, length) = unit(&direction.component_mul(&self.half_axes))?;
+        let point = on_sphere.component_mul(&self.half_axes);
+        let squares = Matrix::<N, D>::from_diagonal(&self.half_axes.component_mul(&self.half_axes));
+        Some(CurvedSupport {
+            point: Point::from(point),
+            bend: (squares - point * point.transpose()) / length,
+        })
     }
 
     fn reach(&self) -> N {

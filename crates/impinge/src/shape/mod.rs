@@ -76,7 +76,7 @@ pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;
 pub use scale::ScaleError;
 pub use segment::Segment;
-pub use support_map::{ConvexPolyhedron, SupportMap};
+pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 pub(crate) use tapered_capsule::Taper;
 pub use tapered_capsule::TaperedCapsule;
 pub use tetrahedron::Tetrahedron;

@@ -2,7 +2,9 @@
 
 use super::error::{or_panic, size};
 use super::scale::Scale;
-use super::{Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
+use super::{
+    CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -96,6 +98,14 @@ impl<N: Real, const D: usize, S: Shape<N, D>> RoundedSolid<N, D> for Rounded<N, 
 impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D, S> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         self.map().core_support(direction)
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        self.map().curved_support(point, direction)
     }
 
     fn rounding(&self) -> N {

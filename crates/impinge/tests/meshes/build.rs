@@ -2,7 +2,7 @@
 
 use impinge::dim3::procedural;
 use impinge::math::na::{Isometry3, Point3, Vector3};
-use impinge::math::{Pose, Real, Space};
+use impinge::math::{Pose, Real, Space, max};
 use impinge::shape::{
     Ball, CompositeShape, Cone, Cuboid, MeshError, Neighbor, Polyline, Shape, ShapeKind, TriMesh,
 };
@@ -118,8 +118,8 @@ fn open_flat_and_odd_meshes() {
 fn a_moebius_strip_has_one_seam_too_many() {
     let mut vertices = Vec::new();
     for step in 0..8 {
-        let (sine, cosine) = (f64::from(step) * std::f64::consts::FRAC_PI_4).sin_cos();
-        let (rise, out) = (f64::from(step) * std::f64::consts::FRAC_PI_8).sin_cos();
+        let (sine, cosine) = (f64::from(step) * std::f64::consts::FRAC_PI_4).sine_cosine();
+        let (rise, out) = (f64::from(step) * std::f64::consts::FRAC_PI_8).sine_cosine();
         for side in [-0.3, 0.3] {
             let radius = 2.0 + side * out;
             vertices.push([radius * cosine, radius * sine, side * rise]);
@@ -223,7 +223,7 @@ fn check_boxes<N: Space<3>>(mesh: &TriMesh<N, 3>, looseness: N) {
             assert!((local - sphere.center()).norm() <= sphere.radius(), "{local} is outside");
         }
         for axis in 0..3 {
-            let highest = placed.iter().map(|p| p[axis]).fold(-N::INFINITY, |a, b| a.max(b));
+            let highest = placed.iter().map(|p| p[axis]).fold(-N::INFINITY, max);
             let loose = aabb.maxs()[axis] - highest;
             assert!(loose <= looseness, "axis {axis} is loose by {loose}");
         }
