@@ -4,7 +4,7 @@ use super::bounds::{Body, Moment, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion};
 use crate::math::{Pose, Space, Unit, Vector, max, max_component};
 use crate::query::Pair;
-use crate::query::composite::{PartSeparation, nearest};
+use crate::query::composite::{Between, PartSeparation, Wanted, nearest_between};
 use crate::query::pair::{Placed, canonical, indistinguishable};
 use crate::shape::Shape;
 
@@ -205,7 +205,10 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
         let pose12 = Pose::relative(&one.pose, &two.pose);
         let finite = one.pose.is_finite() && two.pose.is_finite() && pose12.is_finite();
         let pair = Pair { first: one.shape.0, second: two.shape.0, pose12 };
-        let found = if finite { nearest(&pair, N::INFINITY)? } else { return None };
+        let between = Between { pair, pose21: Pose::relative(&two.pose, &one.pose) };
+        let wanted = Wanted::Deepest;
+        let found =
+            if finite { nearest_between(&between, N::INFINITY, wanted)? } else { return None };
         let poses = [one.pose, two.pose];
         let centers = [0, 1].map(|index| self.bodies[index].center_at(&poses[index]));
         let sizes = self.bodies[0].size() + self.bodies[1].size();
