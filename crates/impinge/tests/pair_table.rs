@@ -138,7 +138,8 @@ struct Stage<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
-    fn all_pairs(&self, setting: &Setting) {
+    /// How many pairs are wrong.
+    fn all_pairs(&self, setting: &Setting) -> usize {
         let shapes = (self.shapes)(N::lit(setting.scale));
         let mut wrong = Vec::new();
         for (name1, shape1) in &shapes {
@@ -148,13 +149,17 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
                 let same = name1 == name2 && setting.regime == Regime::Coincident;
                 self.guarded(&mut wrong, &format!("{name1} {name2}"), || {
                     check(&Two { m1: &m1, g1: &**shape1, m2: &m2, g2: &**shape2, same }, setting);
-                    if setting.scale == 1.0 && setting.away == 0.0 {
+                    if setting.scale == 1.0 && setting.away == 0.0 && !setting.turned {
                         self.turning((&m1, &**shape1), (&m2, &**shape2), same);
                     }
                 });
             }
         }
-        assert!(wrong.is_empty(), "{setting:?}: {wrong:#?}");
+        if wrong.is_empty() {
+            return 0;
+        }
+        eprintln!("{setting:?}: {wrong:#?}");
+        wrong.len()
     }
 
     fn guarded(&self, wrong: &mut Vec<String>, name: &str, run: impl FnOnce()) {
@@ -261,7 +266,9 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let expected = if apart > N::ZERO { Proximity::WithinMargin } else { Proximity::Intersecting };
     assert_eq!(near, expected, "{apart:?}");
     let points = closest_points(m1, g1, m2, g2, N::INFINITY);
-    assert_eq!(points.flipped(), closest_points(m2, g2, m1, g1, N::INFINITY), "swapped");
+    if !same {
+        assert_eq!(points.flipped(), closest_points(m2, g2, m1, g1, N::INFINITY), "swapped");
+    }
     assert_eq!(points == ClosestPoints::Intersecting, apart == N::ZERO, "{points:?} {apart:?}");
 
     let found = witness(m1, g1, m2, g2, N::INFINITY);
@@ -321,7 +328,8 @@ fn in_plane<N: Real>(scales: &[f64]) {
             Box::new(ConstantVelocities::<N, 2>::new(*m, linear, turn))
         },
     };
-    settings(scales).iter().for_each(|setting| stage.all_pairs(setting));
+    let wrong: usize = settings(scales).iter().map(|setting| stage.all_pairs(setting)).sum();
+    assert_eq!(wrong, 0, "pairs are wrong, see above");
 }
 
 fn in_space<N: Real>(scales: &[f64]) {
@@ -335,7 +343,8 @@ fn in_space<N: Real>(scales: &[f64]) {
             Box::new(ConstantVelocities::<N, 3>::new(*m, linear, angular))
         },
     };
-    settings(scales).iter().for_each(|setting| stage.all_pairs(setting));
+    let wrong: usize = settings(scales).iter().map(|setting| stage.all_pairs(setting)).sum();
+    assert_eq!(wrong, 0, "pairs are wrong, see above");
 }
 
 #[test]

@@ -12,6 +12,7 @@ use super::candidate::Candidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
+use super::newton::sharpen;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, settle};
 use crate::math::{Real, Vector, cross2, perp, unit};
@@ -106,6 +107,10 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
         let candidate = Candidate::along(difference, -side.outward);
         best.improve(&candidate);
         if -candidate.height - side.offset <= tolerance() {
+            if -candidate.height - side.offset > noise() {
+                sharpen(difference, &mut best);
+                return locate(difference, &best, &vertices(ring, &best));
+            }
             best.prefer(candidate, N::TWO * tolerance());
             let mix = Mix::nearest(&best, &[side.start, next]);
             return settle(difference, &best, &mix, &vertices(ring, &best));

@@ -12,6 +12,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
+use super::newton::sharpen;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
@@ -121,6 +122,9 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if face.settled {
                 break;
             }
+            if -candidate.height - face.offset > noise() {
+                return sharpened(difference, hull, best);
+            }
             best.prefer(candidate, N::TWO * tolerance());
             let mix = Mix::nearest(&best, &face.corners.map(|corner| *hull.vertex(corner)));
             return settle(difference, &best, &mix, hull.vertices());
@@ -133,6 +137,17 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
         }
     }
     polish(difference, hull, &mut best);
+    hull.keep(&[best.vertex]);
+    locate(difference, &best, hull.vertices())
+}
+
+/// The answer where a curved surface has stopped the growth.
+fn sharpened<N: Real>(
+    difference: &dyn Difference<N, 3>,
+    hull: &mut Hull<N>,
+    mut best: Candidate<N, 3>,
+) -> Separation<N, 3> {
+    sharpen(difference, &mut best);
     hull.keep(&[best.vertex]);
     locate(difference, &best, hull.vertices())
 }

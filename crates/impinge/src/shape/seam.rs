@@ -24,8 +24,8 @@ pub(super) fn is_flat<N: Real>(sine: N) -> bool {
     sine.abs() <= N::lit(FLAT_SINE)
 }
 
-/// The normal of a face and the unit vector that the rule is asked about enclose an angle that
-/// counts as none, on either side; given their scalar product.
+/// The angle between two lines, whichever way each points, counts as none; given the scalar product
+/// of unit vectors along them.
 pub(super) fn is_level<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
@@ -35,7 +35,7 @@ pub(super) fn is_level<N: Real>(cosine: N) -> bool {
 pub(super) struct Seam<N: Real> {
     /// No direction into a piece rises along the normal.
     is_in_cone: bool,
-    /// The normal is, within the tolerance, that of each piece.
+    /// The normal and those of all pieces are one, within the tolerance.
     is_level: bool,
     pieces: u32,
     /// How much the highest piece rises, how flat it lies, and whether its front is up. The highest
@@ -63,8 +63,8 @@ impl<N: Real> Seam<N> {
         self.is_in_cone &= rise <= slack();
     }
 
-    /// A piece whose steepest direction rises so much along the normal, and the scalar product of
-    /// its front normal with it; `is_level` if that counts as its own normal, on either side.
+    /// A piece whose steepest direction rises so much along the normal; the scalar product of its
+    /// front with the normal; and whether it and the normal lie flat with the piece that is asked.
     pub(super) fn add(&mut self, rise: N, front: N, is_level: bool) {
         self.add_rise(rise);
         self.is_level &= is_level;

@@ -34,10 +34,12 @@ struct Scene<N: Space<D>, const D: usize> {
     answers: Answers,
 }
 
+type Counts<N, const D: usize> = dyn Fn(&Object<N, D>) -> bool;
+
 /// Which objects count, said to the world and to the test.
 struct Choice<'a, N: Space<D>, const D: usize> {
     filter: Filter<'a, N, D>,
-    counts: Box<dyn Fn(&Object<N, D>) -> bool>,
+    counts: Box<Counts<N, D>>,
 }
 
 fn random_groups(random: &mut Random) -> CollisionGroups {

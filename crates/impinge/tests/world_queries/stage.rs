@@ -10,7 +10,9 @@ use impinge::query::{
     ClosestPoints, Impact, ImpactOptions, Moving, PointProjection, PointQuery, Ray, RayCast,
     RayIntersection, closest_points, distance, impact,
 };
-use impinge::shape::{Ball, Capsule, Cuboid, Plane, Segment, Shape, ShapeHandle, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cuboid, Plane, Segment, Shape, ShapeHandle, Triangle,
+};
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, Neighbor, QueryFilter};
 use impinge_reference::random::Random;
 
@@ -135,8 +137,19 @@ pub(crate) fn placed<N: Space<D>, const D: usize>(object: &Object<N, D>) -> Plac
     (object.position(), &**object.shape())
 }
 
-/// One of the shapes that both dimensions have, of size 0 to 2 or so.
-pub(crate) fn random_shape<N: Space<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
+/// One of the shapes that both dimensions have, of size 0 to 2 or so, or some of them together.
+pub(crate) fn random_shape<N: Stage<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
+    if random.below(8) == 0 {
+        let mut child = || {
+            let pose = N::pose_at(random.vector::<D>(1.5), random.range(-3.0, 3.0));
+            (pose, random_solid(random))
+        };
+        return ShapeHandle::new(Compound::new(vec![child(), child(), child()]));
+    }
+    random_solid(random)
+}
+
+fn random_solid<N: Space<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     let size = N::lit(random.range(0.0, 2.0));
     let corner = |random: &mut Random| point(random.vector::<D>(2.0));
     match random.below(6) {

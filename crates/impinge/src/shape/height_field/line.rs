@@ -159,7 +159,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     fn refresh(&mut self, cell: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }

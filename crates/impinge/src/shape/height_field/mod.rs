@@ -11,8 +11,6 @@ mod pyramid;
 mod question;
 mod sheet;
 mod surface;
-#[cfg(test)]
-mod tests;
 
 pub use marks::{Diagonal, Diagonals};
 

@@ -259,7 +259,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     fn refresh(&mut self, row: usize, column: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }

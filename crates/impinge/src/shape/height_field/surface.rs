@@ -65,7 +65,7 @@ impl<N: Real> HeightField<N, 3> {
         let mut add = |corners: &[GridPoint; 3], opposite: GridPoint| {
             let [a, b, opposite] =
                 [a, b, opposite].map(|[row, column]| self.grid.point(row, column));
-            if let Some(inward) = inward_of(&a, &b, &opposite) {
+            if let Some(inward) = inward_of(&[a, b, opposite]) {
                 let cosine = self.front_of(corners).dot(normal);
                 seam.add(inward.dot(normal), cosine, is_level(cosine));
             }

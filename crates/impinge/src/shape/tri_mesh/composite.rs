@@ -4,6 +4,7 @@ use super::super::segment::length_of;
 use super::{TriMesh, table};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::partitioning::BoxTree;
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
     ShapeHandle, Surface,
@@ -61,14 +62,40 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
+    /// The smallest for up to 256 triangles; else around boxes of neighbours, 256 at most.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, self.triangles.as_flattened().iter(), &self.vertices, &self.tree)
+    }
+
     /// The sphere around the middle of the box, through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        sphere_around(&self.local_aabb(), self.triangles.iter().flatten(), &self.vertices)
+        sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
+}
+
+/// So many corners are placed one by one to find the box around them.
+const MOST_PLACED: usize = 768;
+
+/// The box around vertices in use placed at `pose`: of each where they are few, else of groups in
+/// the tree.
+pub(in crate::shape) fn aabb_at<'a, N: Space<D>, const D: usize>(
+    pose: &Pose<N, D>,
+    used: impl ExactSizeIterator<Item = &'a u32>,
+    vertices: &[Point<N, D>],
+    tree: &BoxTree<N, D>,
+) -> Aabb<N, D> {
+    let found = if used.len() <= MOST_PLACED {
+        let placed: Vec<_> = used.map(|&vertex| pose.point(&vertices[vertex as usize])).collect();
+        Aabb::from_points(&placed)
+    } else {
+        tree.bounds_at(pose).and_then(|aabb| Aabb::try_new(*aabb.mins(), *aabb.maxs()).ok())
+    };
+    // A pose that is not finite gives no box; then everything is in it.
+    found.unwrap_or_else(Aabb::unbounded)
 }
 
 /// The sphere around the middle of a box that reaches the farthest of some vertices; a little
