@@ -65,7 +65,11 @@ where
         for j in 0..=n {
             let is_inner = i > 0 && j > 0 && i < n && j < n;
             let mut off = || {
-                if pattern == Pattern::Random && is_inner { 0.3 * cell * random.unit() } else { 0.0 }
+                if pattern == Pattern::Random && is_inner {
+                    0.3 * cell * random.unit()
+                } else {
+                    0.0
+                }
             };
             let (x, z) = (f64::from(i) * cell - half + off(), f64::from(j) * cell - half + off());
             let at = [x + center[0], height(x, z) + center[1], z + center[2]];
@@ -108,17 +112,14 @@ pub fn field<N: Real>(n: usize, cell: f64) -> HeightField<N, 3> {
 pub fn solids3<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 3>)> {
     let v = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
     let mut random = Random::new(3);
-    let points: Vec<Point<N, 3>> =
-        (0..24).map(|_| Point::from(v(random.unit(), random.unit(), random.unit()) * N::lit(0.5)))
-            .collect();
+    let points: Vec<Point<N, 3>> = (0..24)
+        .map(|_| Point::from(v(random.unit(), random.unit(), random.unit()) * N::lit(0.5)))
+        .collect();
     vec![
         ("ball", ShapeHandle::new(Ball::new(N::lit(0.37)))),
         ("cuboid", ShapeHandle::new(Cuboid::new(v(0.31, 0.23, 0.42)))),
         ("large cuboid", ShapeHandle::new(Cuboid::new(v(1.31, 0.23, 1.7)))),
-        (
-            "capsule",
-            ShapeHandle::new(Capsule::<N, 3>::new(N::lit(0.4), N::lit(0.2))),
-        ),
+        ("capsule", ShapeHandle::new(Capsule::<N, 3>::new(N::lit(0.4), N::lit(0.2)))),
         ("hull", ShapeHandle::new(ConvexHull::try_from_points(&points).expect("a hull"))),
         ("cylinder", ShapeHandle::new(Cylinder::new(N::lit(0.3), N::lit(0.4)))),
         ("cone", ShapeHandle::new(Cone::new(N::lit(0.3), N::lit(0.4)))),
@@ -155,8 +156,7 @@ impl<N: Space<D>, const D: usize> Sliding<N, D> {
     ) -> Vec<&ContactManifold<N, D>> {
         let dispatcher = DefaultContactDispatcher::<D>::new();
         let prediction = ContactPrediction::new(prediction, N::ZERO, N::ZERO);
-        let able =
-            self.generator.update(&dispatcher, m1, g1, m2, g2, &prediction, &mut self.ids);
+        let able = self.generator.update(&dispatcher, m1, g1, m2, g2, &prediction, &mut self.ids);
         assert!(able, "composites are served");
         let mut out = Vec::new();
         self.generator.contacts(&mut out);
@@ -179,8 +179,7 @@ pub fn slide<N, R, const D: usize>(
     let mut steps = 0;
     for (step, pose) in way.enumerate() {
         steps += 1;
-        let manifolds =
-            sliding.update((floor_pose, floor), (&pose, solid), N::lit(0.02));
+        let manifolds = sliding.update((floor_pose, floor), (&pose, solid), N::lit(0.02));
         assert!(!manifolds.is_empty(), "{name}, step {step}: no contact at {pose:?}");
         let mut deepest = -N::INFINITY;
         for tracked in manifolds.iter().flat_map(|manifold| manifold.contacts()) {
