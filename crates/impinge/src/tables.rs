@@ -15,15 +15,19 @@ use crate::narrow_phase::{
     CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
     proximity_of,
 };
-use crate::partitioning::{BoxTree, BoxTreeError, Question};
+use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
+use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
-use crate::query::separation::{Algorithm, in_world, separation_in_plane, separation_in_space};
-use crate::query::{
-    ContactManifold, ManifoldRequest, Moving, Pair, Placed, Proximity, RawManifold, advance,
-    contacts2, contacts3,
+use crate::query::separation::{
+    Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
-use crate::shape::{Kind, ShapeHandle};
+use crate::query::{
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    Proximity, RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_flight,
+    impact_of_pair, witness_features2, witness_features3, witness_in_world,
+};
+use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -31,12 +35,22 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
-    /// The time at which two moving solids touch.
-    pub(crate) time_of_impact: fn(&Moving<'_, N, D>, &Moving<'_, N, D>) -> Option<N>,
+    /// The same, but content with any overlap of parts.
+    pub(crate) touching_in_world: InWorldFn<N, D>,
+    pub(crate) witness_in_world: WitnessFn<N, D>,
+    /// The features that the nearest points of two convex solids lie on.
+    pub(crate) witness_features: FeaturesFn<N, D>,
+    /// When two moving solids touch, and where.
+    pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
     pub(crate) surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+    /// The part of a composite that is nearest to a point; any that holds it with the flag.
+    pub(crate) nearest_part: NearestPartFn<N, D>,
+    /// Calls with each part of a composite that a ray hits.
+    pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
@@ -47,10 +61,22 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) find_pairs: FindPairsFn<N, D>,
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
+    pub(crate) mesh: MeshTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
+type WitnessFn<N, const D: usize> =
+    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
+type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
+type NearestPartFn<N, const D: usize> =
+    fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
+type EachHitFn<N, const D: usize> =
+    fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
+type ImpactFn<N, const D: usize> =
+    fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type NonlinearImpactFn<N, const D: usize> =
+    fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type ContactsFn<N, const D: usize> =
@@ -61,12 +87,14 @@ type FindPairsFn<N, const D: usize> =
 /// Making and searching a tree over a user's boxes.
 pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) build: BuildFn<N, D>,
+    pub(crate) refit: RefitFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
-    pub(crate) by_time: InOrderFn<N, D, Ray<N, D>>,
-    pub(crate) by_distance: InOrderFn<N, D, Point<N, D>>,
+    pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
+    pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type RefitFn<N, const D: usize> = fn(&mut BoxTree<N, D>, &[Aabb<N, D>]) -> Result<(), BoxTreeError>;
 type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
 type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
 
@@ -74,6 +102,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
     const fn new() -> Self {
         Self {
             build: BoxTree::build,
+            refit: BoxTree::refit_to,
             each: BoxTree::answer,
             by_time: BoxTree::by_time,
             by_distance: BoxTree::by_distance,
@@ -128,16 +157,20 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     contacts: ContactsFn<N, D>,
+    witness_features: FeaturesFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
+    mesh: MeshTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
+        witness_features: witness_features2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
+        mesh: MeshTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -145,8 +178,10 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         contacts: contacts3,
+        witness_features: witness_features3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
+        mesh: MeshTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -156,9 +191,15 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separation_in_world: in_world,
-            time_of_impact: advance,
+            touching_in_world,
+            witness_in_world,
+            witness_features: particular.witness_features,
+            impact: impact_of_pair,
+            nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
+            nearest_part,
+            each_hit,
             contacts: particular.contacts,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifold,
@@ -167,6 +208,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             find_pairs: PairFinder::update,
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
+            mesh: particular.mesh,
         }
     }
 }

@@ -33,8 +33,12 @@ const REGIMES: [Regime; 7] = [
     Regime::Coincident,
 ];
 
-/// How many pairs of each two kinds are tried in each regime.
-const SEEDS: u64 = 12;
+/// How many pairs of each two kinds are tried in each regime: a few, or as many as the variable
+/// `IMPINGE_LAWS` says.
+fn seeds() -> u64 {
+    let asked = std::env::var("IMPINGE_LAWS").ok();
+    asked.map_or(12, |asked| asked.parse().expect("IMPINGE_LAWS is a number of pairs"))
+}
 
 /// What the tests vary.
 #[derive(Clone, Copy, Debug)]
@@ -288,8 +292,9 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     );
     assert_eq!(found, swapped, "swapped {setting:?}");
     if signed(&pair[0], &pair[1]) <= N::ZERO {
-        assert_eq!(found, Some(N::ZERO), "touching at the start {setting:?}");
-        return true;
+        // Whether such a start counts depends on the velocities; see `tests/impact.rs`.
+        assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
+        return found.is_some();
     }
     let at = |time: N| {
         let placed = |index: usize| {
@@ -297,7 +302,9 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
             pose.translation.vector += v[index] * time;
             pose
         };
-        distance(&placed(0), &*pair[0].shape, &placed(1), &*pair[1].shape)
+        let (pose1, pose2) = (placed(0), placed(1));
+        let found = contact(&pose1, &*pair[0].shape, &pose2, &*pair[1].shape, N::INFINITY);
+        found.map_or(-N::INFINITY, |found| -found.depth)
     };
     let speed = (v[0] - v[1]).norm();
     let end = found.unwrap_or_else(|| N::lit(8.0 * setting.ratio.max(1.0)) / speed);
@@ -305,7 +312,9 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     for step in 0..20 {
         let time = end * N::lit(f64::from(step) / 20.0);
         let before = at(time);
-        assert!(before > N::ZERO || (end - time) * speed < noise, "{before} {setting:?}");
+        // Of two that graze each other, the distance says more than the time.
+        let is_early = before > -noise || (end - time) * speed < noise;
+        assert!(is_early, "{before} before the end {setting:?}");
     }
     assert!(found.is_none() || at(end) <= noise, "{} at the end {setting:?}", at(end));
     found.is_some()
@@ -319,7 +328,8 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let (mut hits, mut shots) = (0, 0);
     let (mut settings, mut broken) = (0, 0);
     for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
-        for (regime, seed) in REGIMES.iter().flat_map(|r| (0..SEEDS).map(move |seed| (*r, seed))) {
+        for (regime, seed) in REGIMES.iter().flat_map(|r| (0..seeds()).map(move |seed| (*r, seed)))
+        {
             let ratio = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3][usize::try_from(seed % 6).expect("small")];
             let base = Setting {
                 kinds: [kind1, kind2],

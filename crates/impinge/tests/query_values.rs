@@ -112,7 +112,7 @@ fn time_of_impact_of_boxes_and_balls() {
 }
 
 #[test]
-fn touching_at_the_start_is_time_zero() {
+fn starts_in_contact() {
     let (ball, segment) = (
         Ball::new(1.0),
         Segment::new(Point::<f64, 2>::new(-1.0, 0.0), Point::<f64, 2>::new(1.0, 0.0)),
@@ -120,7 +120,10 @@ fn touching_at_the_start_is_time_zero() {
     let cast = |y: f64, v: V2| {
         time_of_impact(&at(0.0, y), &v, &ball, &at(0.0, 0.0), &V2::zeros(), &segment)
     };
-    assert_eq!(cast(1.0, V2::y()), Some(0.0), "touching and leaving");
+    // Touching is not enough: a start in contact counts if the solids do not separate.
+    assert_eq!(cast(1.0, V2::y()), None, "touching and leaving");
+    assert_eq!(cast(1.0, -V2::y()), Some(0.0), "touching and approaching");
+    assert_eq!(cast(0.5, V2::y()), None, "overlapping and leaving");
     assert_eq!(cast(0.5, V2::zeros()), Some(0.0), "overlapping and still");
     assert_eq!(cast(3.0, -V2::y()), Some(2.0), "two units down");
     let floor = half_plane(0.0, 1.0);

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{BoundingVolume, Ray};
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 
 /// The points between two corners, the faces included.
 ///
@@ -90,6 +90,11 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// The box around `center` that reaches `half_extents` along each axis; for trusted numbers.
     pub(crate) fn around(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
         Self { mins: center - half_extents, maxs: center + half_extents }
+    }
+
+    /// The box that is a point; for trusted numbers.
+    pub(crate) const fn at(point: Point<N, D>) -> Self {
+        Self { mins: point, maxs: point }
     }
 
     /// The smallest box around some points; `None` for no points or a NaN among them.
@@ -188,17 +193,67 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         (enter <= leave).then_some((enter, leave))
     }
 
+    /// The times at which another box that moves with `velocity` begins and ceases to touch this one,
+    /// cut off at `t = 0`; `None` if it never does.
+    ///
+    /// The slab test on the sums of both extents: for a box that is a point, [`Self::ray_interval`].
+    /// A box at rest touches always or never. The velocity must be finite.
+    pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
+        let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
+        for axis in 0..D {
+            let (low, high) = (moving.mins[axis], moving.maxs[axis]);
+            let speed = velocity[axis];
+            if speed == N::ZERO {
+                if high < self.mins[axis] || low > self.maxs[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((self.mins[axis] - high) / speed, (self.maxs[axis] - low) / speed);
+            enter = max(enter, min(a, b));
+            leave = min(leave, max(a, b));
+        }
+        (enter <= leave).then_some((enter, leave))
+    }
+
     /// The distance from the box to a point, zero inside.
     pub fn distance_to_point(&self, point: &Point<N, D>) -> N {
-        let below = (self.mins - point).map(|x| max(x, N::ZERO));
-        let above = (point - self.maxs).map(|x| max(x, N::ZERO));
-        (below + above).norm()
+        self.distance_to_aabb(&Self::at(*point))
     }
+
+    /// The distance between two boxes, zero if they meet. Distances whose squares are too small for
+    /// the scalar count as zero.
+    pub fn distance_to_aabb(&self, other: &Self) -> N {
+        let below = (self.mins - other.maxs).map(|x| max(x, N::ZERO));
+        let above = (other.mins - self.maxs).map(|x| max(x, N::ZERO));
+        let gaps = below + above;
+        let distance = gaps.norm();
+        if distance.is_finite_number() { distance } else { long_distance(&gaps) }
+    }
+
+    /// The box holds a finite point: it is neither inverted nor NaN nor wholly at infinity.
+    pub(crate) fn holds_finite_point(&self) -> bool {
+        let holds = |low: N, high: N| low <= high && low < N::INFINITY && high > -N::INFINITY;
+        (0..D).all(|axis| holds(self.mins[axis], self.maxs[axis]))
+    }
+}
+
+/// The length of a vector whose square is too large for the scalar. Never below those whose square is
+/// not, so that a box that encloses another is not farther than it.
+#[cold]
+fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
+    let largest = max_component(gaps);
+    if !largest.is_finite_number() {
+        return N::INFINITY;
+    }
+    let scale = largest.power_of_two_below();
+    max((gaps / scale).norm() * scale, N::MAX.sqrt())
 }
 
 impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     type Point = Point<N, D>;
     type Ray = Ray<N, D>;
+    type Vector = Vector<N, D>;
 
     #[inline]
     fn intersects(&self, other: &Self) -> bool {
@@ -222,6 +277,13 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     fn loosened(&self, margin: N) -> Self {
         let reach = Vector::<N, D>::repeat(margin);
         Self { mins: self.mins - reach, maxs: self.maxs + reach }
+    }
+
+    fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
+        // What rests goes nowhere, not even in infinite time.
+        let way = velocity.map(|v| if v == N::ZERO { N::ZERO } else { v * max_time });
+        let (back, forth) = (way.map(|x| min(x, N::ZERO)), way.map(|x| max(x, N::ZERO)));
+        Self { mins: self.mins + back, maxs: self.maxs + forth }
     }
 
     fn contains_point(&self, point: &Point<N, D>) -> bool {
@@ -276,6 +338,54 @@ mod tests {
             let ray = Ray::new(P::from(origin), Vector::<f64, 2>::from(dir));
             assert_eq!(unit_box().ray_interval(&ray), expected, "from {origin:?} along {dir:?}");
         }
+    }
+
+    #[test]
+    fn moving_boxes_touch_for_a_while() {
+        let half = Vector::<f64, 2>::new(0.5, 0.5);
+        let cases = [
+            ([-2.5, 0.5], [2.0, 0.0], Some((1.0, 2.0))),
+            ([-1.5, 1.5], [1.0, 0.0], Some((1.0, 3.0))),
+            ([-1.5, 1.6], [1.0, 0.0], None),
+            ([3.5, 3.5], [-1.0, -2.0], Some((2.0, 2.0))),
+            ([1.25, 0.0], [0.0, 0.0], Some((0.0, f64::INFINITY))),
+            ([1.75, 0.0], [0.0, 0.0], None),
+            ([1.25, 0.0], [1.0, 0.0], Some((0.0, 0.25))),
+        ];
+        for (center, velocity, expected) in cases {
+            let moving = Aabb::around(P::from(center), half);
+            let found = unit_box().sweep_interval(&moving, &Vector::<f64, 2>::from(velocity));
+            assert_eq!(found, expected, "from {center:?} along {velocity:?}");
+        }
+        let halves = Aabb::new(P::new(f64::NEG_INFINITY, 0.0), P::new(-1.0, f64::INFINITY));
+        let found = unit_box().sweep_interval(&halves, &Vector::<f64, 2>::new(0.5, -1.0));
+        assert_eq!(found, Some((2.0, f64::INFINITY)), "a box without an end never leaves");
+    }
+
+    #[test]
+    fn boxes_around_a_way() {
+        let swept = unit_box().swept(&Vector::<f64, 2>::new(-2.0, 0.0), 1.5);
+        assert_eq!(swept, Aabb::new(P::new(-3.0, 0.0), P::new(1.0, 1.0)), "three to the left");
+        let swept = unit_box().swept(&Vector::<f64, 2>::new(0.0, 1.0), f64::INFINITY);
+        assert_eq!(swept.maxs(), &P::new(1.0, f64::INFINITY), "up for ever");
+        assert_eq!(swept.mins(), unit_box().mins(), "and nowhere else");
+    }
+
+    #[test]
+    fn distances_between_boxes() {
+        let at = |x: f64, y: f64| Aabb::new(P::new(x, y), P::new(x + 1.0, y + 2.0));
+        assert_eq!(unit_box().distance_to_aabb(&at(4.0, 5.0)), 5.0, "corner to corner");
+        assert_eq!(unit_box().distance_to_aabb(&at(-4.0, -1.0)), 3.0, "side to side");
+        assert_eq!(unit_box().distance_to_aabb(&at(1.0, -2.0)), 0.0, "they touch");
+        assert_eq!(unit_box().distance_to_aabb(&Aabb::unbounded()), 0.0, "in everything");
+        assert_eq!(Aabb::unbounded().distance_to_aabb(&Aabb::<f64, 2>::unbounded()), 0.0, "both");
+        let far = Aabb::at(P::new(3e200, 4e200));
+        assert!(
+            (far.distance_to_aabb(&unit_box()) / 5e200 - 1.0).abs() < 1e-15,
+            "squares overflow"
+        );
+        let edge = Aabb::at(P::new(f64::MAX, -f64::MAX));
+        assert_eq!(edge.distance_to_aabb(&unit_box()), f64::INFINITY, "beyond the scalar");
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub trait BoundingVolume<N: Real>: Clone {
     type Point;
     /// The rays of the space that the volume lies in.
     type Ray;
+    /// The velocities of the space that the volume lies in.
+    type Vector;
 
     /// The two volumes have a point in common.
     fn intersects(&self, other: &Self) -> bool;
@@ -29,6 +31,10 @@ pub trait BoundingVolume<N: Real>: Clone {
     /// The volume grown by `margin` (zero or more) on every side.
     #[must_use]
     fn loosened(&self, margin: N) -> Self;
+    /// The smallest volume of this kind around all places of this one as it moves with `velocity`
+    /// (finite) from time zero to `max_time` (zero or more, perhaps infinite).
+    #[must_use]
+    fn swept(&self, velocity: &Self::Vector, max_time: N) -> Self;
     /// The point lies in the volume.
     fn contains_point(&self, point: &Self::Point) -> bool;
     /// The ray, with times from zero on, meets the volume.

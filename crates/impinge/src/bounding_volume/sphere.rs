@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{BoundingVolume, Ray};
-use crate::math::{Point, Pose, Real, max, unit};
+use crate::math::{Point, Pose, Real, Vector, max, unit};
 
 /// The points within `radius` of `center`.
 ///
@@ -87,6 +87,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
 impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
     type Point = Point<N, D>;
     type Ray = Ray<N, D>;
+    type Vector = Vector<N, D>;
 
     fn intersects(&self, other: &Self) -> bool {
         (other.center - self.center).norm() <= self.radius + other.radius
@@ -114,6 +115,13 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
         Self { radius: self.radius + margin, ..*self }
     }
 
+    fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
+        let Some((_, speed)) = unit(velocity) else { return *self };
+        let is_endless = !(speed * max_time).is_finite_number();
+        let moved = Self { center: self.center + velocity * max_time, ..*self };
+        if is_endless { Self::unbounded() } else { self.merged(&moved) }
+    }
+
     fn contains_point(&self, point: &Point<N, D>) -> bool {
         (point - self.center).norm() <= self.radius
     }
@@ -131,7 +139,6 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
 mod tests {
     use super::super::BoundingVolume;
     use super::*;
-    use crate::math::Vector;
 
     type P = Point<f64, 3>;
 
@@ -142,6 +149,16 @@ mod tests {
         let both = left.merged(&right);
         assert_eq!((both.center().x, both.radius()), (1.0, 4.0), "from -3 to 5");
         assert_eq!(both.merged(&left), both, "nothing to add");
+    }
+
+    #[test]
+    fn spheres_around_a_way() {
+        let sphere = BoundingSphere::new(P::new(1.0, 0.0, 0.0), 1.0);
+        let swept = sphere.swept(&Vector::<f64, 3>::new(0.0, 2.0, 0.0), 3.0);
+        assert_eq!((swept.center().y, swept.radius()), (3.0, 4.0), "from -1 to 7");
+        assert_eq!(sphere.swept(&Vector::<f64, 3>::zeros(), f64::INFINITY), sphere, "it rests");
+        let endless = sphere.swept(&Vector::<f64, 3>::x(), f64::INFINITY);
+        assert!(endless.radius().is_infinite(), "everything");
     }
 
     #[test]

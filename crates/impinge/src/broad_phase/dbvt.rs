@@ -7,8 +7,9 @@ use super::handle::Handles;
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
-use crate::math::{Point, Real, Space};
+use crate::math::{Point, Real, Space, Vector};
 use crate::pairs::unpack;
+use crate::partitioning::Sweep;
 
 /// A bounding volume that [`DBVTBroadPhase`] can keep: every [`Aabb`]. Sealed.
 pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
@@ -42,8 +43,8 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 ///
 /// The tree is touched only when an object's exact volume leaves its loosened one, so objects that
 /// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. The pairs
-/// kept are those of overlapping loosened volumes; the searches (`interferences_with_*`,
-/// [`BroadPhase::visit_ray`]) use exact volumes.
+/// kept are those of overlapping loosened volumes; the searches (`interferences_with_*`, `visit_*`)
+/// use exact volumes.
 ///
 /// Loosened volumes are kept as `f32`, rounded outwards, also for `f64`: a pair is never missed.
 /// Volumes with a face beyond the range of `f32` are unbounded: ordinary, but each is tested
@@ -262,5 +263,21 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
     fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
         let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
         self.finder.visit_ray(ray, max_time, &mut by_id);
+    }
+
+    fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_nearest(bv, max_distance, &mut by_id);
+    }
+
+    fn visit_cast(
+        &self,
+        bv: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_cast(&Sweep { aabb: *bv, velocity: *velocity }, max_time, &mut by_id);
     }
 }

@@ -3,7 +3,7 @@
 use super::error::or_panic;
 use super::{BroadPhaseError, ProxyHandle};
 use crate::bounding_volume::BoundingVolume;
-use crate::math::Real;
+use crate::math::{Real, max};
 
 /// Finds and keeps the pairs of objects whose bounding volumes overlap.
 ///
@@ -134,21 +134,56 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_deferred_recompute_all_proximities_with(handle));
     }
 
-    /// Calls `visit` for the objects whose exact volumes the ray meets at or before `max_time`,
-    /// those it enters first first, ties by uid. `visit` returns the new `max_time`, which is how a
-    /// search for the nearest hit ends early; a negative one ends it at once.
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, the ray meets at or
+    /// before `max_time`, those it enters first first, ties by uid. `visit` returns the new `max_time`,
+    /// which is how a search for the nearest hit ends early; a negative one ends it at once.
     ///
     /// This default knows no times of entry: it visits all hits by uid until a negative time is
     /// returned. Implementations with an order of their own override it.
     fn visit_ray(&self, ray: &BV::Ray, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
         let mut hits = Vec::new();
         self.interferences_with_ray(ray, &mut hits);
-        let mut limit = max_time;
-        for data in hits {
-            if limit < N::ZERO {
-                return;
-            }
-            limit = visit(data);
+        visit_all(&hits, max_time, visit);
+    }
+
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, are at most
+    /// `max_distance` from `bv`, the nearest first, ties by uid. `visit` returns the new
+    /// `max_distance`; a negative one ends the search at once.
+    ///
+    /// This default knows no distances: it visits what meets `bv` loosened by `max_distance`, by uid,
+    /// until a negative distance is returned. Implementations with an order of their own override it.
+    fn visit_nearest(&self, bv: &BV, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
+        let (reach, mut near) = (max(max_distance, N::ZERO), Vec::new());
+        self.interferences_with_bounding_volume(&bv.loosened(reach), &mut near);
+        visit_all(&near, max_distance, visit);
+    }
+
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, `bv` touches at or
+    /// before `max_time` while it moves with `velocity` (finite), those it touches first first, ties
+    /// by uid. `visit` returns the new `max_time`; a negative one ends the search at once.
+    ///
+    /// This default knows no times: it visits what meets the volume around the whole way, by uid, until
+    /// a negative time is returned. Implementations with an order of their own override it.
+    fn visit_cast(
+        &self,
+        bv: &BV,
+        velocity: &BV::Vector,
+        max_time: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let (end, mut met) = (max(max_time, N::ZERO), Vec::new());
+        self.interferences_with_bounding_volume(&bv.swept(velocity, end), &mut met);
+        visit_all(&met, max_time, visit);
+    }
+}
+
+/// Visits all until the limit is negative (or NaN).
+fn visit_all<N: Real, T>(found: &[&T], mut limit: N, visit: &mut dyn FnMut(&T) -> N) {
+    for data in found {
+        let goes_on = limit >= N::ZERO;
+        if !goes_on {
+            return;
         }
+        limit = visit(data);
     }
 }

@@ -3,7 +3,7 @@
 use super::PairFinder;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Real};
-use crate::partitioning::Search;
+use crate::partitioning::{Search, Sweep};
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     /// The objects whose exact box meets `aabb`, ascending.
@@ -31,7 +31,31 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// the time of entry, in ascending order of (time, id); `visit` returns the new `max_time`, which
     /// never grows.
     pub fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        self.search().by_time(ray, max_time, visit);
+        self.search().by_time(&Sweep::along(ray), max_time, visit);
+    }
+
+    /// Calls `visit` with each object whose exact box is at most `max_distance` from `aabb` and the
+    /// distance, in ascending order of (distance, id); `visit` returns the new `max_distance`, which
+    /// never grows.
+    pub fn visit_nearest(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_distance(aabb, max_distance, visit);
+    }
+
+    /// Calls `visit` with each object whose exact box the moving one touches at or before `max_time`
+    /// and the first time of that, in ascending order of (time, id); `visit` returns the new
+    /// `max_time`, which never grows.
+    pub(crate) fn visit_cast(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_time(sweep, max_time, visit);
     }
 
     fn search(&self) -> Search<'_, N, D, 2> {

@@ -1,4 +1,4 @@
-//! Searches in ascending order of a key: the first hit of a ray, the nearest object.
+//! Searches in ascending order of a key: the first hit of a ray or a moving box, the nearest object.
 //!
 //! Best first (Hjaltason and Samet, "Distance browsing in spatial databases", 1999): one queue of
 //! blocks and objects by key. A block's key is never above those of what it encloses, so objects
@@ -11,8 +11,8 @@ use std::collections::BinaryHeap;
 use super::kernel::with_kernel;
 use super::tree::small;
 use super::{Block, LANES, Lanes, Tree};
-use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, max, min};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real, Vector, max, min};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
@@ -134,44 +134,50 @@ impl Frontier {
 }
 
 impl Lanes {
-    /// The times at which a ray enters the boxes of a block, and the mask of those it meets: a
-    /// measure for [`Frontier::search`], and with the mask alone a test for [`Tree::visit`].
+    /// The times at which a moving box touches the boxes of a block, and the mask of those it meets:
+    /// a measure for [`Frontier::search`], and with the mask alone a test for [`Tree::visit`]. A ray
+    /// is a box that is a point.
     pub fn times_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
-        ray: &Ray<N, D>,
+        moving: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
     ) -> (u32, [N; LANES]) {
-        with_kernel!(self, _kernel => times_of_block(block, ray))
+        with_kernel!(self, _kernel => times_of_block(block, moving, velocity))
     }
 
-    /// The distances of a point from the boxes of a block, and the mask of lanes in use: a
-    /// measure for [`Frontier::search`].
+    /// The distances of a box from the boxes of a block, and the mask of lanes in use: a measure for
+    /// [`Frontier::search`].
     pub fn distance_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
-        point: &Point<N, D>,
+        aabb: &Aabb<N, D>,
     ) -> (u32, [N; LANES]) {
-        with_kernel!(self, _kernel => distance_of_block(block, point))
+        with_kernel!(self, _kernel => distance_of_block(block, aabb))
     }
 }
 
-/// The times at which a ray enters the boxes of a block, and the mask of those it meets.
+/// The times at which a moving box touches the boxes of a block, and the mask of those it meets.
 ///
-/// The slab test of `Aabb::ray_interval`, operation for operation: rounding is monotone, so a box
+/// The slab test of `Aabb::sweep_interval`, operation for operation: rounding is monotone, so a box
 /// that encloses another is never missed where the other is hit, nor entered later.
 #[inline(always)]
-fn times_of_block<N: Real, const D: usize>(block: &Block<D>, ray: &Ray<N, D>) -> (u32, [N; LANES]) {
+fn times_of_block<N: Real, const D: usize>(
+    block: &Block<D>,
+    moving: &Aabb<N, D>,
+    velocity: &Vector<N, D>,
+) -> (u32, [N; LANES]) {
     let (mut enter, mut leave) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
     for axis in 0..D {
-        let (origin, speed) = (ray.origin[axis], ray.dir[axis]);
+        let (low, high, speed) = (moving.mins()[axis], moving.maxs()[axis], velocity[axis]);
         for lane in 0..LANES {
             let lo = N::lit(f64::from(block.lo[axis][lane]));
             let hi = N::lit(f64::from(block.hi[axis][lane]));
             if speed == N::ZERO {
-                let is_beside = origin < lo || origin > hi;
+                let is_beside = high < lo || low > hi;
                 leave[lane] = if is_beside { -N::ONE } else { leave[lane] };
             } else {
-                let (a, b) = ((lo - origin) / speed, (hi - origin) / speed);
+                let (a, b) = ((lo - high) / speed, (hi - low) / speed);
                 enter[lane] = max(enter[lane], min(a, b));
                 leave[lane] = min(leave[lane], max(a, b));
             }
@@ -184,24 +190,39 @@ fn times_of_block<N: Real, const D: usize>(block: &Block<D>, ray: &Ray<N, D>) ->
     (mask, enter)
 }
 
-/// The distances of a point from the boxes of a block, and the mask of all lanes.
+/// The distances of a box from the boxes of a block, and the mask of all lanes.
 ///
-/// The operations of `Aabb::distance_to_point`; the same monotony.
+/// The operations of `Aabb::distance_to_aabb`; the same monotony.
 #[inline(always)]
 fn distance_of_block<N: Real, const D: usize>(
     block: &Block<D>,
-    point: &Point<N, D>,
+    aabb: &Aabb<N, D>,
 ) -> (u32, [N; LANES]) {
     let (mut mask, mut distances) = (0, [N::ZERO; LANES]);
     for (lane, distance) in distances.iter_mut().enumerate() {
         let mut squared = N::ZERO;
         for axis in 0..D {
-            let below = max(N::lit(f64::from(block.lo[axis][lane])) - point[axis], N::ZERO);
-            let above = max(point[axis] - N::lit(f64::from(block.hi[axis][lane])), N::ZERO);
+            let (low, high) = (aabb.mins()[axis], aabb.maxs()[axis]);
+            let below = max(N::lit(f64::from(block.lo[axis][lane])) - high, N::ZERO);
+            let above = max(low - N::lit(f64::from(block.hi[axis][lane])), N::ZERO);
             squared += (below + above) * (below + above);
         }
         *distance = squared.sqrt();
         mask |= u32::from(block.lo[0][lane] <= block.hi[0][lane]) << lane;
     }
+    for (lane, distance) in distances.iter_mut().enumerate() {
+        let is_used = mask >> lane & 1 == 1;
+        if is_used && !distance.is_finite_number() {
+            *distance = aabb_in(block, lane).distance_to_aabb(aabb);
+        }
+    }
     (mask, distances)
+}
+
+/// The box in a lane that is in use.
+fn aabb_in<N: Real, const D: usize>(block: &Block<D>, lane: usize) -> Aabb<N, D> {
+    let corner = |faces: &[[f32; LANES]; D]| {
+        Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(faces[axis][lane]))))
+    };
+    Aabb::new(corner(&block.lo), corner(&block.hi))
 }

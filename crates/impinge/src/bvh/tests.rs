@@ -171,7 +171,7 @@ fn the_nearest_come_first() {
             twin.objects().filter_map(|(id, _)| Some((distance(id)?, id))).collect();
         expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
         let mut found = Vec::new();
-        let block = |block: &_| Lanes::detect().distance_of_block(block, &point);
+        let block = |block: &_| Lanes::detect().distance_of_block(block, &Aabb::at(point));
         let keys = Keys { block, object: distance };
         Frontier::new().search(&[&twin.tree], f64::MAX, &keys, |id, key| {
             found.push((key, id));

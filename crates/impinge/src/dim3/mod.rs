@@ -99,13 +99,18 @@ pub mod world {
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 3, T>;
     /// The objects of a world.
     pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 3, T>;
+    /// Which objects a query is about.
+    pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
+    /// An object near what was asked about.
+    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 3, T>;
 }
 
 /// Questions about one solid or two.
 pub mod query {
     pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
-        ContactId, PointQuery, Proximity, RayCast, closest_points, contact, distance, proximity,
+        ContactId, ImpactOptions, ImpactStatus, PointQuery, Proximity, RayCast, RigidMotion,
+        closest_points, contact, distance, impact, nonlinear_time_of_impact, proximity,
         time_of_impact,
     };
 
@@ -119,6 +124,12 @@ pub mod query {
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
     /// Where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 3>;
+    /// A solid that moves along a straight line.
+    pub type Moving<'a, N> = crate::query::Moving<'a, N, 3>;
+    /// A body that moves and turns with constant velocities.
+    pub type ConstantVelocities<N> = crate::query::ConstantVelocities<N, 3>;
+    /// When two moving solids first touch, and where.
+    pub type Impact<N> = crate::query::Impact<N, 3>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
     /// One solid's share of a contact, for algorithms of one's own.
@@ -134,8 +145,9 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, FeatureId, PartPath,
-        PartSearch, Shape, ShapeError, ShapeKind, SupportMap, Surface, Tetrahedron,
+        Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
+        FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
+        ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// A box.
@@ -149,11 +161,15 @@ pub mod shape {
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
     /// The points within a radius of a convex shape.
-    pub type Rounded<N, S> = crate::shape::Rounded<N, 3, S>;
+    pub type Rounded<N> = crate::shape::Rounded<N, 3>;
     /// The hull of two balls.
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 3>;
     /// A stretched ball.
     pub type Ellipsoid<N> = crate::shape::Ellipsoid<N, 3>;
+    /// A surface of triangles.
+    pub type TriMesh<N> = crate::shape::TriMesh<N, 3>;
+    /// A line of segments, open or closed.
+    pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// How queries see a shape.
@@ -162,6 +178,10 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
     /// What a part is.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
+    /// Shapes side by side, as one.
+    pub type Compound<N> = crate::shape::Compound<N, 3>;
+    /// A surface given by heights over a grid.
+    pub type HeightField<N> = crate::shape::HeightField<N, 3>;
     /// A shape shared by many objects.
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }

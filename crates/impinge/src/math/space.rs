@@ -1,5 +1,6 @@
 //! What is particular to the plane and to space, behind one bound.
 
+use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Pose, Real};
 use crate::tables::Tables;
 use core::fmt::Debug;
@@ -15,6 +16,9 @@ pub trait Space<const D: usize>: Real {
     /// The pose that an isometry describes.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
 
+    /// The isometry that a pose describes, up to rounding.
+    fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
+
     /// The entry points compiled in this crate for this scalar and dimension.
     #[doc(hidden)]
     fn tables() -> &'static Tables<Self, D>;
@@ -28,6 +32,12 @@ impl<N: Real> Space<2> for N {
         Pose::from_isometry(isometry)
     }
 
+    fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
+        let rotation = Rotation2::from_matrix_unchecked(pose.rotation);
+        let rotation = UnitComplex::from_rotation_matrix(&rotation);
+        Isometry2::from_parts(pose.translation.into(), rotation)
+    }
+
     fn tables() -> &'static Tables<N, 2> {
         N::plane()
     }
@@ -39,6 +49,12 @@ impl<N: Real> Space<3> for N {
     #[inline]
     fn pose(isometry: &Isometry3<N>) -> Pose<N, 3> {
         Pose::from_isometry(isometry)
+    }
+
+    fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {
+        let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
+        let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
+        Isometry3::from_parts(pose.translation.into(), rotation)
     }
 
     fn tables() -> &'static Tables<N, 3> {

@@ -2,10 +2,10 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::{
-    ContactManifold, ManifoldRequest, Pair, Placement, Proximity, RawManifold, canonical,
+    ContactManifold, ManifoldRequest, Pair, Placed, Placement, Proximity, RawManifold, canonical,
     materialise,
 };
-use crate::shape::Shape;
+use crate::shape::{Geometry, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -73,7 +73,15 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     margin: N,
 ) -> Proximity {
     let (pair, _) = posed.canonical();
-    match (N::tables().separation)(&pair, margin) {
+    let is_composite = |kind| Geometry(kind).as_composite().is_some();
+    let found = if is_composite(pair.first) || is_composite(pair.second) {
+        let [placed1, placed2] = [(posed.pose1, posed.shape1), (posed.pose2, posed.shape2)]
+            .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() });
+        (N::tables().touching_in_world)(&placed1, &placed2, margin)
+    } else {
+        (N::tables().separation)(&pair, margin)
+    };
+    match found {
         None => Proximity::Disjoint,
         Some(separation) if separation.distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,

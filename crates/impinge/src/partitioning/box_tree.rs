@@ -1,9 +1,9 @@
 //! The tree over a user's own boxes.
 
-use super::{BoxTreeError, Search};
+use super::{BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
-use crate::math::{Point, Real, Space};
+use crate::math::{Point, Pose, Real, Space, Vector};
 
 /// A tree over boxes that do not move, known by their indices.
 ///
@@ -47,6 +47,9 @@ pub struct BoxTree<N: Real, const D: usize> {
     lanes: Lanes,
 }
 
+/// So many groups of boxes are placed to find the box around them all.
+const MOST_GROUPS: usize = 256;
+
 /// What a search without an order of its own asks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Question<'a, N: Real, const D: usize> {
@@ -76,6 +79,41 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// or if 32 bits cannot number the boxes.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
         (N::tables().partitioning.build)(boxes)
+    }
+
+    /// Gives the boxes other places and sizes; see [`Self::try_refit`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_refit`] returns an error.
+    #[track_caller]
+    pub fn refit(&mut self, boxes: &[Aabb<N, D>]) {
+        if let Err(error) = self.try_refit(boxes) {
+            panic!("{error}");
+        }
+    }
+
+    /// Gives the boxes other places and sizes, all of them, in the order of [`Self::boxes`].
+    ///
+    /// Answers are those of a tree made anew. The order of the tree is kept and its upper layers follow:
+    /// O(n), without a sort. When the boxes have grown together by a fifth of their surface the order
+    /// is renewed, over several calls of O(n) each; until then searches are slower. On an error nothing
+    /// has changed.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::Point;
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let strip = |x: f32| Aabb::new(Point::<f32, 2>::new(x, 0.0), Point::<f32, 2>::new(x + 1.0, 1.0));
+    /// let mut tree = BoxTree::from_boxes(&[strip(0.0), strip(5.0)]);
+    /// tree.refit(&[strip(0.0), strip(9.0)]);
+    /// assert_eq!(tree.containing(&Point::<f32, 2>::new(9.5, 0.5)), [1]);
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::try_from_boxes`], and if their number differs.
+    pub fn try_refit(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+        (N::tables().partitioning.refit)(self, boxes)
     }
 
     /// The boxes whose volume meets `aabb`, ascending.
@@ -142,7 +180,48 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// ```
     pub fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, mut visit: impl FnMut(usize, N) -> N) {
         let mut found = |id: u32, time: N| visit(id as usize, time);
-        (N::tables().partitioning.by_time)(self, ray, max_time, &mut found);
+        (N::tables().partitioning.by_time)(self, &Sweep::along(ray), max_time, &mut found);
+    }
+
+    /// Calls `visit` with the boxes that `aabb`, moving with `velocity`, touches at or before
+    /// `max_time`, and the first time of that: the first first, by index at equal times.
+    ///
+    /// [`Self::visit_ray`] for a box in place of a point, with the same rules: `visit` returns the new
+    /// `max_time`, which never grows; boxes that meet `aabb` are touched at time zero, whatever the
+    /// velocity; a velocity of zero finds these alone. `aabb` may be unbounded. A velocity that is
+    /// not finite and a box at infinity touch nothing.
+    ///
+    /// The time at which a solid in the moving box touches one in a box of the tree is never earlier, so
+    /// that of the best hit so far is the `max_time` to return in a search for the first.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::{Point, Vector};
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let square = |x: f32, y: f32| {
+    ///     let corner = Point::<f32, 2>::new(x, y);
+    ///     Aabb::new(corner, corner + Vector::<f32, 2>::new(1.0, 1.0))
+    /// };
+    /// let tree = BoxTree::from_boxes(&[square(6.0, 0.0), square(3.0, 1.0), square(3.0, 1.5)]);
+    /// let mut touched = Vec::new();
+    /// let velocity = Vector::<f32, 2>::new(2.0, 0.0);
+    /// tree.visit_cast(&square(0.0, 0.0), &velocity, f32::INFINITY, |index, time| {
+    ///     touched.push((index, time));
+    ///     f32::INFINITY
+    /// });
+    /// assert_eq!(touched, [(1, 1.0), (0, 2.5)], "the third is passed by half a unit");
+    /// ```
+    pub fn visit_cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        max_time: N,
+        mut visit: impl FnMut(usize, N) -> N,
+    ) {
+        let mut found = |id: u32, time: N| visit(id as usize, time);
+        let sweep = Sweep { aabb: *aabb, velocity: *velocity };
+        (N::tables().partitioning.by_time)(self, &sweep, max_time, &mut found);
     }
 
     /// Calls `visit` with the boxes at most `max_distance` from the point and their distance: the
@@ -150,15 +229,51 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     ///
     /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
     /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
-    /// finite is near nothing. Distances whose squares leave the range of `N` count as infinite or zero.
+    /// finite is near nothing. Distances whose squares are too small for `N` count as zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,
         max_distance: N,
+        visit: impl FnMut(usize, N) -> N,
+    ) {
+        self.visit_nearest_to_box(&Aabb::at(*point), max_distance, visit);
+    }
+
+    /// Calls `visit` with the boxes at most `max_distance` from `aabb` and their distance: the nearest
+    /// first, by index at equal distances. Boxes that meet `aabb` are at distance zero.
+    ///
+    /// [`Self::visit_nearest`] for a box in place of a point, with the same rules: `visit` returns the
+    /// new `max_distance`, which never grows. `aabb` may be unbounded; one at infinity, or that
+    /// arithmetic has made NaN, is near nothing.
+    ///
+    /// The distance of a solid in `aabb` from one in a box of the tree is never smaller, so that of the
+    /// nearest so far is the `max_distance` to return in a search for the nearest.
+    ///
+    /// ```
+    /// use impinge::bounding_volume::Aabb;
+    /// use impinge::math::{Point, Vector};
+    /// use impinge::partitioning::BoxTree;
+    ///
+    /// let square = |x: f32, y: f32| {
+    ///     let corner = Point::<f32, 2>::new(x, y);
+    ///     Aabb::new(corner, corner + Vector::<f32, 2>::new(1.0, 1.0))
+    /// };
+    /// let tree = BoxTree::from_boxes(&[square(4.0, 5.0), square(-3.0, 0.5), square(1.0, 1.0)]);
+    /// let mut found = Vec::new();
+    /// tree.visit_nearest_to_box(&square(0.0, 0.0), 3.0, |index, distance| {
+    ///     found.push((index, distance));
+    ///     3.0
+    /// });
+    /// assert_eq!(found, [(2, 0.0), (1, 2.0)], "the first is 5 away, corner to corner");
+    /// ```
+    pub fn visit_nearest_to_box(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
         mut visit: impl FnMut(usize, N) -> N,
     ) {
         let mut found = |id: u32, distance: N| visit(id as usize, distance);
-        (N::tables().partitioning.by_distance)(self, point, max_distance, &mut found);
+        (N::tables().partitioning.by_distance)(self, aabb, max_distance, &mut found);
     }
 
     /// The box that the ray enters first, at or before `max_time`, and when; of several the one of
@@ -183,6 +298,22 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
             -N::ONE
         });
         nearest
+    }
+
+    /// A box around all boxes placed at `pose`, in the frame that the pose leads to; `None` if there are
+    /// none. Tighter than placing [`Self::bounds`]: up to 256 groups of neighbours are placed one by
+    /// one, which is the cost. In `f64` it may be larger by the rounding of `f32`.
+    #[must_use]
+    pub fn bounds_at(&self, pose: &Pose<N, D>) -> Option<Aabb<N, D>> {
+        let placed = |group: &Bounds<D>| {
+            let [lo, hi] = [group.lo, group.hi].map(|corner| corner.map(|x| N::lit(f64::from(x))));
+            Aabb::new(Point::from(lo), Point::from(hi)).transformed_by(pose)
+        };
+        if !self.unbounded.is_empty() {
+            return Some(self.bounds?.transformed_by(pose));
+        }
+        let groups = self.tree.groups(MOST_GROUPS).iter().filter(|group| group.is_finite());
+        groups.map(placed).reduce(|all, aabb| all.merged(&aabb))
     }
 
     fn collect(&self, question: &Question<'_, N, D>) -> Vec<usize> {
@@ -247,9 +378,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         let count = count(boxes.len())?;
         let (lanes, mut unbounded) = (Lanes::detect(), Vec::new());
         let mut tree = Tree::new(lanes);
-        for (index, (id, aabb)) in (0..count).zip(boxes).enumerate() {
-            Aabb::try_new(*aabb.mins(), *aabb.maxs())
-                .map_err(|error| BoxTreeError::BadBox { index, error })?;
+        check(boxes)?;
+        for (id, aabb) in (0..count).zip(boxes) {
             let tight = Bounds::enclosing(aabb);
             if tight.is_finite() {
                 tree.insert_still(id, &tight);
@@ -259,8 +389,36 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         }
         tree.refit();
         tree.settle();
-        let bounds = boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb));
-        Ok(Self { boxes: boxes.to_vec(), bounds, tree, unbounded, lanes })
+        Ok(Self { boxes: boxes.to_vec(), bounds: around(boxes), tree, unbounded, lanes })
+    }
+
+    /// See [`Self::try_refit`].
+    pub(crate) fn refit_to(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+        let (given, needed) = (boxes.len(), self.boxes.len());
+        if given != needed {
+            return Err(BoxTreeError::WrongCount { given, needed });
+        }
+        check(boxes)?;
+        self.unbounded.clear();
+        for (id, aabb) in (0..count(given)?).zip(boxes) {
+            let (tight, kept) = (Bounds::enclosing(aabb), self.tree.bounds(id));
+            let is_listed = !tight.is_finite();
+            match kept {
+                Some(_) if is_listed => self.tree.remove(id),
+                Some(kept) if *kept != tight => self.tree.set(id, &tight),
+                None if !is_listed => _ = self.tree.insert_still(id, &tight),
+                _ => (),
+            }
+            if is_listed {
+                self.unbounded.push(id);
+            }
+        }
+        self.tree.refit();
+        self.tree.settle();
+        self.tree.maintain();
+        self.boxes.copy_from_slice(boxes);
+        self.bounds = around(boxes);
+        Ok(())
     }
 
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
@@ -271,23 +429,42 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         }
     }
 
-    pub(crate) fn by_time(&self, ray: &Ray<N, D>, max_time: N, found: &mut dyn FnMut(u32, N) -> N) {
-        self.search().by_time(ray, max_time, found);
+    pub(crate) fn by_time(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().by_time(sweep, max_time, found);
     }
 
     pub(crate) fn by_distance(
         &self,
-        point: &Point<N, D>,
+        aabb: &Aabb<N, D>,
         max_distance: N,
         found: &mut dyn FnMut(u32, N) -> N,
     ) {
-        self.search().by_distance(point, max_distance, found);
+        self.search().by_distance(aabb, max_distance, found);
     }
 
     fn search(&self) -> Search<'_, N, D, 1> {
         let (exact, trees) = (self.boxes.as_slice(), [&self.tree]);
         Search { exact, trees, unbounded: &self.unbounded, lanes: self.lanes }
     }
+}
+
+/// No box is inverted or holds a NaN.
+fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
+    for (index, aabb) in boxes.iter().enumerate() {
+        Aabb::try_new(*aabb.mins(), *aabb.maxs())
+            .map_err(|error| BoxTreeError::BadBox { index, error })?;
+    }
+    Ok(())
+}
+
+/// The smallest box around some boxes.
+fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aabb<N, D>> {
+    boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
 }
 
 /// The number of boxes as the tree counts them, which keeps one number for "none".

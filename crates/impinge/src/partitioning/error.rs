@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::bounding_volume::AabbError;
 
-/// Why [`BoxTree::try_from_boxes`](super::BoxTree::try_from_boxes) refused its boxes.
+/// Why a [`BoxTree`](super::BoxTree) refused its boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BoxTreeError {
@@ -20,6 +20,13 @@ pub enum BoxTreeError {
         /// How many were given.
         given: usize,
     },
+    /// A refitted tree keeps its number of boxes.
+    WrongCount {
+        /// How many were given.
+        given: usize,
+        /// How many it has.
+        needed: usize,
+    },
 }
 
 impl fmt::Display for BoxTreeError {
@@ -27,6 +34,9 @@ impl fmt::Display for BoxTreeError {
         match self {
             Self::BadBox { index, error } => write!(f, "box {index} is unusable: {error}"),
             Self::TooMany { given } => write!(f, "{given} boxes are more than 32 bits can number"),
+            Self::WrongCount { given, needed } => {
+                write!(f, "{given} boxes were given for {needed}")
+            }
         }
     }
 }

@@ -15,4 +15,4 @@ mod search;
 pub use box_tree::BoxTree;
 pub(crate) use box_tree::Question;
 pub use error::BoxTreeError;
-pub(crate) use search::Search;
+pub(crate) use search::{Search, Sweep};

@@ -2,7 +2,7 @@
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Block, Bounds, Frontier, Keys, LANES, Lanes, Tree};
-use crate::math::{Point, Real, min};
+use crate::math::{Point, Real, Vector, min};
 
 /// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
 /// its exact one, or in the list.
@@ -12,6 +12,21 @@ pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
     pub(crate) trees: [&'a Tree<D>; TREES],
     pub(crate) unbounded: &'a [u32],
     pub(crate) lanes: Lanes,
+}
+
+/// A box that moves without turning, from time zero on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sweep<N: Real, const D: usize> {
+    /// Where it is at time zero.
+    pub(crate) aabb: Aabb<N, D>,
+    pub(crate) velocity: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Sweep<N, D> {
+    /// A box that is a point and moves as the ray says.
+    pub(crate) fn along(ray: &Ray<N, D>) -> Self {
+        Self { aabb: Aabb::at(ray.origin), velocity: ray.dir }
+    }
 }
 
 impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
@@ -42,12 +57,14 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     /// Calls `found` with each object whose box the ray meets, in no particular order. A ray that is
     /// not finite meets nothing.
     pub(crate) fn each_hit(&self, ray: &Ray<N, D>, found: impl FnMut(u32)) {
+        let Sweep { aabb, velocity } = Sweep::along(ray);
         if !is_finite(ray) {
             return;
         }
         let mut propose = self.accepted(|own| own.intersects_ray(ray), found);
         for tree in self.trees {
-            tree.visit(|block| self.lanes.times_of_block(block, ray).0, &mut propose);
+            let test = |block: &Block<D>| self.lanes.times_of_block(block, &aabb, &velocity).0;
+            tree.visit(test, &mut propose);
         }
         self.unbounded.iter().copied().for_each(propose);
     }
@@ -65,35 +82,33 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Calls `found` with each object whose box the ray enters at or before `limit` and the time of
-    /// entry, in ascending order of (time, id); `found` returns the new limit, which never grows. A
-    /// ray that is not finite meets nothing.
-    pub(crate) fn by_time(&self, ray: &Ray<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
-        if !is_finite(ray) {
+    /// Calls `found` with each object whose box the moving one touches at or before `limit` and the
+    /// first time of that, in ascending order of (time, id); `found` returns the new limit, which
+    /// never grows. Nothing is met with a velocity that is not finite, or by a box without a finite
+    /// point, as that of a ray is whose origin is not finite.
+    pub(crate) fn by_time(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
+        let Sweep { aabb, velocity } = sweep;
+        if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
             return;
         }
+        let enter = |own: &Aabb<N, D>| own.sweep_interval(aabb, velocity).map(|(enter, _)| enter);
         let keys = Keys {
-            block: |block: &Block<D>| self.lanes.times_of_block(block, ray),
-            object: |id: u32| self.exact[id as usize].ray_interval(ray).map(|(enter, _)| enter),
+            block: |block: &Block<D>| self.lanes.times_of_block(block, aabb, velocity),
+            object: |id: u32| enter(&self.exact[id as usize]),
         };
         self.best_first(limit, &keys, found);
     }
 
-    /// Calls `found` with each object whose box is at most `limit` from the point and the distance, in
-    /// ascending order of (distance, id); `found` returns the new limit, which never grows. A point
-    /// that is not finite is near nothing.
-    pub(crate) fn by_distance(
-        &self,
-        point: &Point<N, D>,
-        limit: N,
-        found: impl FnMut(u32, N) -> N,
-    ) {
-        if !point.iter().all(|x| x.is_finite_number()) {
+    /// Calls `found` with each object whose box is at most `limit` from `aabb` and the distance, in
+    /// ascending order of (distance, id); `found` returns the new limit, which never grows. A box
+    /// without a finite point is near nothing.
+    pub(crate) fn by_distance(&self, aabb: &Aabb<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
+        if !aabb.holds_finite_point() {
             return;
         }
         let keys = Keys {
-            block: |block: &Block<D>| self.lanes.distance_of_block(block, point),
-            object: |id: u32| Some(self.exact[id as usize].distance_to_point(point)),
+            block: |block: &Block<D>| self.lanes.distance_of_block(block, aabb),
+            object: |id: u32| Some(self.exact[id as usize].distance_to_aabb(aabb)),
         };
         self.best_first(limit, &keys, found);
     }

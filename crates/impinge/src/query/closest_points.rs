@@ -41,7 +41,7 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
 ) -> ClosestPoints<N, D> {
     let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
     let limit = max(max_distance, N::ZERO);
-    match (N::tables().separation_in_world)(&placed1, &placed2, limit) {
+    match (N::tables().touching_in_world)(&placed1, &placed2, limit) {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,
         Some(found) => ClosestPoints::WithinMargin(found.point1, found.point2),

@@ -1,9 +1,10 @@
 //! Questions about one solid or two, answered from nothing but the arguments.
 
 mod closest_points;
-mod composite;
+pub(crate) mod composite;
 mod contact;
 mod distance;
+mod impact;
 mod kinematic;
 mod manifold;
 mod manifold_build;
@@ -13,20 +14,25 @@ mod proximity;
 mod raw_manifold;
 pub(crate) mod ray;
 pub(crate) mod separation;
-mod time_of_impact;
+mod witness;
 
 pub use crate::bounding_volume::Ray;
 pub use closest_points::{ClosestPoints, closest_points};
 pub use contact::{Contact, contact};
 pub use distance::distance;
+pub use impact::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
+    nonlinear_time_of_impact, time_of_impact,
+};
+pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
-pub(crate) use manifold_build::{contacts2, contacts3};
+pub(crate) use manifold_build::{contacts2, contacts3, witness_features2, witness_features3};
 pub(crate) use pair::{Pair, Placed, canonical};
-pub use point::{PointProjection, PointQuery};
+pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
 pub use ray::{RayCast, RayIntersection};
-pub use time_of_impact::time_of_impact;
-pub(crate) use time_of_impact::{Moving, advance};
+pub(crate) use witness::in_world as witness_in_world;
+pub use witness::{Witness, witness};

@@ -5,9 +5,6 @@ use core::cmp::Ordering;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
 
-/// So many parts of two composites of one pose are compared to tell which comes first.
-const PARTS_COMPARED: u32 = 8;
-
 /// Two solids, the first at the origin of the frame that the answer is given in.
 ///
 /// The kinds are in the fixed order of [`crate::shape::ShapeKind`]: `first ≤ second`.
@@ -20,7 +17,7 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
 }
 
 /// A solid where it stands in the world.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
     pub(crate) shape: Geometry<'a, N, D>,
@@ -33,18 +30,15 @@ pub(crate) struct Placed<'a, N: Real, const D: usize> {
 /// swapping the arguments flips the answer bit for bit. Kinds come in the order of
 /// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations,
 /// then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
-/// (Of a support map of the user's own the numbers are its rounding and 14 support points.)
+/// (Of a support map of the user's own the numbers are its rounding and its support points along the
+/// axes and the diagonals; of a composite they are those of its parts.)
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
     shape1: Geometry<'a, N, D>,
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = shape1
-        .kind()
-        .cmp(&shape2.kind())
-        .then_with(|| compare_poses(pose1, pose2))
-        .then_with(|| compare_numbers(&numbers(&shape1.0), &numbers(&shape2.0)));
+    let order = compare(pose1, shape1, pose2, shape2);
     let swapped = order == Ordering::Greater;
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
@@ -54,10 +48,57 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     (pair, swapped)
 }
 
+/// The solids are the same at the same place, as far as [`canonical`] can tell.
+pub(crate) fn indistinguishable<N: Real, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+) -> bool {
+    compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) == Ordering::Equal
+}
+
+/// The order of [`canonical`].
+fn compare<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> Ordering {
+    shape1
+        .kind()
+        .cmp(&shape2.kind())
+        .then_with(|| compare_poses(pose1, pose2))
+        .then_with(|| compare_solids(&shape1.0, &shape2.0))
+}
+
 /// By translation, then by rotation.
 fn compare_poses<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Ordering {
     compare_numbers(pose1.translation.as_slice(), pose2.translation.as_slice())
         .then_with(|| compare_numbers(pose1.rotation.as_slice(), pose2.rotation.as_slice()))
+}
+
+/// By the numbers that make solids of one kind what they are.
+fn compare_solids<N: Real, const D: usize>(
+    solid1: &Kind<'_, N, D>,
+    solid2: &Kind<'_, N, D>,
+) -> Ordering {
+    match (solid1, solid2) {
+        (Kind::Composite(parts1), Kind::Composite(parts2)) => compare_parts(*parts1, *parts2),
+        _ => compare_numbers(&numbers(solid1), &numbers(solid2)),
+    }
+}
+
+/// By how many parts there are, then part by part up to the first difference.
+fn compare_parts<N: Real, const D: usize>(
+    parts1: &dyn CompositeShape<N, D>,
+    parts2: &dyn CompositeShape<N, D>,
+) -> Ordering {
+    let one = |index| {
+        let (part1, part2) = (parts1.part(index), parts2.part(index));
+        compare(&part1.pose, part1.solid.geometry(), &part2.pose, part2.solid.geometry())
+    };
+    let counts = parts1.num_parts().cmp(&parts2.num_parts());
+    let mut orders = (0..parts1.num_parts()).map(one);
+    counts.then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
 }
 
 /// Lexicographic; what cannot be compared by value (NaN, zeros of two signs) is compared by bits.
@@ -100,20 +141,9 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
         }
         Kind::SupportMap(map) => probed(*map),
         Kind::Plane(plane) => plane.normal().as_slice().to_vec(),
-        Kind::Composite(parts) => of_parts(*parts),
+        // Compared part by part.
+        Kind::Composite(_) => Vec::new(),
     }
-}
-
-/// What tells one composite from another: how many parts it has, and the first few of them.
-fn of_parts<N: Real, const D: usize>(parts: &dyn CompositeShape<N, D>) -> Vec<N> {
-    let mut all = vec![N::lit(f64::from(parts.num_parts()))];
-    for index in 0..parts.num_parts().min(PARTS_COMPARED) {
-        let part = parts.part(index);
-        all.extend_from_slice(part.pose.translation.as_slice());
-        all.extend_from_slice(part.pose.rotation.as_slice());
-        all.extend(numbers(&part.solid.geometry().0));
-    }
-    all
 }
 
 /// The coordinates of some points in a row.

@@ -1,7 +1,8 @@
 //! Balls (disks in the plane).
 
 use super::error::{or_panic, size};
-use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::scale::Scale;
+use super::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -69,5 +70,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ball<N> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         BoundingSphere::new(Point::origin(), self.radius)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let radius = self.radius * Scale::try_new(scale)?.uniform()?;
+        Ok(ShapeHandle::new(Self::try_new(radius)?))
     }
 }

@@ -1,8 +1,11 @@
 //! Capsules.
 
 use super::error::{finite, or_panic, size};
+use super::scale::Scale;
 use super::segment::box_of;
-use super::{Feature, Geometry, Kind, Segment, Shape, ShapeError, SupportMap};
+use super::{
+    Feature, Geometry, Kind, ScaleError, Segment, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -96,5 +99,12 @@ impl<N: Real, const D: usize> Shape<N, D> for Capsule<N, D> {
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         box_of(&pose.point(self.segment.a()), &pose.point(self.segment.b()), self.radius)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factors = Scale::try_new(scale)?;
+        let radius = self.radius * factors.uniform()?;
+        let [a, b] = [self.segment.a(), self.segment.b()].map(|end| factors.point(end));
+        Ok(ShapeHandle::new(Self::try_from_ends(a, b, radius)?))
     }
 }

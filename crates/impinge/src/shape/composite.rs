@@ -94,6 +94,14 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// Each part is proposed at most once; near ones first is better, but no order is promised. What is
 /// not finite, except for the faces of an unbounded box, is near nothing.
 pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
+    /// A box around all parts, as small as is cheap: it is asked for in every query.
+    ///
+    /// The default is unbounded, which is always right; two composites are then held against each
+    /// other part by part of the smaller one, however far apart they are.
+    fn bounds(&self) -> Aabb<N, D> {
+        Aabb::unbounded()
+    }
+
     /// Calls `visit` with each part whose box meets or touches `aabb`.
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32));
 

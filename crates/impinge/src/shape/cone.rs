@@ -2,9 +2,12 @@
 
 use super::error::{or_panic, size};
 use super::round::{Disk, radial_of};
+use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
-use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{
+    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min, unit};
 
@@ -120,5 +123,14 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
         let mins = pose.translation + apex.zip_map(&(-apex - disk), min);
         let maxs = pose.translation + apex.zip_map(&(-apex + disk), max);
         Aabb::new(Point::from(mins), Point::from(maxs))
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        let (along, across) = Scale::try_new(scale)?.axial()?;
+        if scale.y < N::ZERO {
+            return Err(ScaleError::NotSuch { needs: "a factor above zero along its axis" });
+        }
+        let scaled = Self::try_new(self.half_height * along, self.radius * across)?;
+        Ok(ShapeHandle::new(scaled))
     }
 }

@@ -3,7 +3,8 @@
 use core::ops::Deref;
 
 use super::error::or_panic;
-use super::{Geometry, Kind, Polytope, Shape};
+use super::scale::Scale;
+use super::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -67,5 +68,20 @@ impl<N: Real> Shape<N, 3> for ConvexHull<N> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, 3> {
         self.polytope.bounding_sphere()
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let corners = scale.corners(self.polytope.vertices())?;
+        let normals = self.polytope.faces().iter().map(|face| scale.normal(&face.normal));
+        let ring = |face| self.polytope.face_vertices(face).iter().map(|&vertex| vertex as usize);
+        let mut faces: Vec<Vec<_>> =
+            self.polytope.faces().iter().map(|f| ring(f).collect()).collect();
+        if scale.is_mirror() {
+            faces.iter_mut().for_each(|face| face.reverse());
+        }
+        let normals = normals.collect::<Result<Vec<_>, _>>()?;
+        let scaled = Self::from_closed_faces(corners, &normals, &faces);
+        Ok(ShapeHandle::new(scaled.expect("its faces are those of a closed solid")))
     }
 }

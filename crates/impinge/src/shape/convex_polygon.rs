@@ -3,9 +3,10 @@
 use core::ops::Deref;
 
 use super::error::or_panic;
-use super::{Geometry, Kind, Polytope, Shape};
+use super::scale::Scale;
+use super::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real};
+use crate::math::{Point, Pose, Real, Vector};
 
 /// A convex polygon with three corners at least and an area.
 ///
@@ -72,5 +73,14 @@ impl<N: Real> Shape<N, 2> for ConvexPolygon<N> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, 2> {
         self.polytope.bounding_sphere()
+    }
+
+    fn scaled(&self, scale: &Vector<N, 2>) -> Result<ShapeHandle<N, 2>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let mut corners = scale.corners(self.polytope.vertices())?;
+        if scale.is_mirror() {
+            corners.reverse();
+        }
+        Ok(ShapeHandle::new(Self::from_corners(corners)))
     }
 }

@@ -1,9 +1,13 @@
 //! Boxes (rectangles in the plane).
 
 use super::error::{finite, or_panic, size};
+use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
-use super::{ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{
+    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
+    ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 
@@ -396,5 +400,11 @@ impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
 
     fn local_aabb(&self) -> Aabb<N, D> {
         Aabb::around(Point::origin(), self.half_extents)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let magnitudes = Scale::try_new(scale)?.magnitudes();
+        let half_extents = self.half_extents.component_mul(&magnitudes);
+        Ok(ShapeHandle::new(Self::try_new(half_extents)?))
     }
 }

@@ -2,9 +2,12 @@
 
 use super::error::{or_panic, size};
 use super::round::{Disk, radial_of};
+use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
-use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{
+    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -104,5 +107,11 @@ impl<N: Real> Shape<N, 3> for Cylinder<N> {
         let axis = pose.rotation.column(1).into_owned();
         let reach = axis.abs() * self.half_height + self.disk(N::ZERO).reach(&axis);
         Aabb::around(Point::from(pose.translation), reach)
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        let (along, across) = Scale::try_new(scale)?.axial()?;
+        let scaled = Self::try_new(self.half_height * along, self.radius * across)?;
+        Ok(ShapeHandle::new(scaled))
     }
 }

@@ -1,8 +1,9 @@
 //! Ellipsoids, and ellipses in the plane.
 
 use super::error::{finite, or_panic, size};
+use super::scale::Scale;
 use super::segment::length_of;
-use super::{Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Vector, max_component, unit};
 
@@ -88,5 +89,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         BoundingSphere::new(Point::origin(), self.reach())
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factors = Scale::try_new(scale)?.magnitudes();
+        Ok(ShapeHandle::new(Self::try_new(self.half_axes.component_mul(&factors))?))
     }
 }

@@ -50,6 +50,32 @@ pub enum ShapeError {
         /// The kind of the shape.
         kind: ShapeKind,
     },
+    /// A composite without parts.
+    NoChildren,
+    /// The position of a child is NaN or infinite.
+    ChildPoseNotFinite {
+        /// The index of the child.
+        index: usize,
+    },
+    /// There are more parts than 32 bits can number.
+    TooManyParts {
+        /// How many they would be.
+        needed: u64,
+    },
+    /// The number of heights is not that of the rows times that of the columns.
+    WrongHeightCount {
+        /// How many were given.
+        given: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// A height, or the height times the scale, is NaN or infinite.
+    HeightNotFinite {
+        /// The row; 0 in the plane.
+        row: usize,
+        /// The column.
+        column: usize,
+    },
 }
 
 impl fmt::Display for ShapeError {
@@ -73,6 +99,19 @@ impl fmt::Display for ShapeError {
                 write!(f, "{kind:?} is not a bounded convex solid and cannot be rounded")
             }
             Self::NotConvex { index } => write!(f, "the outline is not convex at point {index}"),
+            Self::NoChildren => write!(f, "a compound needs a child at least"),
+            Self::ChildPoseNotFinite { index } => {
+                write!(f, "the position of child {index} is not finite")
+            }
+            Self::TooManyParts { needed } => {
+                write!(f, "{needed} parts are more than 32 bits can number")
+            }
+            Self::WrongHeightCount { given, needed } => {
+                write!(f, "{given} heights were given, {needed} are needed")
+            }
+            Self::HeightNotFinite { row, column } => {
+                write!(f, "the height at row {row}, column {column} is not finite")
+            }
         }
     }
 }

@@ -22,7 +22,7 @@ pub enum FeatureId {
 impl FeatureId {
     /// The name of a flat part of `dimension` of a solid in `D` dimensions: a point is a vertex, a
     /// part that bounds the solid (a side in the plane, a polygon in space) a face, else an edge.
-    pub(super) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
+    pub(crate) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
         if dimension == 0 {
             Self::Vertex(index)
         } else if dimension + 1 == D {

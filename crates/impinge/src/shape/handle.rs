@@ -3,8 +3,8 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::Shape;
-use crate::math::Real;
+use super::{ScaleError, Shape};
+use crate::math::{Real, Vector};
 
 /// A counted reference to an immutable shape; cloning it is cheap and shares the shape.
 #[derive(Clone, Debug)]
@@ -19,6 +19,28 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     /// Shares a shape that is already counted.
     pub fn from_arc(shape: Arc<dyn Shape<N, D>>) -> Self {
         Self(shape)
+    }
+
+    /// The shape scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
+    ///
+    /// ```
+    /// use impinge::dim2::na::{Vector2, Point2};
+    /// use impinge::dim2::shape::{Ball, Cuboid, ScaleError, Segment, ShapeHandle};
+    ///
+    /// let (mirror, wide) = (Vector2::new(-1.0_f32, 1.0), Vector2::new(2.0, 1.0));
+    /// let segment = ShapeHandle::new(Segment::new(Point2::origin(), Point2::new(3.0, 4.0)));
+    /// let mirrored = segment.scaled(&mirror).expect("a segment takes every scale");
+    /// assert_eq!(mirrored.local_aabb().mins(), &Point2::new(-3.0, 0.0));
+    ///
+    /// let ball = ShapeHandle::new(Ball::new(1.0_f32));
+    /// assert!(ball.scaled(&mirror).is_ok());
+    /// assert!(matches!(ball.scaled(&wide), Err(ScaleError::NotSuch { .. })));
+    /// ```
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, or the scaled solid is no shape of the library.
+    pub fn scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
+        self.0.scaled(scale)
     }
 
     /// The two handles share one shape.

@@ -10,6 +10,8 @@ mod ball;
 mod bounds;
 mod capsule;
 mod composite;
+mod compound;
+mod compound_search;
 mod cone;
 mod convex_hull;
 mod convex_polygon;
@@ -22,20 +24,28 @@ mod feature;
 mod feature_tests;
 mod geometry;
 mod handle;
+mod height_field;
+mod joints;
+mod mesh_error;
 mod part_search;
 mod plane;
+mod polyline;
+mod polyline_parts;
 mod polytope;
 mod polytope_build;
 mod polytope_check;
 mod polytope_feature;
 mod round;
 mod rounded;
+mod scale;
+mod seam;
 mod segment;
 mod support_map;
 mod tapered_capsule;
 mod tetrahedron;
 mod tetrahedron_flat;
 mod tilt;
+mod tri_mesh;
 mod triangle;
 mod triangle_feature;
 
@@ -43,6 +53,7 @@ pub use ball::Ball;
 pub use bounds::{aabb, bounding_sphere};
 pub use capsule::Capsule;
 pub use composite::{CompositeShape, Part, PartPath, PartSearch, PartSolid, Surface};
+pub use compound::Compound;
 pub use cone::Cone;
 pub use convex_hull::ConvexHull;
 pub use convex_polygon::ConvexPolygon;
@@ -55,23 +66,29 @@ pub use feature::{Feature, FeatureId};
 pub(crate) use geometry::Kind;
 pub use geometry::{Geometry, ShapeKind};
 pub use handle::ShapeHandle;
+pub use height_field::{Diagonal, Diagonals, HeightField};
+pub use mesh_error::MeshError;
 pub use plane::Plane;
+pub use polyline::Polyline;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
 pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;
+pub use scale::ScaleError;
 pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, SupportMap};
 pub(crate) use tapered_capsule::Taper;
 pub use tapered_capsule::TaperedCapsule;
 pub use tetrahedron::Tetrahedron;
 pub(crate) use tilt::FACING_SINE_SQUARED;
+pub(crate) use tri_mesh::MeshTable;
+pub use tri_mesh::{Neighbor, TriMesh};
 pub use triangle::Triangle;
 
 use core::any::Any;
 use core::fmt::Debug;
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Vector};
 
 /// A solid in its own frame.
 ///
@@ -88,6 +105,22 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// A box around the solid placed at `pose`; as small as is cheap.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         self.local_aabb().transformed_by(pose)
+    }
+
+    /// The solid scaled along the axes of its frame, about its origin; factors may be negative.
+    ///
+    /// The answer is exact up to rounding, and of the same type but for what its type says: a shape
+    /// never becomes an approximation of itself. What is round across an axis stays round: it needs
+    /// factors of one magnitude there; a cone cannot be turned over, a compound sheared.
+    /// Polygons number their vertices the other way round if mirrored; other parts and features keep
+    /// their numbers.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, no shape of the library is the scaled solid, or its numbers
+    /// leave their range. The default is [`ScaleError::Unsupported`].
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let _ = scale;
+        Err(ScaleError::Unsupported)
     }
 
     /// A sphere around the solid in its own frame.

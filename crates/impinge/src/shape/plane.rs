@@ -1,6 +1,7 @@
 //! Half-spaces (half-planes in the plane).
 
-use super::{Geometry, Kind, Shape};
+use super::scale::Scale;
+use super::{Geometry, Kind, ScaleError, Shape, ShapeHandle};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Pose, Real, Unit, Vector};
 
@@ -59,5 +60,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         BoundingSphere::unbounded()
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let normal = Scale::try_new(scale)?.normal(&self.normal)?;
+        Ok(ShapeHandle::new(Self::new(Unit::new_unchecked(normal))))
     }
 }

@@ -1,7 +1,10 @@
 //! Segments.
 
 use super::error::{finite, or_panic};
-use super::{Feature, FeatureId, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::scale::Scale;
+use super::{
+    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
 
@@ -101,5 +104,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Segment<N, D> {
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         box_of(&pose.point(&self.a), &pose.point(&self.b), N::ZERO)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        Ok(ShapeHandle::new(Self::try_new(scale.point(&self.a), scale.point(&self.b))?))
     }
 }

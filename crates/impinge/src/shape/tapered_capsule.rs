@@ -1,9 +1,13 @@
 //! Tapered capsules: the hulls of two balls.
 
 use super::error::{or_panic, size};
+use super::scale::Scale;
 use super::segment::{box_of, length_of};
 use super::tilt::Tilt;
-use super::{Feature, FeatureId, Geometry, Kind, Segment, Shape, ShapeError, SupportMap};
+use super::{
+    Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError, ShapeHandle,
+    SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
 
@@ -202,5 +206,13 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
             (Ok(ball1), Ok(ball2)) => ball1.merged(&ball2),
             _ => BoundingSphere::unbounded(),
         }
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factors = Scale::try_new(scale)?;
+        let factor = factors.uniform()?;
+        let [a, b] = [0, 1].map(|end| factors.point(self.end(end)));
+        let radii = self.radii.map(|radius| radius * factor);
+        Ok(ShapeHandle::new(Self::try_from_ends(a, b, radii)?))
     }
 }

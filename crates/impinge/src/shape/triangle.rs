@@ -1,9 +1,10 @@
 //! Triangles: filled in the plane, flat in space.
 
 use super::error::{finite, or_panic};
+use super::scale::Scale;
 use super::segment::{box_of, farther, length_of};
 use super::tilt::Tilt;
-use super::{Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector, centroid, max};
 
@@ -93,5 +94,11 @@ impl<N: Real, const D: usize> Shape<N, D> for Triangle<N, D> {
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         let [a, b, c] = self.corners.map(|corner| pose.point(&corner));
         box_of(&a, &b, N::ZERO).merged(&box_of(&c, &c, N::ZERO))
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let [a, b, c] = self.corners.map(|corner| scale.point(&corner));
+        Ok(ShapeHandle::new(Self::try_new(a, b, c)?))
     }
 }

@@ -7,7 +7,7 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
 use crate::math::{Pose, Real, Space, max};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
-use crate::shape::ShapeHandle;
+use crate::shape::{Shape, ShapeHandle};
 
 /// The broad phase of a world.
 pub(crate) type WorldBroadPhase<N, const D: usize> =
@@ -58,7 +58,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         groups: CollisionGroups,
         proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
     ) -> Self {
-        let aabb = aabb_at(&row.shape, &N::pose(&row.isometry));
+        let aabb = aabb_at(&*row.shape, &N::pose(&row.isometry));
         let proxy = proxy(volume(&aabb, row.query));
         let ObjectRow { handle, isometry, shape, query } = row;
         let changes = Changes::default();
@@ -86,8 +86,8 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
 }
 
 /// The box of a placed shape; the box of everything where the numbers go beyond the scalar's range.
-fn aabb_at<N: Space<D>, const D: usize>(
-    shape: &ShapeHandle<N, D>,
+pub(super) fn aabb_at<N: Real, const D: usize>(
+    shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
 ) -> Aabb<N, D> {
     let aabb = shape.aabb(pose);
@@ -99,9 +99,13 @@ fn aabb_at<N: Space<D>, const D: usize>(
 /// solids are as near as the sum of both limits; and by a few units in the last place, because the
 /// box, the sum and the distance that it is compared with are rounded.
 fn volume<N: Real, const D: usize>(aabb: &Aabb<N, D>, query: GeometricQueryType<N>) -> Aabb<N, D> {
+    grown(aabb, query.query_limit())
+}
+
+/// The box grown by `limit`, and by a few units in the last place of what that makes of it.
+pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let faces = aabb.mins().iter().chain(aabb.maxs().iter());
     let finite = faces.filter(|x| x.is_finite_number());
-    let limit = query.query_limit();
     let reach = finite.fold(limit, |reach, x| max(x.abs(), reach));
     aabb.loosened(limit + N::lit(8.0) * N::EPSILON * reach)
 }
@@ -144,14 +148,14 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
         let body = &mut self.bodies[index as usize];
         let pose = finite_pose(N::pose(&isometry), Some(body.handle))?;
         body.isometry = isometry;
-        body.aabb = aabb_at(&body.shape, &pose);
+        body.aabb = aabb_at(&*body.shape, &pose);
         self.note(index).volume = true;
         Ok(())
     }
 
     pub(crate) fn set_shape(&mut self, index: u32, shape: ShapeHandle<N, D>) {
         let body = &mut self.bodies[index as usize];
-        body.aabb = aabb_at(&shape, &N::pose(&body.isometry));
+        body.aabb = aabb_at(&*shape, &N::pose(&body.isometry));
         body.shape = shape;
         self.note_row(index);
     }

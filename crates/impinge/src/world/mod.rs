@@ -25,3 +25,4 @@ pub use groups::{CollisionGroups, GroupError};
 pub use narrow_phase::{ContactManifolds, ContactPairs, NarrowPhase, ProximityPairs};
 pub use object::CollisionObject;
 pub use objects::CollisionObjects;
+pub use queries::{Neighbor, QueryFilter};

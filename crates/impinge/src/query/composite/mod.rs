@@ -1,11 +1,22 @@
 //! Composites: every question about one is a question about its parts, found by their boxes.
+//!
+//! The parts of nested composites are numbered in a row, so a composite has one level. An answer about
+//! a part is that of the convex algorithm for it: [`between`] places two parts for it, [`bounds`] makes
+//! boxes that rounding cannot make too small. Which part answers never depends on the order in which
+//! a search proposes them: of equal answers the one with the lowest numbers counts.
 
+mod between;
+mod bounds;
+mod impact;
 mod point;
 mod ray;
 mod separation;
 
-pub(super) use point::surface_point;
-pub(super) use ray::first_hit;
-pub(super) use separation::separation;
-#[allow(unused_imports, reason = "for the floors above")]
-pub(crate) use separation::{PartSeparation, nearest};
+pub(crate) use between::Between;
+pub(crate) use between::PartPair;
+pub(crate) use impact::first_arrival;
+pub(in crate::query) use point::surface_point;
+pub(crate) use point::{Near, PartPoint, nearest_part};
+pub(crate) use ray::{RayQuestion, each_hit};
+pub(in crate::query) use separation::separation;
+pub(crate) use separation::{PartSeparation, Wanted, nearest, nearest_between};

@@ -1,30 +1,116 @@
 //! Where a point lies to a composite: as it lies to the nearest part.
 
-use crate::bounding_volume::Aabb;
-use crate::math::{Point, Space};
-use crate::query::PointQuery;
+use super::between::recentred;
+use super::bounds::{around_point, loosened};
+use crate::math::{Point, Real, Space, Vector, max};
 use crate::query::point::{SurfacePoint, length};
-use crate::shape::{CompositeShape, FeatureId};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Part, PartSolid};
 
-/// The nearest point of the boundaries of the parts, and the part; of several that of the first.
+/// A point as the nearest part of a composite sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartPoint<N: Real, const D: usize> {
+    /// Zero or negative inside and on the boundary. More exact than the distance of the two points,
+    /// whose coordinates may be large.
+    pub(crate) distance: N,
+    /// The nearest point of the part's boundary, in the frame of the composite.
+    pub(crate) point: Point<N, D>,
+    pub(crate) feature: FeatureId,
+    pub(crate) part: u32,
+    /// The nearest point, in the frame that the part was seen in: [`Near`].
+    pub(crate) local: Point<N, D>,
+}
+
+/// A part seen from close by: what comes in the frame of the composite is moved so that the point that
+/// is asked about is the origin.
+pub(crate) struct Near<'a, N: Real, const D: usize> {
+    part: Part<'a, N, D>,
+    moved: Vector<N, D>,
+    /// The point that is asked about.
+    pub(crate) asked: Point<N, D>,
+}
+
+impl<'a, N: Real, const D: usize> Near<'a, N, D> {
+    pub(crate) fn new(part: Part<'a, N, D>, point: &Point<N, D>) -> Self {
+        let asked = part.pose.inverse_point(point);
+        match recentred(&part.solid, &asked.coords) {
+            Some(solid) => {
+                let part = Part { solid, ..part };
+                Self { part, moved: asked.coords, asked: Point::origin() }
+            }
+            None => Self { part, moved: Vector::<N, D>::zeros(), asked },
+        }
+    }
+
+    pub(crate) fn solid(&self) -> &PartSolid<'a, N, D> {
+        &self.part.solid
+    }
+
+    /// A point of the frame that the part is seen in, in that of the composite.
+    fn outer(&self, local: &Point<N, D>) -> Point<N, D> {
+        self.part.pose.point(&(local + self.moved))
+    }
+}
+
+impl<N: Space<D>, const D: usize> Near<'_, N, D> {
+    /// The nearest point of the part; `None` if there is none, or the numbers end.
+    fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
+        let Geometry(kind) = self.part.solid.geometry();
+        let found = (N::tables().surface_point)(kind, &self.asked);
+        let (projected, feature) = found.projection(&self.asked);
+        let local = projected.point;
+        let apart = length(&(self.asked - local));
+        let distance = if projected.is_inside { N::ZERO - apart } else { apart };
+        let is_asked = apart == N::ZERO;
+        let outer = if is_asked { *point } else { self.outer(&local) };
+        let is_number = distance <= N::INFINITY;
+        is_number.then_some(PartPoint { distance, point: outer, feature, part: number, local })
+    }
+}
+
+/// The nearest point of the boundary of the part that is nearest, or that the point lies deepest in;
+/// of several parts that of the first. With `touching`, any part that holds the point will do.
+///
+/// `None` if there are no parts, or if the point is not finite.
+pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    point: &Point<N, D>,
+    touching: bool,
+) -> Option<PartPoint<N, D>> {
+    let search = parts.search();
+    let start = around_point(point, &search.bounds())?;
+    let mut best: Option<PartPoint<N, D>> = None;
+    let limit = if touching { N::ZERO } else { N::INFINITY };
+    search.nearest(&start, limit, &mut |index, _| {
+        let near = Near::new(parts.part(index), point);
+        if let Some(found) = near.nearest(index, point)
+            && best.is_none_or(|best| found.is_before(&best))
+        {
+            best = Some(found);
+        }
+        let reach = best.map_or(limit, |best| best.distance);
+        let is_settled = touching && reach <= N::ZERO && best.is_some();
+        if is_settled { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+    });
+    best.filter(|best| !touching || best.distance <= N::ZERO)
+}
+
+impl<N: Real, const D: usize> PartPoint<N, D> {
+    /// Nearer or deeper, or as near and earlier by number.
+    fn is_before(&self, other: &Self) -> bool {
+        self.distance < other.distance
+            || (self.distance == other.distance && self.part < other.part)
+    }
+}
+
+/// The entry of the table of shapes.
 pub(in crate::query) fn surface_point<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
-) -> (SurfacePoint<N, D>, u32) {
+) -> SurfacePoint<N, D> {
     let nowhere = SurfacePoint { point: *point, feature: FeatureId::Face(0), is_inside: false };
-    let (mut best, mut best_part, mut distance) = (nowhere, 0, N::INFINITY);
-    let Ok(start) = Aabb::try_new(*point, *point) else { return (nowhere, 0) };
-    parts.search().nearest(&start, N::INFINITY, &mut |index, _| {
-        let part = parts.part(index);
-        let shape = part.solid.as_shape();
-        let (found, feature) = shape.project_local_point(&part.pose.inverse_point(point));
-        let nearest = part.pose.point(&found.point);
-        let apart = if found.is_inside { N::ZERO } else { length(&(point - nearest)) };
-        if apart < distance || (apart == distance && index < best_part) {
-            (best_part, distance) = (index, apart);
-            best = SurfacePoint { point: nearest, feature, is_inside: found.is_inside };
-        }
-        distance
-    });
-    (best, best_part)
+    nearest_part(parts, point, false).map_or(nowhere, |found| SurfacePoint {
+        point: found.point,
+        feature: found.feature,
+        is_inside: found.distance <= N::ZERO,
+    })
 }

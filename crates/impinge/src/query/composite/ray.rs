@@ -1,28 +1,48 @@
-//! Where a ray meets a composite: where it first meets one of its parts.
+//! Where a ray meets a composite: where it meets its parts.
+//!
+//! Parts with common corners leave no gap: the triangle algorithms decide by signs that are exact but
+//! for zero, which counts for both sides (see `triangle3`), and the search is asked with a box around
+//! the ray's origin that holds what rounding makes of times and boxes.
 
-use crate::bounding_volume::{Aabb, Ray};
-use crate::math::Space;
+use super::bounds::{around_point, loosened};
+use crate::bounding_volume::Ray;
+use crate::math::{Real, Space, max};
 use crate::query::{RayCast, RayIntersection};
 use crate::shape::CompositeShape;
 
-/// The first hit, in the frame of the composite; of several at one time that on the first part.
-pub(in crate::query) fn first_hit<N: Space<D>, const D: usize>(
+/// What is asked about a ray, in the frame of the composite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayQuestion<N: Real, const D: usize> {
+    pub(crate) ray: Ray<N, D>,
+    /// Hits after this time do not count.
+    pub(crate) max_time: N,
+    pub(crate) solid: bool,
+}
+
+/// Calls `visit` with the first hit on each part that is hit by the time asked for. It returns the new
+/// time, which never grows; a negative one ends the search. No order is promised.
+pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
-    ray: &Ray<N, D>,
-    solid: bool,
-) -> Option<RayIntersection<N, D>> {
-    let mut first: Option<RayIntersection<N, D>> = None;
-    let start = Aabb::try_new(ray.origin, ray.origin).ok()?;
-    parts.search().cast(&start, &ray.dir, N::INFINITY, &mut |index, _| {
+    question: &RayQuestion<N, D>,
+    visit: &mut dyn FnMut(RayIntersection<N, D>) -> N,
+) {
+    let RayQuestion { ray, max_time, solid } = question;
+    let (mut latest, search) = (*max_time, parts.search());
+    let Some(start) = around_point(&ray.origin, &search.bounds()) else { return };
+    // Written so that a time that is not a number is before the start.
+    let asks = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
+    if !asks {
+        return;
+    }
+    search.cast(&start, &ray.dir, loosened(latest), &mut |index, _| {
         let part = parts.part(index);
         let local = ray.inverse_transformed_by(&part.pose);
-        if let Some(hit) = part.solid.as_shape().cast_local_ray(&local, solid) {
+        let hit = part.solid.as_shape().cast_local_ray(&local, *solid);
+        if let Some(hit) = hit.filter(|hit| hit.toi <= latest) {
             let normal = part.pose.vector(&hit.normal);
-            let hit = RayIntersection { normal, part: index, ..hit };
-            let key = |hit: &RayIntersection<N, D>| (hit.toi, hit.part);
-            first = Some(first.filter(|first| key(first) <= key(&hit)).unwrap_or(hit));
+            let next = visit(RayIntersection { normal, part: index, ..hit });
+            latest = if next < latest { next } else { latest };
         }
-        first.map_or(N::INFINITY, |hit| hit.toi)
+        if latest < N::ZERO { latest } else { loosened(max(latest, N::ZERO)) }
     });
-    first
 }

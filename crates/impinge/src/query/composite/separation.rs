@@ -1,17 +1,30 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use super::between::{Between, by_number};
+use super::bounds::loosened;
 use crate::convex::Separation;
-use crate::math::{Pose, Real, Space, max};
+use crate::math::{Real, Space, max};
 use crate::query::Pair;
-use crate::shape::{CompositeShape, Geometry, Kind, Shape};
+use crate::query::separation::separation as of_convex;
+use crate::shape::CompositeShape;
 
-/// The separation of two parts, and which parts they are.
+/// The separation of two parts, in the frame of the first shape, and which parts they are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
+    /// The same in the frame of the first part: [`Between::parts`].
+    pub(crate) local: Separation<N, D>,
     /// The part of the first and of the second; 0 of a solid that is no composite.
     pub(crate) parts: [u32; 2],
+}
+
+/// Which of the pairs of parts is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// The nearest, or where parts overlap the deepest; of several the first by numbers.
+    Deepest,
+    /// The nearest, or any that touches or overlaps: enough to know the distance.
+    Touching,
 }
 
 /// The entry of the pair table.
@@ -28,99 +41,103 @@ pub(crate) fn nearest<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<PartSeparation<N, D>> {
-    match (Geometry(pair.first).as_composite(), Geometry(pair.second).as_composite()) {
-        (_, Some(parts2)) => nearest_of_second(pair, parts2, limit),
-        (Some(_), None) => {
-            let pose12 = pair.pose12.inverse();
-            let turned = Pair { first: pair.second, second: pair.first, pose12 };
-            nearest(&turned, limit).map(|found| PartSeparation {
-                separation: found.separation.flipped(&pose12),
-                parts: [found.parts[1], found.parts[0]],
-            })
-        }
-        (None, None) => {
-            let separation = super::super::separation::separation(pair, limit)?;
-            Some(PartSeparation { separation, parts: [0, 0] })
-        }
-    }
+    nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest)
 }
 
-/// The nearest of the parts of the second shape.
-fn nearest_of_second<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    parts2: &dyn CompositeShape<N, D>,
+/// [`nearest`] for shapes of which both relative poses are known.
+///
+/// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
+/// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
+/// number, as long as parts do not all overlap. Half-spaces that do not lie along an axis have no box:
+/// they are held against every part.
+pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
     limit: N,
+    wanted: Wanted,
 ) -> Option<PartSeparation<N, D>> {
-    let mut best: Option<PartSeparation<N, D>> = None;
-    let aabb = aabb_of(pair.first, &pair.pose12.inverse());
-    parts2.search().nearest(&aabb, max(limit, N::ZERO), &mut |part2, _| {
-        let part = parts2.part(part2);
-        let pose12 = pair.pose12.compose(&part.pose);
-        let with_part = Pair { first: pair.first, second: part.solid.geometry().0, pose12 };
-        let reach = best.map_or(limit, |best| best.separation.distance);
-        if let Some(found) = nearest(&with_part, reach) {
-            let found = PartSeparation { parts: [found.parts[0], part2], ..found };
-            best = Some(best.filter(|best| is_before(best, &found)).unwrap_or(found));
-        }
-        max(best.map_or(limit, |best| best.separation.distance), N::ZERO)
-    });
-    best
-}
-
-/// Nearer, or as near and earlier by number.
-fn is_before<N: Real, const D: usize>(a: &PartSeparation<N, D>, b: &PartSeparation<N, D>) -> bool {
-    let (distance1, distance2) = (a.separation.distance, b.separation.distance);
-    distance1 < distance2 || (distance1 == distance2 && a.parts <= b.parts)
-}
-
-/// The box of a solid of any kind placed at `pose`.
-pub(in crate::query) fn aabb_of<N: Space<D>, const D: usize>(
-    kind: Kind<'_, N, D>,
-    pose: &Pose<N, D>,
-) -> Aabb<N, D> {
-    match kind {
-        Kind::Ball(ball) => Shape::<N, D>::aabb(ball, pose),
-        Kind::Segment(segment) => segment.aabb(pose),
-        Kind::Capsule(capsule) => capsule.aabb(pose),
-        Kind::Triangle(triangle) => triangle.aabb(pose),
-        Kind::Cuboid(cuboid) => cuboid.aabb(pose),
-        Kind::Plane(plane) => plane.aabb(pose),
-        Kind::Ellipsoid(ellipsoid) => ellipsoid.aabb(pose),
-        Kind::TaperedCapsule(capsule) => capsule.aabb(pose),
-        Kind::Rounded(solid) => aabb_of(solid.inner().0, pose).loosened(solid.swelling()),
-        Kind::Polytope(map) => aabb_of_map(map, pose),
-        Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
-            aabb_of_map(map, pose)
-        }
-        Kind::Composite(parts) => aabb_of_parts(parts, pose),
+    let search = Search { between, limit, wanted, best: None };
+    match between.composites() {
+        [None, None] => search.of_convex(),
+        [Some(parts1), None] => search.of_one(1, 0, parts1),
+        [None, Some(parts2)] => search.of_one(0, 0, parts2),
+        [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
     }
 }
 
-/// The box of a support map: of its farthest points along the axes.
-fn aabb_of_map<N: Real, const D: usize>(
-    map: &dyn crate::shape::SupportMap<N, D>,
-    pose: &Pose<N, D>,
-) -> Aabb<N, D> {
-    let (mut mins, mut maxs) = (pose.point(&map.center()), pose.point(&map.center()));
-    for axis in 0..D {
-        let mut outward = crate::math::Vector::<N, D>::zeros();
-        outward[axis] = N::ONE;
-        let local = pose.inverse_vector(&outward);
-        maxs[axis] = pose.point(&map.core_support(&local))[axis] + map.rounding();
-        mins[axis] = pose.point(&map.core_support(&-local))[axis] - map.rounding();
-    }
-    Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
+/// The best pair of parts so far.
+struct Search<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    limit: N,
+    wanted: Wanted,
+    best: Option<PartSeparation<N, D>>,
 }
 
-/// The box of all parts.
-fn aabb_of_parts<N: Space<D>, const D: usize>(
-    parts: &dyn CompositeShape<N, D>,
-    pose: &Pose<N, D>,
-) -> Aabb<N, D> {
-    let one = |index| {
-        let part = parts.part(index);
-        part.solid.as_shape().aabb(&pose.compose(&part.pose))
-    };
-    let boxes = (0..parts.num_parts()).map(one);
-    boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded)
+impl<N: Space<D>, const D: usize> Search<'_, N, D> {
+    fn of_convex(mut self) -> Option<PartSeparation<N, D>> {
+        self.hold([0, 0]);
+        self.best
+    }
+
+    /// One convex solid, which is the first or the second, against all parts of the other shape.
+    fn of_one(
+        mut self,
+        which: usize,
+        part: u32,
+        others: &dyn CompositeShape<N, D>,
+    ) -> Option<PartSeparation<N, D>> {
+        self.each_near(which, part, others);
+        self.best
+    }
+
+    /// The parts of the composite with fewer of them, each against all of the other.
+    fn of_many(
+        mut self,
+        parts1: &dyn CompositeShape<N, D>,
+        parts2: &dyn CompositeShape<N, D>,
+    ) -> Option<PartSeparation<N, D>> {
+        let (which, fewer, more) = by_number(parts1, parts2);
+        let aabb = self.between.whole_in_other(1 - which);
+        let bound = self.bound();
+        fewer.search().nearest(&aabb, bound, &mut |part, _| {
+            self.each_near(which, part, more);
+            self.bound()
+        });
+        self.best
+    }
+
+    /// Holds one part of one shape against those of the other that are near.
+    fn each_near(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+        let aabb = self.between.aabb_in_other(which, part);
+        let bound = self.bound();
+        others.search().nearest(&aabb, bound, &mut |other, _| {
+            self.hold(if which == 0 { [part, other] } else { [other, part] });
+            self.bound()
+        });
+    }
+
+    /// Holds two parts against each other.
+    fn hold(&mut self, parts: [u32; 2]) {
+        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
+        let placed = self.between.parts(parts);
+        let Some(found) = of_convex(&placed.pair(), reach) else { return };
+        let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
+        if self.best.is_none_or(|best| found.is_before(&best)) {
+            self.best = Some(found);
+        }
+    }
+
+    /// How near boxes must be for their parts to matter; negative if none does any more.
+    fn bound(&self) -> N {
+        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
+        let is_known = self.best.is_some() && reach <= N::ZERO && self.wanted == Wanted::Touching;
+        if is_known { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+    }
+}
+
+impl<N: Real, const D: usize> PartSeparation<N, D> {
+    /// Nearer, or as near and earlier by number.
+    fn is_before(&self, other: &Self) -> bool {
+        let (distance, others) = (self.separation.distance, other.separation.distance);
+        distance < others || (distance == others && self.parts < other.parts)
+    }
 }

@@ -21,10 +21,12 @@ mod overlap;
 mod reduce;
 #[cfg(test)]
 pub(super) mod tests;
+mod witness;
 
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
+pub(crate) use self::witness::{features2 as witness_features2, features3 as witness_features3};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;

@@ -9,6 +9,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod location;
 mod plane;
 pub(crate) mod point2;
 pub(crate) mod point3;
@@ -22,12 +23,15 @@ mod triangle2;
 mod triangle3;
 mod volume;
 
+pub use location::{Barycentric, PointLocation};
+
 pub(super) use segment::{feature_at, nearest as nearest_on_segment};
 pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
+use super::composite::{Near, PartPoint};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space};
-use crate::shape::{FeatureId, Shape};
+use crate::shape::{CompositeShape, FeatureId, Shape};
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,12 +54,52 @@ pub struct PointProjection<N: Real, const D: usize> {
 ///
 /// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0` always
 /// agree. A point that is not finite lies in nothing; its projection and distance mean nothing.
+///
+/// A composite is the union of its parts: a point is inside if it is inside a part. Outside, the nearest
+/// part answers; inside, the part that the point lies deepest in, by the nearest point of that part's
+/// own boundary, which may lie inside another part. So the depth is at most the depth in the union, and
+/// equal to it where parts do not overlap. Of several parts the first by number answers. Triangles of
+/// space and segments are surfaces, which hold the points on them and enclose nothing; distances from
+/// them are as exact where the mesh is far from its origin as where it is near. A composite without
+/// parts is infinitely far from everything.
+///
+/// Cost on a composite: a search of the parts near the point.
 pub trait PointQuery<N: Real, const D: usize> {
     /// The nearest point of the boundary, and the feature that it lies on, in the local frame.
     ///
     /// The other methods derive from it. [`PointProjection::point`] is on the boundary even if the
     /// given point is inside.
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId);
+
+    /// [`Self::project_local_point`] with the part of a composite and the weights of its corners.
+    ///
+    /// With `solid`, a point inside is its own projection, and the weights are those of itself; the
+    /// feature is that of the nearest point of the boundary all the same.
+    ///
+    /// ```
+    /// use impinge::dim3::math::Point;
+    /// use impinge::dim3::shape::Triangle;
+    /// use impinge::query::{Barycentric, PointQuery};
+    ///
+    /// let (a, b, c) = (Point::new(0.0, 0.0, 0.0), Point::new(4.0, 0.0, 0.0), Point::new(0.0, 4.0, 0.0));
+    /// let triangle = Triangle::new(a, b, c);
+    /// let (nearest, location) = triangle.project_local_point_with_location(&Point::new(1.0, 1.0, 5.0), true);
+    /// assert_eq!(nearest.point, Point::new(1.0, 1.0, 0.0));
+    /// assert_eq!(location.barycentric, Barycentric::Triangle([0.5, 0.25, 0.25]));
+    /// ```
+    fn project_local_point_with_location(
+        &self,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> (PointProjection<N, D>, PointLocation<N>);
+
+    /// The signed distance to the boundary in the local frame: negative inside.
+    fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N;
+
+    /// The point of the local frame lies in the solid or on its boundary.
+    fn contains_local_point(&self, point: &Point<N, D>) -> bool {
+        self.project_local_point(point).0.is_inside
+    }
 
     /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame.
     ///
@@ -82,14 +126,9 @@ pub trait PointQuery<N: Real, const D: usize> {
         solid: bool,
     ) -> N {
         let local = Pose::from_isometry(m).inverse_point(point);
-        let (nearest, _) = self.project_local_point(&local);
-        let distance = length(&(local - nearest.point));
-        match (nearest.is_inside, solid) {
-            (false, _) => distance,
-            (true, true) => N::ZERO,
-            // Subtracting from zero, so that the boundary is at plain zero.
-            (true, false) => N::ZERO - distance,
-        }
+        let distance = self.signed_distance_to_local_point(&local);
+        // By comparison, so that the distance of nothing stays what it is.
+        if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 
     /// The point lies in the solid placed at `m`, or on its boundary.
@@ -98,8 +137,7 @@ pub trait PointQuery<N: Real, const D: usize> {
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
     ) -> bool {
-        let local = Pose::from_isometry(m).inverse_point(point);
-        self.project_local_point(&local).0.is_inside
+        self.contains_local_point(&Pose::from_isometry(m).inverse_point(point))
     }
 
     /// The nearest point of the boundary of the solid placed at `m`, in the world frame, and the
@@ -113,6 +151,20 @@ pub trait PointQuery<N: Real, const D: usize> {
         let (local, feature) = self.project_local_point(&pose.inverse_point(point));
         (placed(&local, &pose, point, false), feature)
     }
+
+    /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and where
+    /// on the solid it lies: [`Self::project_local_point_with_location`].
+    fn project_point_with_location<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> (PointProjection<N, D>, PointLocation<N>) {
+        let pose = Pose::from_isometry(m);
+        let asked = pose.inverse_point(point);
+        let (local, location) = self.project_local_point_with_location(&asked, solid);
+        (placed(&local, &pose, point, solid), location)
+    }
 }
 
 /// The projection in the world frame.
@@ -125,6 +177,26 @@ fn placed<N: Real, const D: usize>(
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
 }
 
+/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
+/// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
+pub(crate) fn project<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+) -> Option<(PointProjection<N, D>, N)> {
+    let local = pose.inverse_point(point);
+    let (nearest, distance) = if let Some(parts) = shape.geometry().as_composite() {
+        let found = (N::tables().nearest_part)(parts, &local, false)?;
+        (found.projection(), found.distance.abs())
+    } else {
+        let (nearest, _) = shape.project_local_point(&local);
+        (nearest, length(&(local - nearest.point)))
+    };
+    let is_own = solid && nearest.is_inside;
+    Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
+}
+
 impl<N: Real, const D: usize> PointProjection<N, D> {
     /// The projection on the boundary, made that on the solid: a point inside is its own.
     fn of_solid(self, point: &Point<N, D>, solid: bool) -> Self {
@@ -134,6 +206,79 @@ impl<N: Real, const D: usize> PointProjection<N, D> {
 
 impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for S {
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
-        (N::tables().surface_point)(self.geometry().0, point).projection(point)
+        match self.geometry().as_composite() {
+            None => (N::tables().surface_point)(self.geometry().0, point).projection(point),
+            Some(parts) => match (N::tables().nearest_part)(parts, point, false) {
+                None => (nowhere(point), FeatureId::Face(0)),
+                Some(found) => (found.projection(), found.feature),
+            },
+        }
+    }
+
+    fn project_local_point_with_location(
+        &self,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> (PointProjection<N, D>, PointLocation<N>) {
+        let Some(parts) = self.geometry().as_composite() else {
+            let (nearest, feature) = self.project_local_point(point);
+            let projected = nearest.of_solid(point, solid);
+            let on_boundary = (projected == nearest).then_some(feature);
+            let barycentric = Barycentric::of(self.geometry(), &projected.point, on_boundary);
+            return (projected, PointLocation { part: 0, feature, barycentric });
+        };
+        let found = (N::tables().nearest_part)(parts, point, false);
+        let nothing = PointLocation {
+            part: 0,
+            feature: FeatureId::Face(0),
+            barycentric: Barycentric::Undefined,
+        };
+        found.map_or((nowhere(point), nothing), |found| {
+            (found.projection().of_solid(point, solid), found.location(parts, point, solid))
+        })
+    }
+
+    fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N {
+        if let Some(parts) = self.geometry().as_composite() {
+            let found = (N::tables().nearest_part)(parts, point, false);
+            return found.map_or(N::INFINITY, |found| found.distance);
+        }
+        let (nearest, _) = self.project_local_point(point);
+        let distance = length(&(point - nearest.point));
+        // Subtracting from zero, so that the boundary is at plain zero.
+        if nearest.is_inside { N::ZERO - distance } else { distance }
+    }
+
+    fn contains_local_point(&self, point: &Point<N, D>) -> bool {
+        match self.geometry().as_composite() {
+            None => self.project_local_point(point).0.is_inside,
+            Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
+        }
+    }
+}
+
+/// The projection on nothing.
+fn nowhere<N: Real, const D: usize>(point: &Point<N, D>) -> PointProjection<N, D> {
+    PointProjection { is_inside: false, point: *point }
+}
+
+impl<N: Real, const D: usize> PartPoint<N, D> {
+    fn projection(&self) -> PointProjection<N, D> {
+        PointProjection { is_inside: self.distance <= N::ZERO, point: self.point }
+    }
+
+    /// Where on the part the projection of `point` lies.
+    fn location(
+        &self,
+        parts: &dyn CompositeShape<N, D>,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> PointLocation<N> {
+        let near = Near::new(parts.part(self.part), point);
+        let is_own = solid && self.distance <= N::ZERO && near.asked != self.local;
+        let (at, feature) =
+            if is_own { (&near.asked, None) } else { (&self.local, Some(self.feature)) };
+        let barycentric = Barycentric::of(near.solid().geometry(), at, feature);
+        PointLocation { part: self.part, feature: self.feature, barycentric }
     }
 }

@@ -30,6 +30,6 @@ pub(crate) fn surface_point<N: Real>(
         Kind::TaperedCapsule(solid) => tapered_capsule::surface_point(solid, point),
         Kind::Rounded(solid) => rounded::surface_point(solid, point),
         Kind::Plane(solid) => plane::surface_point(solid, point),
-        Kind::Composite(parts) => composite::surface_point(parts, point).0,
+        Kind::Composite(parts) => composite::surface_point(parts, point),
     }
 }

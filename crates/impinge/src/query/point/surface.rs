@@ -37,7 +37,10 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
 
     /// The public form. A point that is its own projection is inside, whatever the arithmetic of
     /// the shape has found: distance zero and being inside are one thing.
-    pub(super) fn projection(self, asked: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
+    pub(in crate::query) fn projection(
+        self,
+        asked: &Point<N, D>,
+    ) -> (PointProjection<N, D>, FeatureId) {
         let finite = asked.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(asked - self.point)) == N::ZERO;
         let is_inside = finite && touches;

@@ -26,7 +26,9 @@ mod volume;
 
 pub(crate) use span::Span;
 
-use super::composite::first_hit;
+use core::cmp::Ordering;
+
+use super::composite::RayQuestion;
 use super::point::length;
 use super::{PointProjection, PointQuery};
 use crate::bounding_volume::Ray;
@@ -62,11 +64,51 @@ pub struct RayIntersection<N: Real, const D: usize> {
 ///
 /// Sets without thickness (segments; triangles in space) are hit where the ray meets them within
 /// rounding: a few units in the last place of the distances involved.
+///
+/// A composite is the union of its parts, and each part is met as if it were alone. So a ray that starts
+/// in any part hits at time zero if `solid`; without, the boundaries of the parts count, also where
+/// they lie inside other parts. Of parts that are hit at one time the first by number answers. Parts
+/// that share corners to the bit, as those of a mesh or a height field do, leave no gap: a ray through
+/// a common side or corner hits at least one of them, however far from the origin (Woop, Benthin and
+/// Wald, "Watertight Ray/Triangle Intersection", 2013).
+///
+/// Cost on a composite: a search of the parts along the ray, up to the hit. [`Self::intersects_ray`]
+/// ends at any part that is hit.
 pub trait RayCast<N: Real, const D: usize> {
     /// The first hit in the local frame.
     ///
-    /// The other methods derive from it.
-    fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>>;
+    /// The other methods agree with it.
+    fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
+        self.cast_local_ray_until(ray, N::INFINITY, solid)
+    }
+
+    /// The first hit in the local frame, if it is at `max_time` or before; no hit is if that is negative
+    /// or NaN. The time is in units of the ray's direction.
+    fn cast_local_ray_until(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>>;
+
+    /// The first hits on each part of a composite by `max_time`, sorted by time and then by part, in the
+    /// local frame. Of a convex solid that is its first hit.
+    ///
+    /// One hit for each part: where the ray enters it, or at time zero if it starts there; without
+    /// `solid`, where it leaves a part that it starts in.
+    fn local_ray_hits(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Vec<RayIntersection<N, D>> {
+        self.cast_local_ray_until(ray, max_time, solid).into_iter().collect()
+    }
+
+    /// The ray of the local frame meets the solid by `max_time`.
+    fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
+        self.cast_local_ray_until(ray, max_time, true).is_some()
+    }
 
     /// The first hit on the solid placed at `m`, with its normal in the world frame.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
@@ -75,9 +117,49 @@ pub trait RayCast<N: Real, const D: usize> {
         ray: &Ray<N, D>,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
+        self.first_hit_with_ray(m, ray, N::INFINITY, solid)
+    }
+
+    /// [`Self::toi_and_normal_with_ray`] for hits at `max_time` or before.
+    fn first_hit_with_ray<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>> {
         let pose = Pose::from_isometry(m);
-        let local = self.cast_local_ray(&ray.inverse_transformed_by(&pose), solid)?;
-        Some(RayIntersection { normal: pose.vector(&local.normal), ..local })
+        let local = ray.inverse_transformed_by(&pose);
+        let hit = self.cast_local_ray_until(&local, max_time, solid)?;
+        Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
+    }
+
+    /// [`Self::local_ray_hits`] on the shape placed at `m`, with normals in the world frame.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Isometry, Point, Vector};
+    /// use impinge::dim3::query::Ray;
+    /// use impinge::dim3::shape::Ball;
+    /// use impinge::query::RayCast;
+    ///
+    /// let (ball, place) = (Ball::new(1.0_f32), Isometry::translation(5.0, 0.0, 0.0));
+    /// let ray = Ray::new(Point::origin(), Vector::x());
+    /// let hits = ball.all_hits_with_ray(&place, &ray, 10.0, true);
+    /// assert_eq!(hits.len(), 1, "a convex solid has one part");
+    /// assert_eq!((hits[0].toi, hits[0].part, hits[0].normal), (4.0, 0, -Vector::x()));
+    /// assert!(ball.all_hits_with_ray(&place, &ray, 3.0, true).is_empty(), "too early");
+    /// ```
+    fn all_hits_with_ray<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Vec<RayIntersection<N, D>> {
+        let pose = Pose::from_isometry(m);
+        let mut hits = self.local_ray_hits(&ray.inverse_transformed_by(&pose), max_time, solid);
+        hits.iter_mut().for_each(|hit| hit.normal = pose.vector(&hit.normal));
+        hits
     }
 
     /// The time of the first hit on the solid placed at `m`, in units of the ray's direction.
@@ -97,18 +179,79 @@ pub trait RayCast<N: Real, const D: usize> {
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
     ) -> bool {
-        self.toi_with_ray(m, ray, true).is_some()
+        let local = ray.inverse_transformed_by(&Pose::from_isometry(m));
+        self.intersects_local_ray(&local, N::INFINITY)
     }
 }
 
 impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
-    fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
+    fn cast_local_ray_until(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>> {
         if let Some(parts) = self.geometry().as_composite() {
-            return first_hit(parts, ray, solid);
+            let mut first: Option<RayIntersection<N, D>> = None;
+            let question = RayQuestion { ray: *ray, max_time, solid };
+            (N::tables().each_hit)(parts, &question, &mut |hit| {
+                let is_first = first.is_none_or(|first| is_before(&hit, &first));
+                first = if is_first { Some(hit) } else { first };
+                first.map_or(max_time, |first| first.toi)
+            });
+            return first;
         }
         let project = |point: &_| self.project_local_point(point);
-        cast(ray, solid, project, |ray| (N::tables().ray_span)(self.geometry().0, ray))
+        let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(self.geometry().0, ray));
+        hit.filter(|hit| hit.toi <= max_time)
     }
+
+    fn local_ray_hits(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Vec<RayIntersection<N, D>> {
+        let Some(parts) = self.geometry().as_composite() else {
+            return self.cast_local_ray_until(ray, max_time, solid).into_iter().collect();
+        };
+        let mut hits = Vec::new();
+        (N::tables().each_hit)(parts, &RayQuestion { ray: *ray, max_time, solid }, &mut |hit| {
+            hits.push(hit);
+            max_time
+        });
+        hits.sort_unstable_by(
+            |a, b| {
+                if is_before(a, b) { Ordering::Less } else { Ordering::Greater }
+            },
+        );
+        hits
+    }
+
+    fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
+        let Some(parts) = self.geometry().as_composite() else {
+            return self.cast_local_ray_until(ray, max_time, true).is_some();
+        };
+        let mut hits = false;
+        (N::tables().each_hit)(
+            parts,
+            &RayQuestion { ray: *ray, max_time, solid: true },
+            &mut |_| {
+                hits = true;
+                -N::ONE
+            },
+        );
+        hits
+    }
+}
+
+/// Earlier, or at the same time on a part of lower number. No two hits are on one part, and no time is
+/// NaN.
+fn is_before<N: Real, const D: usize>(
+    a: &RayIntersection<N, D>,
+    b: &RayIntersection<N, D>,
+) -> bool {
+    a.toi < b.toi || (a.toi == b.toi && a.part < b.part)
 }
 
 /// The hit of a ray that starts in the set.

@@ -30,6 +30,11 @@ fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Project
         let distance = max((center - corners[0]).dot(&normal), N::ZERO);
         return Projection { distance, outward: normal, point: center - normal * distance };
     }
+    if front.is_none() {
+        // The other sides lie on the longest one up to rounding; one that is a point has no direction.
+        let side = longest_side(corners);
+        return ball_segment::project(&[corners[side], corners[(side + 1) % 3]], center);
+    }
     let mut seen = project_on_sides(corners, center);
     // Close to a side the offset is mostly rounding: the triangle's own normal may be better.
     if let Some(normal) = normal
@@ -48,15 +53,19 @@ fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Project
 /// then off by rounding only in the direction in which the triangle is thin.
 fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     let side = |at: usize| corners[(at + 1) % 3] - corners[at % 3];
-    let longer = |a: usize, b: usize| {
-        if side(b).norm_squared() > side(a).norm_squared() { b } else { a }
-    };
-    let longest = longer(longer(0, 1), 2);
+    let longest = longest_side(corners);
     let (along, length) = unit(&side(longest))?;
     let next = side(longest + 1);
     let inward = made_perpendicular(&next, &along)?;
     let thin = next.dot(&inward) <= N::lit(16.0) * N::EPSILON * length;
     unit(&cross(&along, &inward)).filter(|_| !thin).map(|(front, _)| front)
+}
+
+/// The number of the longest side, the first of equals.
+fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
+    let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
+    let longer = |a: usize, b: usize| if squared(b) > squared(a) { b } else { a };
+    longer(longer(0, 1), 2)
 }
 
 /// The nearest of the three sides, the first of equals.
@@ -125,5 +134,8 @@ mod tests {
         assert_eq!((seen.distance, seen.outward.y), (3.0, 1.0), "above the segment");
         let on = project(&line, &Point::<f64, 3>::new(1.0, 0.0, 0.0));
         assert_eq!((on.distance, on.outward.x), (0.0, 0.0), "leaves sideways");
+        let doubled = [[2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]].map(Point::from);
+        let on = project(&doubled, &Point::<f64, 3>::new(1.0, 0.0, 0.0));
+        assert_eq!((on.distance, on.outward.x), (0.0, 0.0), "one side is a point");
     }
 }

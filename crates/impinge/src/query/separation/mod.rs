@@ -42,7 +42,7 @@ use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
-pub(crate) use world::in_world;
+pub(crate) use world::{in_world, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;

@@ -1,33 +1,69 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Pose, Space};
-use crate::query::pair::{Placed, canonical};
+use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
+use crate::query::composite::{Between, Wanted, nearest_between};
+use crate::query::pair::Placed;
 use crate::shape::Shape;
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
-/// Also `None` if a pose is not finite. Computed in the canonical order and in the frame of that order's first solid, then taken to the
-/// world: swapping the arguments swaps the points and turns the normal round, bit for bit.
+/// Also `None` if a pose is not finite. Computed in the canonical order and in the frame of that
+/// order's first solid, then taken to the world: swapping the arguments swaps the points and turns the
+/// normal round, bit for bit. Of composites that overlap it is that of their deepest parts.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    let (between, swapped) = Between::canonical(placed1, placed2);
+    let first = if swapped { &placed2.pose } else { &placed1.pose };
+    let found = between_poses(&between, limit, Wanted::Deepest)?;
+    Some(placed(&found, first, swapped))
+}
+
+/// [`in_world`], but of composites that overlap the separation of any two parts that do.
+pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let (between, swapped) = Between::canonical(placed1, placed2);
+    let first = if swapped { &placed2.pose } else { &placed1.pose };
+    let found = between_poses(&between, limit, Wanted::Touching)?;
+    Some(placed(&found, first, swapped))
+}
+
+/// The separation in the frame of the first.
+fn between_poses<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    limit: N,
+    wanted: Wanted,
+) -> Option<Separation<N, D>> {
+    let pair = &between.pair;
     if !pair.pose12.is_finite() {
         return None;
     }
-    let first = if swapped { &placed2.pose } else { &placed1.pose };
-    let found = super::separation(&pair, limit)?;
+    if let [None, None] = between.composites() {
+        return super::separation(pair, limit);
+    }
+    nearest_between(between, limit, wanted).map(|found| found.separation)
+}
+
+/// A separation in the frame of one solid, in that of the world.
+pub(crate) fn placed<N: Real, const D: usize>(
+    found: &Separation<N, D>,
+    first: &Pose<N, D>,
+    swapped: bool,
+) -> Separation<N, D> {
     let (normal, point1, point2) =
         (first.vector(&found.normal), first.point(&found.point1), first.point(&found.point2));
     let distance = found.distance;
-    Some(if swapped {
+    if swapped {
         Separation { distance, normal: -normal, point1: point2, point2: point1 }
     } else {
         Separation { distance, normal, point1, point2 }
-    })
+    }
 }
 
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {

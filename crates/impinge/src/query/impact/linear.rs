@@ -1,0 +1,111 @@
+//! The first touch of two solids that do not turn: the kernel, on one pair.
+
+use super::ImpactStatus;
+use crate::convex::Separation;
+use crate::math::{Real, Space, Vector, max_component};
+use crate::query::Pair;
+use crate::query::separation::separation;
+use crate::shape::Geometry;
+
+/// At most so many steps are made.
+const MAX_STEPS: usize = 128;
+
+/// How the second solid of a pair moves in the frame of the first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Path<N: Real, const D: usize> {
+    /// Its way per unit of time; no component exceeds two.
+    pub(crate) velocity: Vector<N, D>,
+    /// The last time that counts.
+    pub(crate) end: N,
+    /// The distance at which the solids touch; zero or more.
+    pub(crate) target: N,
+    /// The solids are the same at the same place: every normal is as good as its opposite.
+    pub(crate) mirrored: bool,
+}
+
+/// Where the path of a pair comes to its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival<N: Real, const D: usize> {
+    /// The time, in the unit of the path.
+    pub(crate) along: N,
+    /// How the solids lie then, in the frame of the first.
+    pub(crate) separation: Separation<N, D>,
+    pub(crate) status: ImpactStatus,
+}
+
+impl<N: Real, const D: usize> Path<N, D> {
+    /// How fast the solids approach along a normal.
+    fn closing(&self, normal: &Vector<N, D>) -> N {
+        let closing = -normal.dot(&self.velocity);
+        if self.mirrored { -closing.abs() } else { closing }
+    }
+
+    /// The speed along a normal that rounding makes of none.
+    fn noise(&self) -> N {
+        N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
+    }
+
+    /// Whether a contact at the start counts: one that gets deeper does; one that is neither deep nor
+    /// gets deeper, or gets less deep, does not. What overlaps without bound is never parted.
+    fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
+        let (closing, noise) = (self.closing(normal), self.noise());
+        let deep = gap < -tolerance;
+        closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+    }
+}
+
+/// The first time on a path at which two solids are at the target distance.
+///
+/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): with the gap along
+/// the normal between the nearest points, and the speed at which that normal sees it closing, the
+/// solids stay apart until the gap is used up. If the normal does not see it closing, they stay apart
+/// for ever. The signed distance of convex solids is a convex function of the time, and this is
+/// Newton's method on it, from the left: it never passes the first touch.
+pub(crate) fn advance<N: Space<D>, const D: usize>(
+    start: &Pair<'_, N, D>,
+    path: &Path<N, D>,
+) -> Option<Arrival<N, D>> {
+    let tolerance = N::lit(8.0) * N::EPSILON * size(start);
+    let found = separation(start, N::INFINITY)?;
+    let arrived = |along, separation, status| Some(Arrival { along, separation, status });
+    // Written so that an end that is not a number is before the start.
+    if !(path.end >= N::ZERO) {
+        return None;
+    }
+    let gap = found.distance - path.target;
+    if gap <= tolerance {
+        let counts = path.counts_at_start(&found.normal, gap, tolerance);
+        return counts.then_some(Arrival {
+            along: N::ZERO,
+            separation: found,
+            status: ImpactStatus::Reached,
+        });
+    }
+    let (mut pair, mut along, mut found) = (*start, N::ZERO, found);
+    for _ in 0..MAX_STEPS {
+        let (gap, closing) = (found.distance - path.target, path.closing(&found.normal));
+        if gap <= tolerance {
+            return arrived(along, found, ImpactStatus::Reached);
+        }
+        let later = along + gap / closing;
+        if closing <= path.noise() || !(later <= path.end) {
+            return None;
+        }
+        if later <= along {
+            return arrived(along, found, ImpactStatus::Reached);
+        }
+        along = later;
+        pair.pose12.translation = start.pose12.translation + path.velocity * along;
+        found = separation(&pair, N::INFINITY)?;
+    }
+    arrived(along, found, ImpactStatus::StepsSpent)
+}
+
+/// The length that tolerances are in proportion to: the sizes of the solids and how far they are.
+pub(super) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+    let reach = |geometry: Geometry<'_, N, D>| {
+        geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
+    };
+    let apart = max_component(&pair.pose12.translation);
+    apart + reach(Geometry(pair.first)) + reach(Geometry(pair.second))
+}

@@ -1,0 +1,46 @@
+//! What the nearest points of two convex solids lie on.
+
+use super::facet::{Facet, Which};
+use super::frame::Frame;
+use super::{ManifoldRequest, Pair, at_witness, face};
+use crate::convex::Separation;
+use crate::math::{Real, Vector, orthonormal_basis, perp};
+use crate::shape::{FeatureId, Kind};
+
+/// The features of two solids of the plane that the points of their separation lie on.
+pub(crate) fn features2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+) -> [FeatureId; 2] {
+    features(pair, separation, [-perp(&separation.normal), Vector::<N, 2>::zeros()])
+}
+
+/// The features of two solids of space that the points of their separation lie on.
+pub(crate) fn features3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+) -> [FeatureId; 2] {
+    let (u, v) = orthonormal_basis(&separation.normal);
+    features(pair, separation, [u, v])
+}
+
+/// As a manifold would name them: each is the smallest part of what a core shows along the normal that
+/// holds the point.
+fn features<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+) -> [FeatureId; 2] {
+    let request = ManifoldRequest::new(separation.distance, N::ZERO, 1);
+    let frame = Frame::new(pair, separation, &request, tangents);
+    [(pair.first, Which::First), (pair.second, Which::Second)].map(|(kind, which)| {
+        // A ball's only feature, and a half-space's.
+        if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
+            return FeatureId::Face(0);
+        }
+        let mut facet = Facet::boundary(which);
+        let pose = matches!(which, Which::Second).then_some(&pair.pose12);
+        face(&mut facet, kind, pose, &frame);
+        at_witness(&facet, &frame)
+    })
+}

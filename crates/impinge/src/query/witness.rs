@@ -1,0 +1,135 @@
+//! The nearest points of two shapes with all that is known about them.
+
+use super::composite::{Between, PartPair, PartSeparation, Wanted, nearest_between};
+use super::pair::Placed;
+use super::separation::placed;
+use crate::convex::Separation;
+use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
+use crate::shape::{FeatureId, Shape};
+
+/// The points of two shapes that are nearest to each other, or deepest in each other, and what they
+/// belong to.
+///
+/// `point2 = point1 + distance · normal` up to rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Witness<N: Real, const D: usize> {
+    /// The point on the surface of the first shape, in the world frame.
+    pub point1: Point<N, D>,
+    /// The point on the surface of the second shape, in the world frame.
+    pub point2: Point<N, D>,
+    /// The unit vector from the first shape to the second.
+    pub normal: Unit<Vector<N, D>>,
+    /// How far apart they are; negative where they overlap: minus the length of the shortest
+    /// translation that parts the two parts.
+    pub distance: N,
+    /// The part of the first shape that the point lies on; 0 for a convex solid.
+    pub part1: u32,
+    /// The part of the second shape that the point lies on; 0 for a convex solid.
+    pub part2: u32,
+    /// The feature of that part of the first shape.
+    pub feature1: FeatureId,
+    /// The feature of that part of the second shape.
+    pub feature2: FeatureId,
+}
+
+impl<N: Real, const D: usize> Witness<N, D> {
+    /// The same witness with the shapes swapped.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        Self {
+            point1: self.point2,
+            point2: self.point1,
+            normal: -self.normal,
+            distance: self.distance,
+            part1: self.part2,
+            part2: self.part1,
+            feature1: self.feature2,
+            feature2: self.feature1,
+        }
+    }
+}
+
+/// The nearest points of two shapes that are at most `max_distance` apart, with the parts of composites
+/// and the features that they lie on.
+///
+/// The one fact from which [`distance`](super::distance()), [`closest_points`](super::closest_points())
+/// and [`proximity`](super::proximity()) follow. Where several pairs of points are equally near, one is
+/// chosen, the same for every order of the arguments; among the parts of composites the first by
+/// number. Of composites that overlap it is the pair of parts that are deepest in each other: moving by
+/// `distance` along the normal parts these two, not always the shapes.
+///
+/// A rounded solid has the features of its core. A distance equal to `max_distance` counts; a negative
+/// one asks for overlaps at least that deep. `None` if it is NaN or a pose is not finite, for a composite
+/// without parts, and for half-spaces that overlap without bound.
+///
+/// Cost: that of the distance of two convex solids; a composite is searched for the parts near the
+/// other shape. Of two composites each part of the one with fewer that is near enough searches the
+/// other: n log m at most. Half-spaces that do not lie along an axis are held against every part.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point, Vector};
+/// use impinge::dim2::shape::{Ball, Cuboid, FeatureId};
+/// use impinge::query::witness;
+///
+/// let (cuboid, ball) = (Cuboid::new(Vector::new(1.0_f64, 1.0)), Ball::new(1.0));
+/// let place = Isometry::translation(4.0, 5.0);
+/// let found = witness(&Isometry::identity(), &cuboid, &place, &ball, 10.0).expect("within ten");
+/// assert_eq!((found.distance, found.point1), (4.0, Point::new(1.0, 1.0)));
+/// assert!(matches!(found.feature1, FeatureId::Vertex(_)), "a corner of the square");
+/// assert_eq!((found.part1, found.part2), (0, 0), "convex solids");
+/// ```
+#[must_use]
+pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    max_distance: N,
+) -> Option<Witness<N, D>> {
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    (N::tables().witness_in_world)(&placed1, &placed2, max_distance)
+}
+
+/// See [`witness`].
+pub(crate) fn in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Witness<N, D>> {
+    let (between, swapped) = Between::canonical(placed1, placed2);
+    if !between.pair.pose12.is_finite() {
+        return None;
+    }
+    let found = nearest_between(&between, limit, Wanted::Deepest)?;
+    if !found.separation.distance.is_finite_number() {
+        return None;
+    }
+    let features = features(&between.parts(found.parts), &found.local);
+    let first = if swapped { placed2 } else { placed1 };
+    let witness = joined(&placed(&found.separation, &first.pose, false), &found, features);
+    Some(if swapped { witness.flipped() } else { witness })
+}
+
+fn features<N: Space<D>, const D: usize>(
+    parts: &PartPair<'_, N, D>,
+    found: &Separation<N, D>,
+) -> [FeatureId; 2] {
+    (N::tables().witness_features)(&parts.pair(), found)
+}
+
+fn joined<N: Real, const D: usize>(
+    in_world: &Separation<N, D>,
+    found: &PartSeparation<N, D>,
+    features: [FeatureId; 2],
+) -> Witness<N, D> {
+    Witness {
+        point1: in_world.point1,
+        point2: in_world.point2,
+        normal: Unit::new_unchecked(in_world.normal),
+        distance: in_world.distance,
+        part1: found.parts[0],
+        part2: found.parts[1],
+        feature1: features[0],
+        feature2: features[1],
+    }
+}

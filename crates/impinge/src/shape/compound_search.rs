@@ -1,0 +1,94 @@
+//! The search of a compound: first among the boxes of its children, then within each composite.
+
+use super::{CompositeShape, Compound, PartSearch, Shape};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Pose, Real, Space, Vector, max, min};
+
+impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        self.local_aabb()
+    }
+
+    fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
+        self.tree.visit_overlapping(aabb, |child| {
+            let first = self.firsts[child];
+            match self.nested(child, aabb) {
+                Some((composite, local)) => {
+                    composite.search().overlapping(&local, &mut |part| visit(first + part));
+                }
+                None => visit(first),
+            }
+        });
+    }
+
+    fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
+        let mut lowest = limit;
+        PartSearch::nearest(&self.tree, aabb, limit, &mut |child, distance| {
+            let child = child as usize;
+            let first = self.firsts[child];
+            let Some((composite, local)) = self.nested(child, aabb) else {
+                lowest = min(lowest, visit(first, distance));
+                return lowest;
+            };
+            composite.search().nearest(&local, lowest, &mut |part, own| {
+                lowest = min(lowest, visit(first + part, max(own, distance)));
+                lowest
+            });
+            lowest
+        });
+    }
+
+    fn cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        let mut lowest = limit;
+        self.tree.cast(aabb, velocity, limit, &mut |child, time| {
+            let child = child as usize;
+            let first = self.firsts[child];
+            let Some((composite, local)) = self.nested(child, aabb) else {
+                lowest = min(lowest, visit(first, time));
+                return lowest;
+            };
+            let turned = self.poses[child].inverse_vector(velocity);
+            composite.search().cast(&local, &turned, lowest, &mut |part, own| {
+                lowest = min(lowest, visit(first + part, max(own, time)));
+                lowest
+            });
+            lowest
+        });
+    }
+}
+
+impl<N: Space<D>, const D: usize> Compound<N, D> {
+    /// A child that is a composite, and a box in its frame around what `aabb` holds.
+    fn nested(
+        &self,
+        child: usize,
+        aabb: &Aabb<N, D>,
+    ) -> Option<(&dyn CompositeShape<N, D>, Aabb<N, D>)> {
+        let composite = self.composite(child)?;
+        let local = within(aabb, &self.poses[child], self.tree.boxes().get(child)?);
+        Some((composite, local))
+    }
+}
+
+/// The box in the frame that `pose` leads from around what `aabb` holds; grown by what rounding may
+/// take off where `aabb`, at rest or on its way, meets `own`.
+///
+/// A rotated point, or velocity times the time to meet `own`, is off by a few epsilons times the
+/// coordinates on the way.
+fn within<N: Real, const D: usize>(
+    aabb: &Aabb<N, D>,
+    pose: &Pose<N, D>,
+    own: &Aabb<N, D>,
+) -> Aabb<N, D> {
+    let corners = [aabb.mins(), aabb.maxs(), own.mins(), own.maxs()];
+    let ends = corners.iter().flat_map(|corner| corner.iter()).chain(pose.translation.iter());
+    let finite = ends.map(|x| x.abs()).filter(|x| x.is_finite_number());
+    let slack = N::lit(32.0) * N::EPSILON * finite.fold(N::ZERO, max);
+    aabb.transformed_by(&pose.inverse()).loosened(slack)
+}

@@ -1,0 +1,163 @@
+//! Heights over a grid: where its points lie, and the search that serves the plane and space.
+
+use smallvec::SmallVec;
+
+use super::pyramid::{Block, Pyramid, Span};
+use crate::math::{Point, Real, max, min};
+
+/// Heights in rows and columns, and where the rows and columns lie. In the plane there is one row.
+///
+/// The points lie at (`xs[column]`, height · `y_scale`, `zs[row]`). Every coordinate comes from here,
+/// so that neighbours have the same bits.
+#[derive(Clone, Debug)]
+pub(super) struct Grid<N: Real> {
+    pub(super) columns: usize,
+    /// Row by row.
+    pub(super) heights: Vec<N>,
+    pub(super) xs: Vec<N>,
+    pub(super) zs: Vec<N>,
+    pub(super) y_scale: N,
+}
+
+/// Where lines of a grid lie that divide `extent` evenly around zero; 0 for a single one.
+///
+/// Symmetric: the last is minus the first, exactly. Never decreasing where the extent is positive,
+/// never increasing where it is negative.
+pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
+    let number = |x: i64| N::lit(x as f64);
+    let last = i64::try_from(count).expect("a vector has fewer elements") - 1;
+    if last == 0 {
+        return vec![N::ZERO];
+    }
+    (0..=last).map(|line| number(2 * line - last) / number(2 * last) * extent).collect()
+}
+
+/// A box: the least and the greatest x, y and z. In the plane z is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent<N: Real> {
+    pub(super) low: [N; 3],
+    pub(super) high: [N; 3],
+}
+
+impl<N: Real> Extent<N> {
+    /// The box between two points.
+    pub(super) fn between(a: [N; 3], b: [N; 3]) -> Self {
+        let (mut low, mut high) = (a, b);
+        for axis in 0..3 {
+            low[axis] = min(a[axis], b[axis]);
+            high[axis] = max(a[axis], b[axis]);
+        }
+        Self { low, high }
+    }
+
+    /// The smallest box around some points, one at least.
+    pub(super) fn around(points: &[[N; 3]]) -> Self {
+        let mut extent = Self { low: points[0], high: points[0] };
+        for point in &points[1..] {
+            for axis in 0..3 {
+                extent.low[axis] = min(extent.low[axis], point[axis]);
+                extent.high[axis] = max(extent.high[axis], point[axis]);
+            }
+        }
+        extent
+    }
+}
+
+/// A field as the search sees it: cells of a grid, each with a few parts.
+pub(super) trait Cells<N: Real> {
+    fn grid(&self) -> &Grid<N>;
+    fn pyramid(&self) -> &Pyramid<N>;
+    /// The unscaled heights of what is left of a cell.
+    fn cell_span(&self, row: usize, column: usize) -> Span<N>;
+    /// The parts that are left of a cell and their boxes.
+    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, Extent<N>); 2]>;
+}
+
+impl<N: Real> Grid<N> {
+    pub(super) fn height(&self, row: usize, column: usize) -> N {
+        self.heights[row * self.columns + column]
+    }
+
+    pub(super) fn at(&self, row: usize, column: usize) -> [N; 3] {
+        [self.xs[column], self.height(row, column) * self.y_scale, self.zs[row]]
+    }
+
+    pub(super) fn point(&self, row: usize, column: usize) -> Point<N, 3> {
+        Point::from(self.at(row, column))
+    }
+
+    /// The box of a block; `None` if it is all holes.
+    fn extent(&self, block: Block, cells: [usize; 2], span: Span<N>) -> Option<Extent<N>> {
+        if span[0] > span[1] {
+            return None;
+        }
+        let end = |first: usize, count: usize| min_index((first + 1) << block.level, count);
+        let (row, column) = (block.row << block.level, block.column << block.level);
+        let (last_row, last_column) = (end(block.row, cells[0]), end(block.column, cells[1]));
+        // In the plane one row of cells stands on one line.
+        let last_row = min_index(last_row, self.zs.len() - 1);
+        // Rounding keeps the order of products, so the scaled span is that of the scaled heights.
+        let [low, high] = span.map(|height| height * self.y_scale);
+        let near = [self.xs[column], low, self.zs[row]];
+        Some(Extent::between(near, [self.xs[last_column], high, self.zs[last_row]]))
+    }
+}
+
+/// The box of all cells: x and z reach over the holes; `None` if all are holes.
+pub(super) fn whole<N: Real>(field: &impl Cells<N>) -> Option<Extent<N>> {
+    let pyramid = field.pyramid();
+    let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));
+    field.grid().extent(pyramid.top(), pyramid.cells(), span)
+}
+
+fn min_index(a: usize, b: usize) -> usize {
+    if a < b { a } else { b }
+}
+
+/// Calls `visit` with the parts whose box has a key, a number of at least zero, at or below `limit`,
+/// and their key. `visit` returns the new limit, which never grows. The key of a box must not be above
+/// that of a box inside it.
+///
+/// Goes down the pyramid, at each block to the child of the least key first. The stack has three
+/// blocks at most for each level.
+pub(super) fn search<N: Real>(
+    field: &impl Cells<N>,
+    limit: N,
+    key: impl Fn(&Extent<N>) -> Option<N>,
+    mut visit: impl FnMut(u32, N) -> N,
+) {
+    let (grid, pyramid) = (field.grid(), field.pyramid());
+    let cell_span = |row, column| field.cell_span(row, column);
+    let key_of = |block: Block| {
+        let span = pyramid.span(block, &cell_span);
+        key(&grid.extent(block, pyramid.cells(), span)?)
+    };
+    let mut lowest = limit;
+    let mut stack: SmallVec<[(N, Block); 40]> = SmallVec::new();
+    stack.extend(key_of(pyramid.top()).map(|key| (key, pyramid.top())));
+    while let Some((bound, block)) = stack.pop() {
+        if !(bound <= lowest) {
+            continue;
+        }
+        if block.level == 0 {
+            for (part, extent) in field.parts(block.row, block.column) {
+                if let Some(own) = key(&extent).filter(|own| *own <= lowest) {
+                    lowest = min(lowest, visit(part, own));
+                }
+            }
+            continue;
+        }
+        let base = stack.len();
+        for child in pyramid.children(block) {
+            if let Some(own) = key_of(child).filter(|own| *own <= lowest) {
+                push_sorted(&mut stack, base, own, child);
+            }
+        }
+    }
+}
+
+/// Adds a block to those from `base` on, which are sorted so that the least key comes last.
+fn push_sorted<N: Real>(stack: &mut SmallVec<[(N, Block); 40]>, base: usize, key: N, block: Block) {
+    let place = (base..stack.len()).find(|&at| stack[at].0 <= key).unwrap_or(stack.len());
+    stack.insert(place, (key, block));
+}

@@ -1,0 +1,286 @@
+//! Height fields in the plane: one segment per cell.
+
+use smallvec::{SmallVec, smallvec};
+
+use super::grid::{Cells, Extent, Grid, search, whole};
+use super::pyramid::{Pyramid, Span, merged, no_span};
+use super::question::{Probe, lifted};
+use super::{HeightField, check_count, check_heights, check_parts, grid};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
+use crate::shape::{
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Segment, Shape, ShapeError,
+    ShapeHandle, Surface,
+};
+
+impl<N: Real> HeightField<N, 2> {
+    /// The field of these heights; see [`Self::try_new`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(heights: Vec<N>, scale: Vector<N, 2>) -> Self {
+        or_panic(Self::try_new(heights, scale))
+    }
+
+    /// The field of these heights, two at least. There are no holes, and both sides can be touched.
+    ///
+    /// # Errors
+    /// If there are too few heights; if a component of the scale, a height, or a height times the
+    /// scale is not finite; if 32 bits cannot number the segments.
+    pub fn try_new(heights: Vec<N>, scale: Vector<N, 2>) -> Result<Self, ShapeError> {
+        check_count(heights.len())?;
+        check_parts(heights.len() as u64 - 1)?;
+        let grid = grid([1, heights.len()], heights, &scale, N::ZERO)?;
+        let pyramid = Pyramid::new([1, grid.columns - 1], |_, cell| step_span(&grid, cell));
+        Ok(Self::around(grid, pyramid, scale))
+    }
+
+    /// The same field with a hole in each cell for which `is_hole(cell)`, and only there.
+    #[must_use]
+    pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
+        let cells = self.num_cells();
+        for cell in 0..cells {
+            self.marks.set_hole(cell, 0, is_hole(cell), cells);
+        }
+        self.rebuild();
+        self
+    }
+
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, or numbers leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, 2>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?.vector(&self.scale);
+        Ok(self.with_scale(scale, N::ZERO)?)
+    }
+
+    /// An unscaled height.
+    ///
+    /// # Panics
+    /// If there is none of this index.
+    #[must_use]
+    pub fn height(&self, index: usize) -> N {
+        self.grid.heights[index]
+    }
+
+    /// The point of the line at a height.
+    ///
+    /// # Panics
+    /// If there is none of this index.
+    #[must_use]
+    pub fn point(&self, index: usize) -> Point<N, 2> {
+        let [x, y, _] = self.grid.at(0, index);
+        Point::<N, 2>::new(x, y)
+    }
+
+    /// The segment between a height and the next, `None` if it is removed.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    #[must_use]
+    pub fn segment(&self, cell: usize) -> Option<Segment<N, 2>> {
+        let segment = Segment::new(self.point(cell), self.point(cell + 1));
+        Some(segment).filter(|_| !self.marks.is_hole(cell, 0))
+    }
+
+    /// The part, which has the number of its cell, is removed.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn is_hole(&self, part: u32) -> bool {
+        self.marks.is_hole(self.cell_of(part), 0)
+    }
+
+    /// The scaled height of the line over a point of the x axis; `None` beside the field and over a
+    /// hole.
+    #[must_use]
+    pub fn height_at(&self, x: N) -> Option<N> {
+        let ends = [-N::INFINITY, N::INFINITY].map(|y| Point::<N, 2>::new(x, y));
+        let column = Aabb::try_new(ends[0], ends[1]).ok()?;
+        let mut found = None;
+        self.overlapping(&column, &mut |part| {
+            let [a, b] = [part as usize, part as usize + 1].map(|index| self.point(index));
+            let run = b.x - a.x;
+            let share = if run == N::ZERO { N::ZERO } else { (x - a.x) / run };
+            found = found.or(Some(a.y + (b.y - a.y) * share));
+        });
+        found
+    }
+
+    /// Changes a height.
+    ///
+    /// # Errors
+    /// If it is not finite, by itself or times the scale; nothing is changed then.
+    ///
+    /// # Panics
+    /// If there is none of this index.
+    pub fn set_height(&mut self, index: usize, height: N) -> Result<(), ShapeError> {
+        check_heights(&[height], 1, self.grid.y_scale)
+            .map_err(|_| ShapeError::HeightNotFinite { row: 0, column: index })?;
+        self.grid.heights[index] = height;
+        for cell in [index.checked_sub(1), Some(index)].into_iter().flatten() {
+            if cell < self.num_cells() {
+                self.refresh(cell);
+            }
+        }
+        Ok(())
+    }
+
+    /// Changes all heights.
+    ///
+    /// # Errors
+    /// If their number is another or one is not finite, by itself or times the scale; nothing is
+    /// changed then.
+    pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
+        let (given, needed) = (heights.len(), self.grid.heights.len());
+        if given != needed {
+            return Err(ShapeError::WrongHeightCount { given, needed });
+        }
+        check_heights(&heights, needed, self.grid.y_scale)?;
+        self.grid.heights = heights;
+        self.rebuild();
+        Ok(())
+    }
+
+    /// Removes a segment, or puts it back.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn set_hole(&mut self, cell: usize, is_hole: bool) {
+        assert!(cell < self.num_cells(), "there is no cell {cell}");
+        self.marks.set_hole(cell, 0, is_hole, self.num_cells());
+        self.refresh(cell);
+    }
+
+    fn refresh(&mut self, cell: usize) {
+        let mut pyramid = self.pyramid.take();
+        pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
+        self.pyramid = pyramid;
+    }
+
+    fn rebuild(&mut self) {
+        let cells = self.pyramid.cells();
+        self.pyramid = Pyramid::new(cells, |row, column| self.cell_span(row, column));
+    }
+
+    #[track_caller]
+    fn cell_of(&self, part: u32) -> usize {
+        assert!((part as usize) < self.num_cells(), "there is no part {part}");
+        part as usize
+    }
+}
+
+/// The unscaled heights of a cell.
+fn step_span<N: Real>(grid: &Grid<N>, cell: usize) -> Span<N> {
+    let [a, b] = [grid.heights[cell], grid.heights[cell + 1]];
+    merged([a, a], [b, b])
+}
+
+impl<N: Real> Cells<N> for HeightField<N, 2> {
+    fn grid(&self) -> &Grid<N> {
+        &self.grid
+    }
+
+    fn pyramid(&self) -> &Pyramid<N> {
+        &self.pyramid
+    }
+
+    fn cell_span(&self, _: usize, cell: usize) -> Span<N> {
+        if self.marks.is_hole(cell, 0) { no_span() } else { step_span(&self.grid, cell) }
+    }
+
+    fn parts(&self, _: usize, cell: usize) -> SmallVec<[(u32, Extent<N>); 2]> {
+        if self.marks.is_hole(cell, 0) {
+            return SmallVec::new();
+        }
+        let extent = Extent::between(self.grid.at(0, cell), self.grid.at(0, cell + 1));
+        smallvec![(u32::try_from(cell).expect("32 bits number the segments"), extent)]
+    }
+}
+
+impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
+    fn bounds(&self) -> Aabb<N, 2> {
+        self.local_aabb()
+    }
+
+    fn overlapping(&self, aabb: &Aabb<N, 2>, visit: &mut dyn FnMut(u32)) {
+        let Some(probe) = Probe::new(aabb) else { return };
+        search(
+            self,
+            N::ZERO,
+            |extent| probe.overlap(extent),
+            |part, _| {
+                visit(part);
+                N::ZERO
+            },
+        );
+    }
+
+    fn nearest(&self, aabb: &Aabb<N, 2>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
+        let Some(probe) = Probe::new(aabb) else { return };
+        search(self, limit, |extent| probe.distance(extent), visit);
+    }
+
+    fn cast(
+        &self,
+        aabb: &Aabb<N, 2>,
+        velocity: &Vector<N, 2>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        let (Some(probe), Some(velocity)) = (Probe::new(aabb), lifted(velocity)) else { return };
+        search(self, limit, |extent| probe.time(&velocity, extent), visit);
+    }
+}
+
+impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
+    fn num_parts(&self) -> u32 {
+        u32::try_from(self.num_cells()).expect("32 bits number the segments")
+    }
+
+    /// A hole is answered with the segment that would be there.
+    fn part(&self, part: u32) -> Part<'_, N, 2> {
+        let cell = self.cell_of(part);
+        let segment = Segment::new(self.point(cell), self.point(cell + 1));
+        Part { pose: Pose::identity(), solid: PartSolid::Segment(segment) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, 2> {
+        self
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, 2>> {
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    /// Segments that share a point.
+    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
+        part1.abs_diff(part2) <= 1
+    }
+}
+
+impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
+    fn geometry(&self) -> Geometry<'_, N, 2> {
+        Geometry::composite(self)
+    }
+
+    /// Around all that is left; a field of nothing but holes is the origin.
+    fn local_aabb(&self) -> Aabb<N, 2> {
+        match whole(self) {
+            Some(Extent { low, high }) => {
+                Aabb::new(Point::<N, 2>::new(low[0], low[1]), Point::<N, 2>::new(high[0], high[1]))
+            }
+            None => Aabb::around(Point::origin(), Vector::<N, 2>::zeros()),
+        }
+    }
+
+    fn scaled(&self, scale: &Vector<N, 2>) -> Result<ShapeHandle<N, 2>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}

@@ -1,0 +1,97 @@
+//! What is particular to single cells: holes, and diagonals that differ.
+
+/// Which corners of a cell the line between its two triangles joins.
+///
+/// Seen from the front with columns to the right and rows downwards. Triangle 0 is the one with the side
+/// between the two corners of the lower column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Diagonal {
+    /// From (row, column) to (row + 1, column + 1).
+    #[default]
+    Forward,
+    /// From (row, column + 1) to (row + 1, column).
+    Backward,
+}
+
+/// The diagonals of the cells of a height field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Diagonals {
+    /// All forward.
+    #[default]
+    Forward,
+    /// All backward.
+    Backward,
+    /// Alternating like the fields of a chessboard: forward where row + column is even.
+    Zigzag,
+}
+
+impl Diagonals {
+    const fn of(self, row: usize, column: usize) -> Diagonal {
+        let is_backward = match self {
+            Self::Forward => false,
+            Self::Backward => true,
+            Self::Zigzag => (row + column) % 2 == 1,
+        };
+        if is_backward { Diagonal::Backward } else { Diagonal::Forward }
+    }
+}
+
+/// The rule for all cells, and the exceptions.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Marks {
+    diagonals: Diagonals,
+    /// For each cell: bits 0 and 1 that part 0 and 1 are removed, bit 2 that the diagonal is the other
+    /// one. Empty as long as nothing is marked.
+    bits: Vec<u8>,
+}
+
+const OTHER_DIAGONAL: u8 = 4;
+
+impl Marks {
+    /// No exceptions.
+    pub(super) const fn new(diagonals: Diagonals) -> Self {
+        Self { diagonals, bits: Vec::new() }
+    }
+
+    /// Part `k`, 0 or 1, of a cell is a hole.
+    pub(super) fn is_hole(&self, cell: usize, k: usize) -> bool {
+        self.has(cell, 1 << k)
+    }
+
+    pub(super) fn set_hole(&mut self, cell: usize, k: usize, is_hole: bool, cells: usize) {
+        self.set(cell, 1 << k, is_hole, cells);
+    }
+
+    /// The diagonal of the cell at a row and column.
+    pub(super) fn diagonal(&self, [row, column]: [usize; 2], columns: usize) -> Diagonal {
+        let usual = self.diagonals.of(row, column);
+        match (usual, self.has(row * columns + column, OTHER_DIAGONAL)) {
+            (usual, false) => usual,
+            (Diagonal::Forward, true) => Diagonal::Backward,
+            (Diagonal::Backward, true) => Diagonal::Forward,
+        }
+    }
+
+    pub(super) fn set_diagonal(
+        &mut self,
+        [row, column]: [usize; 2],
+        [rows, columns]: [usize; 2],
+        diagonal: Diagonal,
+    ) {
+        let is_other = diagonal != self.diagonals.of(row, column);
+        self.set(row * columns + column, OTHER_DIAGONAL, is_other, rows * columns);
+    }
+
+    fn has(&self, cell: usize, bit: u8) -> bool {
+        self.bits.get(cell).is_some_and(|bits| bits & bit != 0)
+    }
+
+    fn set(&mut self, cell: usize, bit: u8, is_set: bool, cells: usize) {
+        if self.bits.is_empty() && is_set {
+            self.bits = vec![0; cells];
+        }
+        if let Some(bits) = self.bits.get_mut(cell) {
+            *bits = if is_set { *bits | bit } else { *bits & !bit };
+        }
+    }
+}

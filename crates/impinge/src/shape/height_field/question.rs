@@ -1,0 +1,88 @@
+//! What a search asks of a box: does it meet another, how far away is it, when is it met.
+
+use super::grid::Extent;
+use crate::bounding_volume::Aabb;
+use crate::math::{Real, Vector, max};
+
+/// A box that searches, at rest or moving; faces may be infinite.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe<N: Real> {
+    own: Extent<N>,
+}
+
+/// Distances and times are lowered by this many epsilons of themselves, so that they are below the
+/// true ones: coordinates are subtracted (and divided) once, and at most three squares are summed.
+/// Rays count with more: a ray that passes between two cells must find, of the two, the one that the
+/// test of its triangles takes it for.
+const ROUNDING: f64 = 16.0;
+
+impl<N: Real> Probe<N> {
+    /// The box with the coordinates of `aabb`, and zero where there are no more. `None` if it has no
+    /// finite point.
+    pub(super) fn new<const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
+        let mut own = Extent { low: [N::ZERO; 3], high: [N::ZERO; 3] };
+        for axis in 0..D {
+            own.low[axis] = aabb.mins()[axis];
+            own.high[axis] = aabb.maxs()[axis];
+        }
+        let is_reachable =
+            (0..3).all(|axis| own.low[axis] < N::INFINITY && own.high[axis] > -N::INFINITY);
+        is_reachable.then_some(Self { own })
+    }
+
+    /// Zero if the boxes meet.
+    pub(super) fn overlap(&self, other: &Extent<N>) -> Option<N> {
+        let meets = (0..3).all(|axis| {
+            self.own.low[axis] <= other.high[axis] && other.low[axis] <= self.own.high[axis]
+        });
+        meets.then_some(N::ZERO)
+    }
+
+    /// A lower bound of the distance.
+    pub(super) fn distance(&self, other: &Extent<N>) -> Option<N> {
+        let mut gap = Vector::<N, 3>::zeros();
+        for axis in 0..3 {
+            let below = max(other.low[axis] - self.own.high[axis], N::ZERO);
+            let above = max(self.own.low[axis] - other.high[axis], N::ZERO);
+            gap[axis] = max(below, above);
+        }
+        // Where squares are no numbers the largest gap is a bound too.
+        let squared = gap.norm_squared();
+        let is_usable = squared > N::MIN_POSITIVE && squared < N::MAX;
+        let distance = if is_usable { squared.sqrt() } else { crate::math::max_component(&gap) };
+        Some(distance * (N::ONE - N::lit(ROUNDING) * N::EPSILON))
+    }
+
+    /// A lower bound of the time from zero on at which the box, moving with `velocity`, meets `other`;
+    /// `None` if it does not.
+    ///
+    /// Slabs (Kay and Kajiya 1986), widened by the rounding of the times (Ize 2013).
+    pub(super) fn time(&self, velocity: &[N; 3], other: &Extent<N>) -> Option<N> {
+        let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
+        for (axis, &speed) in velocity.iter().enumerate() {
+            let (to_low, to_high) =
+                (other.low[axis] - self.own.high[axis], other.high[axis] - self.own.low[axis]);
+            if speed == N::ZERO {
+                if to_low > N::ZERO || to_high < N::ZERO {
+                    return None;
+                }
+                continue;
+            }
+            let (from, to) = if speed > N::ZERO { (to_low, to_high) } else { (to_high, to_low) };
+            let (from, to) = (from / speed, to / speed);
+            let slack = N::lit(ROUNDING) * N::EPSILON;
+            enter = max(enter, from - from.abs() * slack);
+            leave = crate::math::min(leave, to + to.abs() * slack);
+        }
+        (enter <= leave && enter < N::INFINITY).then_some(enter)
+    }
+}
+
+/// A velocity with zero for the axes that there are not; `None` if it is not finite.
+pub(super) fn lifted<N: Real, const D: usize>(velocity: &Vector<N, D>) -> Option<[N; 3]> {
+    let mut lifted = [N::ZERO; 3];
+    for axis in 0..D {
+        lifted[axis] = velocity[axis];
+    }
+    lifted.iter().all(|x| x.is_finite_number()).then_some(lifted)
+}

@@ -1,0 +1,467 @@
+//! Height fields in space: two triangles per cell.
+
+use smallvec::SmallVec;
+
+use super::grid::{Cells, Extent, Grid, search, whole};
+use super::marks::{Diagonal, Diagonals, Marks};
+use super::pyramid::{Pyramid, Span, merged, no_span};
+use super::question::{Probe, lifted};
+use super::{HeightField, check_count, check_heights, check_parts, grid};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
+use crate::shape::{
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Shape, ShapeError,
+    ShapeHandle, Surface, Triangle,
+};
+
+/// A point of the grid: its row and column.
+pub(super) type GridPoint = [usize; 2];
+
+impl<N: Real> HeightField<N, 3> {
+    /// The field of rows and columns of heights, given row by row; see [`Self::try_new`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(rows: usize, columns: usize, heights: Vec<N>, scale: Vector<N, 3>) -> Self {
+        or_panic(Self::try_new(rows, columns, heights, scale))
+    }
+
+    /// The field of rows and columns of heights, two of each at least, given row by row. All diagonals
+    /// are forward, there are no holes, and both sides can be touched.
+    ///
+    /// # Errors
+    /// If there are too few rows or columns, or not as many heights as they take; if a component of
+    /// the scale, a height, or a height times the scale is not finite; if 32 bits cannot number the
+    /// triangles.
+    pub fn try_new(
+        rows: usize,
+        columns: usize,
+        heights: Vec<N>,
+        scale: Vector<N, 3>,
+    ) -> Result<Self, ShapeError> {
+        check_count(rows)?;
+        check_count(columns)?;
+        let grid = grid([rows, columns], heights, &scale, scale.z)?;
+        check_parts(((rows - 1) * (columns - 1)) as u64 * 2)?;
+        let pyramid =
+            Pyramid::new([rows - 1, columns - 1], |row, column| square_span(&grid, row, column));
+        Ok(Self::around(grid, pyramid, scale))
+    }
+
+    /// The same field with the diagonals of all cells set anew; holes stay.
+    #[must_use]
+    pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
+        let mut marks = Marks::new(diagonals);
+        for part in 0..2 * self.num_cells() {
+            marks.set_hole(
+                part / 2,
+                part % 2,
+                self.marks.is_hole(part / 2, part % 2),
+                self.num_cells(),
+            );
+        }
+        self.marks = marks;
+        self.rebuild();
+        self
+    }
+
+    /// The same field with a hole in each cell for which `is_hole(row, column)`, and only there.
+    #[must_use]
+    pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
+        let [rows, columns] = self.pyramid.cells();
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)))
+        {
+            let (cell, is_hole) = (row * columns + column, is_hole(row, column));
+            self.marks.set_hole(cell, 0, is_hole, rows * columns);
+            self.marks.set_hole(cell, 1, is_hole, rows * columns);
+        }
+        self.rebuild();
+        self
+    }
+
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, or numbers leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, 3>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?.vector(&self.scale);
+        Ok(self.with_scale(scale, scale.z)?)
+    }
+
+    /// The number of rows of heights; there is one row of cells less.
+    #[must_use]
+    pub const fn rows(&self) -> usize {
+        self.pyramid.cells()[0] + 1
+    }
+
+    /// The number of columns of heights; there is one column of cells less.
+    #[must_use]
+    pub const fn columns(&self) -> usize {
+        self.grid.columns
+    }
+
+    /// An unscaled height.
+    ///
+    /// # Panics
+    /// If there is no such row or column.
+    #[must_use]
+    pub fn height(&self, row: usize, column: usize) -> N {
+        self.check_point(row, column);
+        self.grid.height(row, column)
+    }
+
+    /// The point of the surface at a row and column.
+    ///
+    /// # Panics
+    /// If there is no such row or column.
+    #[must_use]
+    pub fn point(&self, row: usize, column: usize) -> Point<N, 3> {
+        self.check_point(row, column);
+        self.grid.point(row, column)
+    }
+
+    /// The number of the cell between two rows and two columns; its triangles are the parts of twice
+    /// that number and the next.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    #[must_use]
+    pub fn cell(&self, row: usize, column: usize) -> usize {
+        let [rows, columns] = self.pyramid.cells();
+        assert!(
+            row < rows && column < columns,
+            "there is no cell at row {row}, column {column}: there are {rows} × {columns}"
+        );
+        row * columns + column
+    }
+
+    /// The diagonal of a cell.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    #[must_use]
+    pub fn diagonal(&self, row: usize, column: usize) -> Diagonal {
+        let _ = self.cell(row, column);
+        self.marks.diagonal([row, column], self.pyramid.cells()[1])
+    }
+
+    /// The two triangles of a cell, `None` for one that is removed.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    #[must_use]
+    pub fn triangles(&self, row: usize, column: usize) -> [Option<Triangle<N, 3>>; 2] {
+        let cell = self.cell(row, column);
+        [0, 1].map(|k| {
+            let triangle = self.triangle_of(self.corners_in(row, column, k));
+            Some(triangle).filter(|_| !self.marks.is_hole(cell, k))
+        })
+    }
+
+    /// The part is removed.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn is_hole(&self, part: u32) -> bool {
+        let (_, cell, k) = self.place(part);
+        self.marks.is_hole(cell, k)
+    }
+
+    /// The scaled height of the surface over a point of the plane y = 0; `None` beside the field and
+    /// over a hole.
+    #[must_use]
+    pub fn height_at(&self, x: N, z: N) -> Option<N> {
+        let over = Vector::<N, 3>::new(x, N::ZERO, z);
+        let mut found = None;
+        let line = Vector::<N, 3>::new(N::ZERO, N::INFINITY, N::ZERO);
+        let column = Aabb::try_new(Point::from(over - line), Point::from(over + line)).ok()?;
+        self.overlapping(&column, &mut |part| {
+            let corners = self.corners(part).map(|[row, column]| self.grid.point(row, column));
+            found = found.or_else(|| height_over(&corners, x, z));
+        });
+        found
+    }
+}
+
+/// Changes. A world that holds the shape does not see them: shapes that are shared do not change.
+impl<N: Real> HeightField<N, 3> {
+    /// Changes a height.
+    ///
+    /// # Errors
+    /// If it is not finite, by itself or times the scale; nothing is changed then.
+    ///
+    /// # Panics
+    /// If there is no such row or column.
+    pub fn set_height(&mut self, row: usize, column: usize, height: N) -> Result<(), ShapeError> {
+        self.check_point(row, column);
+        check_heights(&[height], 1, self.grid.y_scale)
+            .map_err(|_| ShapeError::HeightNotFinite { row, column })?;
+        self.grid.heights[row * self.grid.columns + column] = height;
+        let [rows, columns] = self.pyramid.cells();
+        for near_row in row.saturating_sub(1)..=min_index(row, rows - 1) {
+            for near_column in column.saturating_sub(1)..=min_index(column, columns - 1) {
+                self.refresh(near_row, near_column);
+            }
+        }
+        Ok(())
+    }
+
+    /// Changes all heights, given row by row.
+    ///
+    /// # Errors
+    /// If their number is another or one is not finite, by itself or times the scale; nothing is
+    /// changed then.
+    pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
+        let (given, needed) = (heights.len(), self.grid.heights.len());
+        if given != needed {
+            return Err(ShapeError::WrongHeightCount { given, needed });
+        }
+        check_heights(&heights, self.grid.columns, self.grid.y_scale)?;
+        self.grid.heights = heights;
+        self.rebuild();
+        Ok(())
+    }
+
+    /// Removes both triangles of a cell, or puts them back.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn set_hole(&mut self, row: usize, column: usize, is_hole: bool) {
+        let (cell, cells) = (self.cell(row, column), self.num_cells());
+        self.marks.set_hole(cell, 0, is_hole, cells);
+        self.marks.set_hole(cell, 1, is_hole, cells);
+        self.refresh(row, column);
+    }
+
+    /// Removes one triangle, or puts it back.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn set_part_hole(&mut self, part: u32, is_hole: bool) {
+        let ([row, column], cell, k) = self.place(part);
+        self.marks.set_hole(cell, k, is_hole, self.num_cells());
+        self.refresh(row, column);
+    }
+
+    /// Changes the diagonal of a cell; its parts keep their numbers and their holes.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn set_diagonal(&mut self, row: usize, column: usize, diagonal: Diagonal) {
+        let _ = self.cell(row, column);
+        self.marks.set_diagonal([row, column], self.pyramid.cells(), diagonal);
+        self.refresh(row, column);
+    }
+
+    fn refresh(&mut self, row: usize, column: usize) {
+        let mut pyramid = self.pyramid.take();
+        pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
+        self.pyramid = pyramid;
+    }
+
+    fn rebuild(&mut self) {
+        let cells = self.pyramid.cells();
+        self.pyramid = Pyramid::new(cells, |row, column| self.cell_span(row, column));
+    }
+}
+
+/// From numbers to triangles.
+impl<N: Real> HeightField<N, 3> {
+    #[track_caller]
+    fn check_point(&self, row: usize, column: usize) {
+        let (rows, columns) = (self.rows(), self.columns());
+        assert!(
+            row < rows && column < columns,
+            "there is no height at row {row}, column {column}: there are {rows} × {columns}"
+        );
+    }
+
+    /// The row and column of the cell of a part, the number of the cell, and which of its triangles it
+    /// is.
+    #[track_caller]
+    pub(super) fn place(&self, part: u32) -> (GridPoint, usize, usize) {
+        let (cell, k) = (part as usize / 2, part as usize % 2);
+        assert!(cell < self.num_cells(), "there is no part {part}");
+        let columns = self.pyramid.cells()[1];
+        ([cell / columns, cell % columns], cell, k)
+    }
+
+    /// The corners of a part, counter-clockwise seen from the front.
+    pub(super) fn corners(&self, part: u32) -> [GridPoint; 3] {
+        let ([row, column], _, k) = self.place(part);
+        self.corners_in(row, column, k)
+    }
+
+    pub(super) fn corners_in(&self, row: usize, column: usize, k: usize) -> [GridPoint; 3] {
+        let [a, b, c, d] =
+            [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]];
+        let diagonal = self.marks.diagonal([row, column], self.pyramid.cells()[1]);
+        let corners = match (diagonal, k) {
+            (Diagonal::Forward, 0) => [a, b, c],
+            (Diagonal::Forward, _) => [a, c, d],
+            (Diagonal::Backward, 0) => [a, b, d],
+            (Diagonal::Backward, _) => [d, b, c],
+        };
+        // A mirror turns the order around.
+        let [first, second, third] = corners;
+        if self.is_mirrored() { [first, third, second] } else { corners }
+    }
+
+    fn triangle_of(&self, corners: [GridPoint; 3]) -> Triangle<N, 3> {
+        let [a, b, c] = corners.map(|[row, column]| self.grid.point(row, column));
+        Triangle::new(a, b, c)
+    }
+
+    /// Whether triangle `k` of the cell at a row and column is removed.
+    pub(super) fn is_hole_in(&self, row: usize, column: usize, k: usize) -> bool {
+        self.marks.is_hole(row * self.pyramid.cells()[1] + column, k)
+    }
+}
+
+/// The unscaled heights of a whole cell.
+fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> Span<N> {
+    let above = row * grid.columns + column;
+    let below = above + grid.columns;
+    let [a, b] = [grid.heights[above], grid.heights[above + 1]];
+    let [c, d] = [grid.heights[below], grid.heights[below + 1]];
+    [min(min(a, b), min(c, d)), max(max(a, b), max(c, d))]
+}
+
+fn min_index(a: usize, b: usize) -> usize {
+    if a < b { a } else { b }
+}
+
+/// The height over (x, z) of the triangle with these corners; `None` if it lies beside.
+fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
+    let [a, b, c] = corners;
+    let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
+    let weights = [side(b, c), side(c, a), side(a, b)];
+    let total = weights[0] + weights[1] + weights[2];
+    let is_beside = weights.iter().any(|weight| *weight * total < N::ZERO);
+    if is_beside || total == N::ZERO {
+        return None;
+    }
+    let high = max(max(a.y, b.y), c.y);
+    let low = min(min(a.y, b.y), c.y);
+    let height = a.y + (b.y - a.y) * (weights[1] / total) + (c.y - a.y) * (weights[2] / total);
+    Some(max(min(height, high), low))
+}
+
+impl<N: Real> Cells<N> for HeightField<N, 3> {
+    fn grid(&self) -> &Grid<N> {
+        &self.grid
+    }
+
+    fn pyramid(&self) -> &Pyramid<N> {
+        &self.pyramid
+    }
+
+    fn cell_span(&self, row: usize, column: usize) -> Span<N> {
+        let is_hole = [0, 1].map(|k| self.is_hole_in(row, column, k));
+        if is_hole == [false, false] {
+            return square_span(&self.grid, row, column);
+        }
+        let rest = [0, 1].into_iter().filter(|&k| !is_hole[k]);
+        let corners = rest.flat_map(|k| self.corners_in(row, column, k));
+        let heights = corners.map(|[row, column]| self.grid.height(row, column));
+        heights.map(|height| [height, height]).fold(no_span(), merged)
+    }
+
+    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, Extent<N>); 2]> {
+        let cell = row * self.pyramid.cells()[1] + column;
+        let mut parts = SmallVec::new();
+        for (k, number) in [(0, 0), (1, 1)] {
+            if !self.marks.is_hole(cell, k) {
+                let corners = self.corners_in(row, column, k);
+                let points = corners.map(|[row, column]| self.grid.at(row, column));
+                let first = u32::try_from(2 * cell).expect("32 bits number the triangles");
+                parts.push((first + number, Extent::around(&points)));
+            }
+        }
+        parts
+    }
+}
+
+impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
+    fn bounds(&self) -> Aabb<N, 3> {
+        self.local_aabb()
+    }
+
+    fn overlapping(&self, aabb: &Aabb<N, 3>, visit: &mut dyn FnMut(u32)) {
+        let Some(probe) = Probe::new(aabb) else { return };
+        search(
+            self,
+            N::ZERO,
+            |extent| probe.overlap(extent),
+            |part, _| {
+                visit(part);
+                N::ZERO
+            },
+        );
+    }
+
+    fn nearest(&self, aabb: &Aabb<N, 3>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
+        let Some(probe) = Probe::new(aabb) else { return };
+        search(self, limit, |extent| probe.distance(extent), visit);
+    }
+
+    fn cast(
+        &self,
+        aabb: &Aabb<N, 3>,
+        velocity: &Vector<N, 3>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        let (Some(probe), Some(velocity)) = (Probe::new(aabb), lifted(velocity)) else { return };
+        search(self, limit, |extent| probe.time(&velocity, extent), visit);
+    }
+}
+
+impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
+    fn num_parts(&self) -> u32 {
+        u32::try_from(2 * self.num_cells()).expect("32 bits number the triangles")
+    }
+
+    /// A hole is answered with the triangle that would be there.
+    fn part(&self, part: u32) -> Part<'_, N, 3> {
+        let triangle = self.triangle_of(self.corners(part));
+        Part { pose: Pose::identity(), solid: PartSolid::Triangle(triangle) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, 3> {
+        self
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, 3>> {
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    /// Triangles around one point of the grid.
+    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
+        let (corners1, corners2) = (self.corners(part1), self.corners(part2));
+        corners1.iter().any(|corner| corners2.contains(corner))
+    }
+}
+
+impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
+    fn geometry(&self) -> Geometry<'_, N, 3> {
+        Geometry::composite(self)
+    }
+
+    /// Around all that is left; a field of nothing but holes is the origin.
+    fn local_aabb(&self) -> Aabb<N, 3> {
+        match whole(self) {
+            Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),
+            None => Aabb::around(Point::origin(), Vector::<N, 3>::zeros()),
+        }
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}

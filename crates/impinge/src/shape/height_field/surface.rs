@@ -1,0 +1,165 @@
+//! Which normals a height field has at a face, an edge or a vertex: found from the heights around.
+
+use super::HeightField;
+use super::sheet::GridPoint;
+use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
+use crate::shape::seam::{Seam, is_flat, is_level, slack};
+use crate::shape::tri_mesh::{inward_of, normal_of};
+use crate::shape::{FeatureId, Surface};
+
+impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
+        let front = self.front_of(&self.corners(part));
+        if self.keeps_internal_edges {
+            return !self.is_one_sided || front.dot(normal) >= -slack::<N>();
+        }
+        let own = self.snapped(part, normal);
+        own.is_some_and(|own| max_component(&(own - normal)) <= slack())
+            || match feature {
+                FeatureId::Face(_) => own.is_none(),
+                FeatureId::Edge(side) => self.edge_admits(part, side as usize, normal),
+                FeatureId::Vertex(corner) => self.vertex_admits(part, corner as usize, normal),
+            }
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let front = self.front_of(&self.corners(part));
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        let own = if is_front { front } else { -front };
+        (front != Vector::<N, 3>::zeros()).then_some(own)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
+        let corners = self.corners(part);
+        let [row, column] = corners[0];
+        let is_behind =
+            || self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO;
+        !(self.is_one_sided && is_behind())
+    }
+}
+
+impl<N: Real> HeightField<N, 3> {
+    /// The unit normal on the front of a triangle; zero without area.
+    fn front_of(&self, corners: &[GridPoint; 3]) -> Vector<N, 3> {
+        normal_of(&corners.map(|[row, column]| self.grid.point(row, column)))
+    }
+
+    /// The corners of the triangles around a point of the grid: eight at most, without the holes.
+    fn around_point(&self, [row, column]: GridPoint) -> impl Iterator<Item = [GridPoint; 3]> + '_ {
+        let [rows, columns] = self.pyramid.cells();
+        // One cell before and one after, of those that there are.
+        let cells = [(1, 1), (1, 0), (0, 1), (0, 0)].into_iter().filter_map(move |(up, left)| {
+            let cell = (row.checked_sub(up)?, column.checked_sub(left)?);
+            Some(cell).filter(|&(row, column)| row < rows && column < columns)
+        });
+        let parts = cells.flat_map(|(row, column)| [(row, column, 0), (row, column, 1)]);
+        let rest = parts.filter(|&(row, column, k)| !self.is_hole_in(row, column, k));
+        let corners = rest.map(|(row, column, k)| self.corners_in(row, column, k));
+        corners.filter(move |corners| corners.contains(&[row, column]))
+    }
+
+    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
+        let own = self.corners(part);
+        let (a, b, c) = (own[side % 3], own[(side + 1) % 3], own[(side + 2) % 3]);
+        let mut seam = Seam::new();
+        let mut add = |corners: &[GridPoint; 3], opposite: GridPoint| {
+            let [a, b, opposite] =
+                [a, b, opposite].map(|[row, column]| self.grid.point(row, column));
+            if let Some(inward) = inward_of(&[a, b, opposite]) {
+                let cosine = self.front_of(corners).dot(normal);
+                seam.add(inward.dot(normal), cosine, is_level(cosine));
+            }
+        };
+        add(&own, c);
+        for other in self.around_point(a).filter(|other| other.contains(&b) && *other != own) {
+            if let Some(&opposite) = other.iter().find(|corner| **corner != a && **corner != b) {
+                add(&other, opposite);
+            }
+        }
+        seam.admits(self.is_one_sided)
+    }
+
+    fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
+        let at = self.corners(part)[corner % 3];
+        let mut seam = Seam::new();
+        for corners in self.around_point(at) {
+            let rise = self.rise_from(at, &corners, normal);
+            let front = self.front_of(&corners);
+            if front == Vector::<N, 3>::zeros() {
+                seam.add_rise(rise);
+            } else {
+                seam.add(rise, front.dot(normal), is_level(front.dot(normal)));
+            }
+        }
+        seam.admits(self.is_one_sided)
+    }
+
+    /// How much the steeper of the two sides of a triangle that leave a corner rises along a unit
+    /// vector.
+    fn rise_from(&self, at: GridPoint, corners: &[GridPoint; 3], normal: &Vector<N, 3>) -> N {
+        let point = |[row, column]: GridPoint| self.grid.point(row, column);
+        let others = corners.iter().filter(|&&corner| corner != at);
+        let rises = others.map(|&other| unit_or(&(point(other) - point(at)), -normal).dot(normal));
+        rises.fold(-N::ONE, max)
+    }
+}
+
+impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
+        if self.keeps_internal_edges {
+            return self.height_over(part, normal) >= -slack::<N>();
+        }
+        let own = self.along(part).map(|along| along.dot(normal).abs() <= slack());
+        let is_own = own.is_none_or(|own| own) && self.height_over(part, normal) >= N::ZERO;
+        match feature {
+            FeatureId::Vertex(end) if own != Some(true) => {
+                self.point_admits(part as usize + end as usize, normal)
+            }
+            _ => is_own,
+        }
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        let front = self.front(part)?;
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        Some(if is_front { front } else { -front })
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        self.height_over(part, &(center - self.point(part as usize))) >= N::ZERO
+    }
+}
+
+impl<N: Real> HeightField<N, 2> {
+    /// Unit, along a segment; `None` without length.
+    fn along(&self, part: u32) -> Option<Vector<N, 2>> {
+        let index = part as usize;
+        unit(&(self.point(index + 1) - self.point(index))).map(|(along, _)| along)
+    }
+
+    /// The unit normal on the front of a segment; `None` without length.
+    fn front(&self, part: u32) -> Option<Vector<N, 2>> {
+        let left = perp(&self.along(part)?);
+        Some(if self.is_mirrored() { -left } else { left })
+    }
+
+    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    fn height_over(&self, part: u32, vector: &Vector<N, 2>) -> N {
+        let front = self.front(part).filter(|_| self.is_one_sided);
+        front.map_or(N::ZERO, |front| front.dot(vector))
+    }
+
+    /// No segment that leaves the point rises along the normal, and they are not straight.
+    fn point_admits(&self, index: usize, normal: &Vector<N, 2>) -> bool {
+        let mut seam = Seam::new();
+        let before = index.checked_sub(1).map(|cell| (cell, -N::ONE));
+        for (cell, sign) in before.into_iter().chain([(index, N::ONE)]) {
+            let is_there = cell < self.num_cells() && !self.marks.is_hole(cell, 0);
+            let part = u32::try_from(cell).expect("32 bits number the segments");
+            let Some(along) = is_there.then(|| self.along(part)).flatten() else { continue };
+            let rise = (along * sign).dot(normal);
+            seam.add(rise, self.height_over(part, normal), is_flat(rise));
+        }
+        seam.admits(self.is_one_sided)
+    }
+}

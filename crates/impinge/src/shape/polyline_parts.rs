@@ -1,0 +1,125 @@
+//! A polyline as a shape: a union of segments that know their neighbours.
+
+use super::seam::{Seam, is_flat, is_level, slack};
+use super::tri_mesh::{aabb_at, sphere_around};
+use super::{
+    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
+    Shape, ShapeHandle, Surface,
+};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
+
+/// The normal on the right of a direction.
+pub(super) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> {
+    -perp(along)
+}
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
+    fn num_parts(&self) -> u32 {
+        u32::try_from(self.segments.len()).expect("32 bits number the segments")
+    }
+
+    fn part(&self, part: u32) -> Part<'_, N, D> {
+        Part { pose: Pose::identity(), solid: PartSolid::Segment(self.segment(part)) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        &self.tree
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        (self.is_one_sided() || !self.keeps_internal_edges).then_some(self)
+    }
+
+    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
+        let [first, second] = [part1, part2].map(|part| &self.segments[part as usize]);
+        self.joints.are_joined(first, second)
+    }
+}
+
+/// The own normals of a segment are all that are perpendicular to it: two in the plane, a circle
+/// of them in space.
+impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
+        if self.keeps_internal_edges {
+            return self.height_over(part, normal) >= -slack::<N>();
+        }
+        let own = self.along(part).map(|along| along.dot(normal).abs() <= slack());
+        let is_own = own.is_none_or(|own| own) && self.height_over(part, normal) >= N::ZERO;
+        match feature {
+            FeatureId::Vertex(end) if own != Some(true) => self.joint_admits(part, end, normal),
+            _ => is_own,
+        }
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let along = self.along(part)?;
+        if let Some(front) = self.front {
+            return Some(front(&along));
+        }
+        let without = |v: &Vector<N, D>| v - along * along.dot(v);
+        let (own, rest) = unit(&without(normal))?;
+        // What is left of a normal along the segment is rounding, and says nothing of the side.
+        let straight = unit(&without(&own)).filter(|_| rest > slack());
+        straight.map(|(own, _)| own)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        self.height_over(part, &(center - self.ends(part)[0])) >= N::ZERO
+    }
+}
+
+impl<N: Real, const D: usize> Polyline<N, D> {
+    /// Unit, along a segment; `None` without length.
+    fn along(&self, segment: u32) -> Option<Vector<N, D>> {
+        let [a, b] = self.ends(segment);
+        unit(&(b - a)).map(|(along, _)| along)
+    }
+
+    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    fn height_over(&self, segment: u32, vector: &Vector<N, D>) -> N {
+        let front = self.front.zip(self.along(segment)).map(|(front, along)| front(&along));
+        front.map_or(N::ZERO, |front| front.dot(vector))
+    }
+
+    /// No segment that leaves the joint rises along the normal, and they are not straight.
+    fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
+        let joint = self.joints.of(self.segments[part as usize][end as usize]);
+        let (mut seam, own) = (Seam::new(), self.along(part).unwrap_or_else(Vector::zeros));
+        let is_perpendicular = is_flat(own.dot(normal));
+        for &segment in self.joints.parts(joint) {
+            let Some(along) = self.along(segment) else { continue };
+            let starts_here = self.joints.of(self.segments[segment as usize][0]) == joint;
+            let away = if starts_here { along } else { -along };
+            let rise = away.dot(normal);
+            let is_straight = is_perpendicular && is_level(own.dot(&along));
+            seam.add(rise, self.height_over(segment, normal), is_straight);
+        }
+        seam.admits(self.is_one_sided())
+    }
+}
+
+impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Composite(self))
+    }
+
+    /// The smallest, in O(1).
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
+    }
+
+    /// The smallest for up to 384 segments; else around boxes of neighbours, 256 at most.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, self.segments.as_flattened().iter(), &self.vertices, &self.tree)
+    }
+
+    /// The sphere around the middle of the box, through the farthest vertex: O(n).
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        sphere_around(&self.local_aabb(), self.segments.as_flattened().iter(), &self.vertices)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}

@@ -1,0 +1,141 @@
+//! Scaled shapes: exactly, or not at all.
+
+use core::fmt;
+
+use super::{MeshError, ShapeError};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real, Vector};
+
+/// Why a shape was not scaled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ScaleError {
+    /// A factor is zero, infinite or NaN. Values are given as `f64`, exactly.
+    BadFactor {
+        /// The axis: 0 for x.
+        axis: usize,
+        /// The factor along it.
+        value: f64,
+    },
+    /// The scaled solid is none that the library has: it would have to be sheared, or a round shape
+    /// oval.
+    NotSuch {
+        /// What the shape asks of the factors.
+        needs: &'static str,
+    },
+    /// The scaled coordinates are too large or too small for numbers of the type.
+    OutOfRange,
+    /// A child of a compound cannot be scaled so, by itself or because it is turned.
+    Child {
+        /// The index of the child.
+        index: usize,
+    },
+    /// Shapes of this type are not scaled.
+    Unsupported,
+}
+
+impl fmt::Display for ScaleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BadFactor { axis, value } => {
+                write!(f, "the scale along axis {axis} is {value}")
+            }
+            Self::NotSuch { needs } => write!(f, "the shape cannot be scaled so: it needs {needs}"),
+            Self::OutOfRange => write!(f, "the scaled shape is too large or too small"),
+            Self::Child { index } => write!(f, "child {index} cannot be scaled so"),
+            Self::Unsupported => write!(f, "shapes of this type are not scaled"),
+        }
+    }
+}
+
+impl std::error::Error for ScaleError {}
+
+/// Of a shape that exists, only the size can be wrong.
+impl From<ShapeError> for ScaleError {
+    fn from(_: ShapeError) -> Self {
+        Self::OutOfRange
+    }
+}
+
+/// Of a mesh that exists, only the factors or the size can be wrong.
+impl From<MeshError> for ScaleError {
+    fn from(error: MeshError) -> Self {
+        match error {
+            MeshError::BadScale { axis, value } => Self::BadFactor { axis, value },
+            _ => Self::OutOfRange,
+        }
+    }
+}
+
+/// Factors along the axes: finite, and not zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale<'a, N: Real, const D: usize>(&'a Vector<N, D>);
+
+impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
+    pub(super) fn try_new(factors: &'a Vector<N, D>) -> Result<Self, ScaleError> {
+        let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
+        match factors.iter().position(is_bad) {
+            Some(axis) => Err(ScaleError::BadFactor { axis, value: factors[axis].as_f64() }),
+            None => Ok(Self(factors)),
+        }
+    }
+
+    /// The factors without their signs.
+    pub(super) fn magnitudes(self) -> Vector<N, D> {
+        self.0.map(|x| x.abs())
+    }
+
+    /// The signs of the factors, 1 or −1.
+    pub(super) fn signs(self) -> Vector<N, D> {
+        self.0.map(|x| if x < N::ZERO { -N::ONE } else { N::ONE })
+    }
+
+    /// A right hand becomes a left one.
+    pub(super) fn is_mirror(self) -> bool {
+        self.0.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1
+    }
+
+    /// The magnitude of all factors, if they have the same.
+    pub(super) fn uniform(self) -> Result<N, ScaleError> {
+        let magnitudes = self.magnitudes();
+        let is_uniform = magnitudes.iter().all(|&x| x == magnitudes[0]);
+        let needs = "factors that differ in sign at most";
+        if is_uniform { Ok(magnitudes[0]) } else { Err(ScaleError::NotSuch { needs }) }
+    }
+
+    pub(super) fn vector(self, v: &Vector<N, D>) -> Vector<N, D> {
+        v.component_mul(self.0)
+    }
+
+    pub(super) fn point(self, point: &Point<N, D>) -> Point<N, D> {
+        Point::from(self.vector(&point.coords))
+    }
+
+    /// The corners of a solid with a volume: it must keep one.
+    pub(super) fn corners(self, points: &[Point<N, D>]) -> Result<Vec<Point<N, D>>, ScaleError> {
+        let scaled: Vec<_> = points.iter().map(|point| self.point(point)).collect();
+        let solid = Aabb::from_points(&scaled).filter(Aabb::is_bounded);
+        let solid = solid.filter(|aabb| (0..D).all(|axis| aabb.maxs()[axis] > aabb.mins()[axis]));
+        solid.map(|_| scaled).ok_or(ScaleError::OutOfRange)
+    }
+
+    /// The unit normal of a scaled plane, on the side of the same points.
+    pub(super) fn normal(self, normal: &Vector<N, D>) -> Result<Vector<N, D>, ScaleError> {
+        let largest = self.magnitudes().iter().copied().fold(N::ZERO, crate::math::max);
+        let inverse = normal.component_div(&(self.0 / largest));
+        crate::math::unit(&inverse).map(|(along, _)| along).ok_or(ScaleError::OutOfRange)
+    }
+}
+
+impl<N: Real> Scale<'_, N, 3> {
+    /// The magnitudes of the factors along the y axis and across it.
+    pub(super) fn axial(self) -> Result<(N, N), ScaleError> {
+        let magnitudes = self.magnitudes();
+        let needs = "factors along x and z that differ in sign at most";
+        if magnitudes.x == magnitudes.z {
+            Ok((magnitudes.y, magnitudes.x))
+        } else {
+            Err(ScaleError::NotSuch { needs })
+        }
+    }
+}

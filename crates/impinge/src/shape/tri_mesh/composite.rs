@@ -1,0 +1,112 @@
+//! A mesh as a shape: a union of triangles that know their neighbours.
+
+use super::super::segment::length_of;
+use super::{TriMesh, table};
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::partitioning::BoxTree;
+use crate::shape::{
+    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
+    ShapeHandle, Surface,
+};
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
+    fn num_parts(&self) -> u32 {
+        u32::try_from(self.triangles.len()).expect("32 bits number the triangles")
+    }
+
+    fn part(&self, part: u32) -> Part<'_, N, D> {
+        Part { pose: Pose::identity(), solid: PartSolid::Triangle(self.triangle(part)) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        &self.tree
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
+        let [first, second] = [part1, part2].map(|part| &self.triangles[part as usize]);
+        self.topology.joints.are_joined(first, second)
+    }
+}
+
+impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
+        (table().admits)(self, part, feature, normal)
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
+        (table().snapped)(self, part, normal)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        // Triangles without area have the normal zero, and touch from everywhere.
+        let is_behind = || {
+            let corner = self.vertices[self.triangles[part as usize][0] as usize];
+            self.normals[part as usize].dot(&(center - corner)) < N::ZERO
+        };
+        !(self.is_one_sided && is_behind())
+    }
+}
+
+impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Composite(self))
+    }
+
+    /// The smallest, in O(1).
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
+    }
+
+    /// The smallest for up to 256 triangles; else around boxes of neighbours, 256 at most.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, self.triangles.as_flattened().iter(), &self.vertices, &self.tree)
+    }
+
+    /// The sphere around the middle of the box, through the farthest vertex: O(n).
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}
+
+/// So many corners are placed one by one to find the box around them.
+const MOST_PLACED: usize = 768;
+
+/// The box around vertices in use placed at `pose`: of each where they are few, else of groups in
+/// the tree.
+pub(in crate::shape) fn aabb_at<'a, N: Space<D>, const D: usize>(
+    pose: &Pose<N, D>,
+    used: impl ExactSizeIterator<Item = &'a u32>,
+    vertices: &[Point<N, D>],
+    tree: &BoxTree<N, D>,
+) -> Aabb<N, D> {
+    let found = if used.len() <= MOST_PLACED {
+        let placed: Vec<_> = used.map(|&vertex| pose.point(&vertices[vertex as usize])).collect();
+        Aabb::from_points(&placed)
+    } else {
+        tree.bounds_at(pose).and_then(|aabb| Aabb::try_new(*aabb.mins(), *aabb.maxs()).ok())
+    };
+    // A pose that is not finite gives no box; then everything is in it.
+    found.unwrap_or_else(Aabb::unbounded)
+}
+
+/// The sphere around the middle of a box that reaches the farthest of some vertices; a little
+/// larger, by the rounding of the distance.
+pub(in crate::shape) fn sphere_around<'a, N: Real, const D: usize>(
+    aabb: &Aabb<N, D>,
+    used: impl Iterator<Item = &'a u32>,
+    vertices: &[Point<N, D>],
+) -> BoundingSphere<N, D> {
+    let center = aabb.center();
+    let distances = used.map(|&vertex| length_of(&(vertices[vertex as usize] - center)));
+    let radius = distances.fold(N::ZERO, max) * (N::ONE + N::lit(4.0) * N::EPSILON);
+    BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
+}

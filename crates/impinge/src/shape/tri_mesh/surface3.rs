@@ -1,0 +1,118 @@
+//! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
+
+use super::super::seam::{Seam, is_flat, is_level, slack};
+use super::super::segment::length_of;
+use super::TriMesh;
+use super::around::noise;
+use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
+use crate::shape::FeatureId;
+
+/// The unit normal on the side that sees the corners counter-clockwise; zero without area.
+pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
+    let [a, b, c] = corners;
+    let lengths = [b - a, c - b, a - c].map(|side| length_of(&side));
+    let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
+    let longest = longer(longer(0, 1), 2);
+    // The two shorter sides lose least when multiplied.
+    let tip = corners[(longest + 2) % 3];
+    let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
+    let scale = lengths[longest].power_of_two_below();
+    let [first, second] = sides.map(|side| side / scale);
+    let found = unit(&cross(&first, &second));
+    let height = |area: N| area * scale / (lengths[longest] / scale);
+    let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
+    found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)
+}
+
+impl<N: Real> TriMesh<N, 3> {
+    pub(super) fn admits_in_space(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        if self.keeps_internal_edges {
+            return !self.is_one_sided || self.cosine(part, normal) >= -slack::<N>();
+        }
+        self.is_own_normal(part, normal)
+            || match feature {
+                FeatureId::Face(_) => self.normal(part).is_none(),
+                FeatureId::Edge(side) => self.edge_admits(part, side as usize, normal),
+                FeatureId::Vertex(corner) => self.vertex_admits(part, corner as usize, normal),
+            }
+    }
+
+    pub(super) fn snapped_in_space(
+        &self,
+        part: u32,
+        normal: &Vector<N, 3>,
+    ) -> Option<Vector<N, 3>> {
+        let own = self.normal(part)?;
+        let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
+        Some(if is_front { own } else { -own })
+    }
+
+    fn cosine(&self, triangle: u32, normal: &Vector<N, 3>) -> N {
+        self.normals[triangle as usize].dot(normal)
+    }
+
+    /// The normal of the triangle, on a side that it has.
+    fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
+        self.snapped_in_space(part, normal)
+            .is_some_and(|own| max_component(&(own - normal)) <= slack())
+    }
+
+    /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
+    /// are not flat there.
+    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
+        let mut around = Around::new(self, part, normal);
+        if let Some(inward) = self.inward(part, side) {
+            around.add(part, inward.dot(normal));
+        }
+        self.each_beyond(part, side, |other, inward| around.add(other, inward.dot(normal)));
+        let corners = self.corners(part);
+        let along = unit(&(corners[(side + 1) % 3] - corners[side]));
+        let is_across = along.is_none_or(|(along, _)| is_flat(along.dot(normal)));
+        is_across && around.seam.admits(self.is_one_sided)
+    }
+
+    /// No side that leaves the corner rises along the normal, and the faces are not flat there.
+    fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
+        let joint = self.joint_ends(part, corner)[0];
+        let mut around = Around::new(self, part, normal);
+        for &triangle in self.topology.joints.parts(joint) {
+            let leaving = self.leaving(triangle, joint);
+            around.add(triangle, leaving.iter().map(|side| side.dot(normal)).fold(-N::ONE, max));
+        }
+        self.each_beyond_joint(joint, |other, inward| around.add(other, inward.dot(normal)));
+        around.seam.admits(self.is_one_sided)
+    }
+}
+
+/// The faces around an edge or a corner of one of them.
+struct Around<'a, N: Real> {
+    mesh: &'a TriMesh<N, 3>,
+    own: Vector<N, 3>,
+    normal: &'a Vector<N, 3>,
+    /// The normal is, as far as flatness goes, that of the face.
+    is_level: bool,
+    seam: Seam<N>,
+}
+
+impl<'a, N: Real> Around<'a, N> {
+    fn new(mesh: &'a TriMesh<N, 3>, part: u32, normal: &'a Vector<N, 3>) -> Self {
+        let own = mesh.normals[part as usize];
+        Self { mesh, own, normal, is_level: is_level(own.dot(normal)), seam: Seam::new() }
+    }
+
+    /// A triangle, and how much its steepest direction from here rises along the normal.
+    fn add(&mut self, triangle: u32, rise: N) {
+        match self.mesh.normal(triangle) {
+            Some(front) => {
+                let is_level = self.is_level && is_level(front.dot(&self.own));
+                self.seam.add(rise, front.dot(self.normal), is_level);
+            }
+            None => self.seam.add_rise(rise),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What a mesh does differently in the plane and in space.
+
+use core::fmt;
+
+use super::TriMesh;
+use crate::math::{Point, Real, Vector};
+use crate::shape::FeatureId;
+
+/// Function pointers for one dimension.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshTable<N: Real, const D: usize> {
+    /// The unit normal on the front of a triangle, zero without area; `None` where triangles have
+    /// no front.
+    pub(super) normal: Option<fn(&[Point<N, D>; 3]) -> Vector<N, D>>,
+    pub(super) admits: fn(&TriMesh<N, D>, u32, FeatureId, &Vector<N, D>) -> bool,
+    pub(super) snapped: fn(&TriMesh<N, D>, u32, &Vector<N, D>) -> Option<Vector<N, D>>,
+}
+
+impl<N: Real> MeshTable<N, 2> {
+    pub(crate) const IN_PLANE: Self = Self {
+        normal: None,
+        admits: TriMesh::<N, 2>::admits_in_plane,
+        snapped: TriMesh::<N, 2>::snapped_in_plane,
+    };
+}
+
+impl<N: Real> MeshTable<N, 3> {
+    pub(crate) const IN_SPACE: Self = Self {
+        normal: Some(super::surface3::normal_of),
+        admits: TriMesh::<N, 3>::admits_in_space,
+        snapped: TriMesh::<N, 3>::snapped_in_space,
+    };
+}
+
+impl<N: Real, const D: usize> fmt::Debug for MeshTable<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("MeshTable").finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,131 @@
+//! What a solid meets on its way.
+
+use super::QueryFilter;
+use super::ranking::Ranking;
+use super::search::Probe;
+use super::shape::around;
+use crate::math::{Space, Vector, max};
+use crate::query::{Impact, ImpactOptions, Moving, Placed, impact};
+use crate::shape::Shape;
+use crate::world::bodies::{Body, grown};
+use crate::world::{CollisionObject, CollisionWorld};
+
+/// Solids that move through the world along a straight line and do not turn, while its objects stay
+/// where they are.
+///
+/// An [`Impact`] is in the world frame, at its time; its first solid is the one that moves. Contacts at
+/// time zero count as they do for [`impact`]: what does not approach an object does not hit it. A
+/// position or velocity that is not finite hits nothing.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The object that a moving solid hits first, and how; of several at the same time the one whose
+    /// handle comes first.
+    ///
+    /// Costs the search of a tree, and an [`impact`] for a few objects whose boxes are in the way.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point, Vector};
+    /// use impinge::dim2::query::ImpactOptions;
+    /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (post, contacts) = (
+    ///     ShapeHandle::new(Cuboid::new(Vector::new(0.5, 1.0))),
+    ///     GeometricQueryType::Contacts(0.0, 0.0),
+    /// );
+    /// for (x, y) in [(9.0, 0.0), (5.0, 0.0), (3.0, 4.0)] {
+    ///     let position = Isometry::translation(x, y);
+    ///     world.add(position, post.clone(), CollisionGroups::new(), contacts, x);
+    /// }
+    ///
+    /// let (start, velocity, ball) = (Isometry::identity(), Vector::new(2.0, 0.0), Ball::new(0.5));
+    /// let (options, all) = (ImpactOptions::new(), QueryFilter::new());
+    /// let hit = world.cast_shape(&start, &velocity, &ball, &options, &all);
+    /// let (object, impact) = hit.expect("two are in the way");
+    /// assert_eq!((*object.data(), impact.toi), (5.0, 2.0));
+    /// assert_eq!(impact.world2, Point::new(4.5, 0.0), "on the object");
+    /// assert_eq!(impact.normal.x, 1.0, "towards the object");
+    ///
+    /// let short = options.with_max_time(1.0);
+    /// assert!(world.cast_shape(&start, &velocity, &ball, &short, &all).is_none());
+    /// assert_eq!(world.cast_shape_all(&start, &velocity, &ball, &options, &all).len(), 2);
+    /// ```
+    #[must_use]
+    pub fn cast_shape(
+        &self,
+        position: &N::Isometry,
+        velocity: &Vector<N, D>,
+        shape: &dyn Shape<N, D>,
+        options: &ImpactOptions<N>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Option<(&CollisionObject<N, D, T>, Impact<N, D>)> {
+        let cast = Cast::new(position, velocity, shape, options)?;
+        self.ranked_impacts(&cast, Ranking::new(1, options.max_time), filter).pop()
+    }
+
+    /// The objects that a moving solid would hit if none of them stopped it, and how it would first hit
+    /// each of them: in ascending order of time, then of handle.
+    ///
+    /// Beside the order, as [`Self::cast_shape`].
+    #[must_use]
+    pub fn cast_shape_all(
+        &self,
+        position: &N::Isometry,
+        velocity: &Vector<N, D>,
+        shape: &dyn Shape<N, D>,
+        options: &ImpactOptions<N>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
+        let Some(cast) = Cast::new(position, velocity, shape, options) else { return Vec::new() };
+        self.ranked_impacts(&cast, Ranking::new(usize::MAX, options.max_time), filter)
+    }
+
+    fn ranked_impacts(
+        &self,
+        cast: &Cast<'_, N, D>,
+        ranking: Option<Ranking<N, Impact<N, D>>>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
+        let found = self.rank(&cast.probe, ranking, filter, &|body, latest| {
+            let options = cast.options.with_max_time(latest);
+            let found = impact(&cast.moving, &at_rest(body), &options)?;
+            Some((found.toi, found))
+        });
+        found.into_iter().map(|(object, _, impact)| (object, impact)).collect()
+    }
+}
+
+/// A moving solid and what its box asks for.
+struct Cast<'a, N: Space<D>, const D: usize> {
+    probe: Probe<N, D>,
+    moving: Moving<'a, N, D>,
+    options: ImpactOptions<N>,
+}
+
+impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
+    /// `None` if the position or velocity is not finite.
+    fn new(
+        position: &N::Isometry,
+        velocity: &Vector<N, D>,
+        shape: &'a dyn Shape<N, D>,
+        options: &ImpactOptions<N>,
+    ) -> Option<Self> {
+        let aabb = around(position, shape)?;
+        let reach = grown(&aabb, max(options.target_distance, N::ZERO));
+        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let is_finite = velocity.iter().all(|x| x.is_finite_number());
+        is_finite.then_some(Self {
+            probe: Probe::Cast(reach, *velocity),
+            moving: Moving { placed, velocity: *velocity },
+            options: *options,
+        })
+    }
+}
+
+/// An object, which does not move.
+fn at_rest<N: Space<D>, const D: usize>(body: &Body<N, D>) -> Moving<'_, N, D> {
+    let placed = Placed { pose: N::pose(&body.isometry), shape: body.shape.geometry() };
+    Moving { placed, velocity: Vector::<N, D>::zeros() }
+}

@@ -1,0 +1,81 @@
+//! Questions about everything in a world: rays, points, boxes, solids at rest and in motion.
+//!
+//! The broad phase answers as of the last update. Objects that it does not know where they are now
+//! are few and tested one by one, so every change is seen at once; what it proposes is tested again
+//! exactly, by the queries for one solid and two.
+
+mod cast;
+mod filter;
+mod point;
+mod ranking;
+mod ray;
+mod search;
+mod shape;
+
+use core::fmt;
+
+pub use filter::QueryFilter;
+
+use super::bodies::Body;
+use super::{CollisionObject, CollisionWorld};
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+use crate::query::ClosestPoints;
+
+/// An object near what was asked about.
+pub struct Neighbor<'a, N: Space<D>, const D: usize, T> {
+    /// The object.
+    pub object: &'a CollisionObject<N, D, T>,
+    /// How far it is: zero if it touches or overlaps what was asked about.
+    pub distance: N,
+    /// The nearest points, in the world frame: on what was asked about, then on the object.
+    /// Never [`ClosestPoints::Disjoint`].
+    pub points: ClosestPoints<N, D>,
+}
+
+impl<N: Space<D>, const D: usize, T> Clone for Neighbor<'_, N, D, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<N: Space<D>, const D: usize, T> Copy for Neighbor<'_, N, D, T> {}
+
+impl<N: Space<D>, const D: usize, T> fmt::Debug for Neighbor<'_, N, D, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Neighbor")
+            .field("object", &self.object.handle())
+            .field("distance", &self.distance)
+            .field("points", &self.points)
+            .finish()
+    }
+}
+
+/// What all queries share.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The objects that the broad phase found and has not lost track of, and those that it has and
+    /// that `may` meet the question; allowed by the filter, in order, each once.
+    fn candidates<'a>(
+        &'a self,
+        found: Vec<&CollisionObjectHandle>,
+        may: &dyn Fn(&Body<N, D>) -> bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
+        let astray = self.objects.bodies.astray().filter(|body| may(body));
+        let allowed = settled.chain(astray).filter_map(|body| self.allowed(body, filter));
+        let mut objects: Vec<_> = allowed.collect();
+        objects.sort_unstable_by_key(|object| object.handle);
+        objects.into_iter()
+    }
+
+    /// The object of a handle of the broad phase, if it lives and is where it was at the last update.
+    fn settled(&self, handle: CollisionObjectHandle) -> Option<&Body<N, D>> {
+        let body = self.body(handle);
+        (body.alive && body.handle == handle && !body.is_astray()).then_some(body)
+    }
+
+    fn body(&self, handle: CollisionObjectHandle) -> &Body<N, D> {
+        self.objects.bodies.at(handle.index())
+    }
+}

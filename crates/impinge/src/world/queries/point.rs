@@ -1,0 +1,127 @@
+//! Where a point lies to the objects.
+
+use super::ranking::Ranking;
+use super::search::Probe;
+use super::{Neighbor, QueryFilter};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Point, Space};
+use crate::query::point::project;
+use crate::query::{ClosestPoints, PointProjection, PointQuery};
+use crate::world::bodies::Body;
+use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
+
+/// Points, in the world frame. A point that is not finite lies in nothing and is near nothing.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The objects that hold a point, on their surface at least, among those able to interact with
+    /// `groups`.
+    pub fn interferences_with_point<'a>(
+        &'a self,
+        point: &Point<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        self.objects_containing(point, &groups.into())
+    }
+
+    /// The objects that hold a point, on their surface at least, in order of their handles.
+    pub fn objects_containing<'a>(
+        &'a self,
+        point: &Point<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        let (point, mut found) = (*point, Vec::new());
+        self.broad_phase.interferences_with_point(&point, &mut found);
+        let may = |body: &Body<N, D>| BoundingVolume::contains_point(&body.volume(), &point);
+        self.candidates(found, &may, filter)
+            .filter(move |object| holds(self.body(object.handle), &point))
+    }
+
+    /// The nearest point to `point` of any object, and that object; of several the one whose handle comes
+    /// first. `None` if there is nothing at most `max_distance` away.
+    ///
+    /// With `solid`, a point in an object is its own projection, at distance zero; without, only the
+    /// boundaries of the objects count, from inside and from outside. Nothing is found if
+    /// `max_distance` is negative or NaN.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point};
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (ball, contacts) =
+    ///     (ShapeHandle::new(Ball::new(2.0)), GeometricQueryType::Contacts(0.0, 0.0));
+    /// for x in [0.0, 10.0] {
+    ///     let position = Isometry::translation(x, 0.0);
+    ///     world.add(position, ball.clone(), CollisionGroups::new(), contacts, x);
+    /// }
+    ///
+    /// let all = QueryFilter::new();
+    /// let (object, found) = world.project_point(&Point::new(6.0, 0.0), 4.0, true, &all).expect("near");
+    /// assert_eq!((*object.data(), found.point), (10.0, Point::new(8.0, 0.0)));
+    /// let (object, found) = world.project_point(&Point::new(0.0, 1.5), 4.0, false, &all).expect("near");
+    /// assert_eq!((*object.data(), found.point), (0.0, Point::new(0.0, 2.0)));
+    /// assert!(found.is_inside);
+    /// assert!(world.project_point(&Point::new(0.0, 9.0), 4.0, true, &all).is_none(), "7 away");
+    /// ```
+    #[must_use]
+    pub fn project_point(
+        &self,
+        point: &Point<N, D>,
+        max_distance: N,
+        solid: bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Option<(&CollisionObject<N, D, T>, PointProjection<N, D>)> {
+        let ranking = Ranking::new(1, max_distance);
+        let found = self.ranked_projections(point, ranking, solid, filter).pop();
+        found.map(|(object, _, projection)| (object, projection))
+    }
+
+    /// The `count` objects nearest to a point, at most `max_distance` away: in ascending order of
+    /// distance, then of handle.
+    ///
+    /// Objects that hold the point are at distance zero and [`ClosestPoints::Intersecting`]; of the
+    /// [`ClosestPoints::WithinMargin`] of others the first is `point` itself. There is nothing if `count`
+    /// is zero or `max_distance` negative or NaN.
+    ///
+    /// [`Self::nearest_objects`] for a point in place of a solid; see there for an example.
+    #[must_use]
+    pub fn nearest_to_point(
+        &self,
+        point: &Point<N, D>,
+        count: usize,
+        max_distance: N,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<Neighbor<'_, N, D, T>> {
+        let ranking = Ranking::new(count, max_distance);
+        let found = self.ranked_projections(point, ranking, true, filter).into_iter();
+        let neighbor = |(object, distance, nearest): (_, _, PointProjection<N, D>)| {
+            let apart = ClosestPoints::WithinMargin(*point, nearest.point);
+            let points = if nearest.is_inside { ClosestPoints::Intersecting } else { apart };
+            Neighbor { object, distance, points }
+        };
+        found.map(neighbor).collect()
+    }
+
+    fn ranked_projections(
+        &self,
+        point: &Point<N, D>,
+        ranking: Option<Ranking<N, PointProjection<N, D>>>,
+        solid: bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<(&CollisionObject<N, D, T>, N, PointProjection<N, D>)> {
+        let usable = point.iter().all(|x| x.is_finite_number());
+        let ranking = ranking.filter(|_| usable);
+        self.rank(&Probe::Near(Aabb::at(*point)), ranking, filter, &|body, farthest| {
+            let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid)?;
+            (distance <= farthest).then_some((distance, found))
+        })
+    }
+}
+
+/// An object holds a point.
+fn holds<N: Space<D>, const D: usize>(body: &Body<N, D>, point: &Point<N, D>) -> bool {
+    let pose = N::pose(&body.isometry);
+    body.shape.contains_local_point(&pose.inverse_point(point))
+}

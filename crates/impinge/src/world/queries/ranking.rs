@@ -1,0 +1,126 @@
+//! The best answers so far.
+
+use core::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::math::{Real, max};
+use crate::narrow_phase::CollisionObjectHandle;
+
+/// The answers of least key, ties by handle: at most `count` of them, none above a limit.
+#[derive(Debug)]
+pub(super) struct Ranking<N: Real, A> {
+    count: usize,
+    limit: N,
+    /// The last one on top.
+    heap: BinaryHeap<Ranked<N, A>>,
+}
+
+/// An answer about an object, and its key: a time or a distance, zero or more.
+#[derive(Debug)]
+pub(super) struct Ranked<N: Real, A> {
+    pub(super) key: N,
+    pub(super) handle: CollisionObjectHandle,
+    pub(super) answer: A,
+}
+
+impl<N: Real, A> Ranking<N, A> {
+    /// Room for `count` answers with keys up to `limit`; `None` if that is no room at all.
+    pub(super) fn new(count: usize, limit: N) -> Option<Self> {
+        let has_room = count > 0 && limit >= N::ZERO;
+        has_room.then(|| Self { count, limit, heap: BinaryHeap::new() })
+    }
+
+    /// The largest key that still counts.
+    pub(super) fn limit(&self) -> N {
+        let last = self.heap.peek().filter(|_| self.heap.len() >= self.count);
+        last.map_or(self.limit, |last| last.key)
+    }
+
+    /// The largest key that a box may have whose object has a key that still counts.
+    ///
+    /// Keys are quotients and square roots of sums, wrong by a few units in the last place; by more
+    /// where squares are hardly numbers of the type any more.
+    pub(super) fn limit_of_boxes(&self) -> N {
+        let limit = self.limit();
+        let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
+        max(limit + limit * N::lit(8.0) * N::EPSILON, least)
+    }
+
+    /// Keeps the answer if it is among the best. A key that is NaN never is.
+    pub(super) fn offer(&mut self, ranked: Ranked<N, A>) {
+        if self.heap.len() < self.count {
+            if ranked.key <= self.limit {
+                self.heap.push(ranked);
+            }
+            return;
+        }
+        if let Some(mut last) = self.heap.peek_mut()
+            && ranked < *last
+        {
+            *last = ranked;
+        }
+    }
+
+    /// The answers, the best first.
+    pub(super) fn into_sorted(self) -> Vec<Ranked<N, A>> {
+        self.heap.into_sorted_vec()
+    }
+}
+
+impl<N: Real, A> Ord for Ranked<N, A> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_key = self.key.partial_cmp(&other.key).unwrap_or(Ordering::Equal);
+        by_key.then(self.handle.cmp(&other.handle))
+    }
+}
+
+impl<N: Real, A> PartialOrd for Ranked<N, A> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<N: Real, A> PartialEq for Ranked<N, A> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<N: Real, A> Eq for Ranked<N, A> {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(count: usize, limit: f32) -> Vec<(f32, u32)> {
+        let mut ranking = Ranking::new(count, limit).expect("room");
+        for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
+            ranking.offer(Ranked {
+                key,
+                handle: CollisionObjectHandle::new(index, 0),
+                answer: index,
+            });
+        }
+        ranking.into_sorted().iter().map(|ranked| (ranked.key, ranked.answer)).collect()
+    }
+
+    #[test]
+    fn the_best_by_key_then_handle() {
+        assert_eq!(filled(1, 8.0), [(1.0, 2)], "the one");
+        assert_eq!(filled(3, 8.0), [(1.0, 2), (1.0, 4), (2.0, 3)], "three of them");
+        assert_eq!(
+            filled(9, 2.0),
+            [(1.0, 2), (1.0, 4), (2.0, 3)],
+            "up to the limit, that included"
+        );
+        let all = filled(9, f32::INFINITY);
+        assert_eq!(all.len(), 5, "all but NaN: {all:?}");
+    }
+
+    #[test]
+    fn no_room() {
+        for (count, limit) in [(0, 1.0), (1, -1.0), (1, f32::NAN)] {
+            assert!(Ranking::<f32, ()>::new(count, limit).is_none(), "{count} up to {limit}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! What a ray meets.
+
+use super::QueryFilter;
+use super::ranking::Ranking;
+use super::search::Probe;
+use crate::math::Space;
+use crate::query::{Ray, RayCast, RayIntersection};
+use crate::world::bodies::Body;
+use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
+
+/// Rays.
+///
+/// Times are in units of the length of the ray's direction, normals in the world frame. Each object is
+/// hit once at most: where the ray meets it first.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The objects that a ray meets, among those able to interact with `groups`, and where it enters
+    /// each of them.
+    ///
+    /// Solids are solid: a ray that starts inside one meets it at time zero. A ray that is not finite
+    /// meets nothing.
+    pub fn interferences_with_ray<'a>(
+        &'a self,
+        ray: &Ray<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = (&'a CollisionObject<N, D, T>, RayIntersection<N, D>)> + use<'a, N, D, T>
+    {
+        let (ray, mut found) = (*ray, Vec::new());
+        self.broad_phase.interferences_with_ray(&ray, &mut found);
+        let probe = Probe::Ray(ray);
+        self.candidates(found, &|body| probe.meets(&body.volume()), &groups.into()).filter_map(
+            move |object| Some((object, cast(self.body(object.handle), &ray, N::INFINITY, true)?)),
+        )
+    }
+
+    /// The object that a ray meets first, among those able to interact with `groups`, and where; of
+    /// several at the same time the one whose handle comes first.
+    ///
+    /// [`Self::first_ray_hit`] without a longest time, with solids.
+    #[must_use]
+    pub fn first_interference_with_ray(
+        &self,
+        ray: &Ray<N, D>,
+        groups: &CollisionGroups,
+    ) -> Option<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
+        self.first_ray_hit(ray, N::INFINITY, true, &groups.into())
+    }
+
+    /// The object that a ray meets first, at `max_time` at the latest, and where; of several at the
+    /// same time the one whose handle comes first.
+    ///
+    /// With `solid`, a ray that starts inside an object meets it at time zero; without, where it leaves
+    /// it. A ray that is not finite meets nothing, nor does any ray if `max_time` is negative or NaN.
+    ///
+    /// Costs the search of a tree and a ray cast against a few objects.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Isometry, Point, Vector};
+    /// use impinge::dim3::query::Ray;
+    /// use impinge::dim3::shape::{Cuboid, ShapeHandle};
+    /// use impinge::dim3::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (cube, contacts) =
+    ///     (ShapeHandle::new(Cuboid::new(Vector::repeat(1.0))), GeometricQueryType::Contacts(0.0, 0.0));
+    /// for (x, name) in [(8.0, "far"), (4.0, "near")] {
+    ///     let position = Isometry::translation(x, 0.0, 0.0);
+    ///     world.add(position, cube.clone(), CollisionGroups::new(), contacts, name);
+    /// }
+    ///
+    /// let ray = Ray::new(Point::origin(), Vector::new(2.0, 0.0, 0.0));
+    /// let hit = world.first_ray_hit(&ray, 10.0, true, &QueryFilter::new());
+    /// let (object, hit) = hit.expect("both are in the way");
+    /// assert_eq!((*object.data(), hit.toi, hit.normal.x), ("near", 1.5, -1.0));
+    /// assert!(world.first_ray_hit(&ray, 1.25, true, &QueryFilter::new()).is_none(), "too short");
+    ///
+    /// let all = world.ray_hits(&ray, 10.0, true, &QueryFilter::new());
+    /// let times: Vec<f32> = all.iter().map(|(_, hit)| hit.toi).collect();
+    /// assert_eq!(times, [1.5, 3.5]);
+    /// ```
+    #[must_use]
+    pub fn first_ray_hit(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Option<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
+        self.ranked_hits(ray, Ranking::new(1, max_time), solid, filter).pop()
+    }
+
+    /// The objects that a ray meets, at `max_time` at the latest, and where it first meets each of them:
+    /// in ascending order of time, then of handle.
+    ///
+    /// Beside the order, as [`Self::first_ray_hit`].
+    #[must_use]
+    pub fn ray_hits(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
+        self.ranked_hits(ray, Ranking::new(usize::MAX, max_time), solid, filter)
+    }
+
+    fn ranked_hits(
+        &self,
+        ray: &Ray<N, D>,
+        ranking: Option<Ranking<N, RayIntersection<N, D>>>,
+        solid: bool,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
+        let found = self.rank(&Probe::Ray(*ray), ranking, filter, &|body, latest| {
+            let hit = cast(body, ray, latest, solid)?;
+            Some((hit.toi, hit))
+        });
+        found.into_iter().map(|(object, _, hit)| (object, hit)).collect()
+    }
+}
+
+/// Where a ray meets an object, at `latest` at the latest, with the normal in the world frame.
+fn cast<N: Space<D>, const D: usize>(
+    body: &Body<N, D>,
+    ray: &Ray<N, D>,
+    latest: N,
+    solid: bool,
+) -> Option<RayIntersection<N, D>> {
+    let pose = N::pose(&body.isometry);
+    let local = ray.inverse_transformed_by(&pose);
+    let local = body.shape.cast_local_ray_until(&local, latest, solid)?;
+    Some(RayIntersection { normal: pose.vector(&local.normal), ..local })
+}

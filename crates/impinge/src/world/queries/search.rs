@@ -1,0 +1,105 @@
+//! The way all ranked queries go: box by box in ascending order, as long as a box may hold an answer.
+
+use super::QueryFilter;
+use super::ranking::{Ranked, Ranking};
+use crate::bounding_volume::{Aabb, Ray};
+use crate::math::{Real, Space, Vector};
+use crate::narrow_phase::CollisionObjectHandle;
+use crate::world::bodies::Body;
+use crate::world::{CollisionObject, CollisionWorld, WorldBroadPhase};
+
+/// What the boxes are asked; the key of a box is a time or a distance.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Probe<N: Real, const D: usize> {
+    /// When they are entered.
+    Ray(Ray<N, D>),
+    /// How far they are.
+    Near(Aabb<N, D>),
+    /// When they are touched.
+    Cast(Aabb<N, D>, Vector<N, D>),
+}
+
+impl<N: Space<D>, const D: usize> Probe<N, D> {
+    /// The key of one box, which is never above that of a solid in it; `None` if the solid has none.
+    fn key(&self, aabb: &Aabb<N, D>) -> Option<N> {
+        match self {
+            Self::Ray(ray) => aabb.ray_interval(ray).map(|(enter, _)| enter),
+            Self::Near(own) => Some(aabb.distance_to_aabb(own)),
+            Self::Cast(own, velocity) => aabb.sweep_interval(own, velocity).map(|(enter, _)| enter),
+        }
+    }
+
+    /// A solid in the box may have a key.
+    pub(super) fn meets(&self, aabb: &Aabb<N, D>) -> bool {
+        self.key(aabb).is_some()
+    }
+
+    /// The boxes of the broad phase in ascending order of their keys.
+    fn visit(
+        &self,
+        broad_phase: &WorldBroadPhase<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(&CollisionObjectHandle) -> N,
+    ) {
+        match self {
+            Self::Ray(ray) => broad_phase.visit_ray(ray, limit, visit),
+            Self::Near(own) => broad_phase.visit_nearest(own, limit, visit),
+            Self::Cast(own, velocity) => broad_phase.visit_cast(own, velocity, limit, visit),
+        }
+    }
+}
+
+/// An object and what was found about it, with the key that it was ranked by.
+pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
+
+/// Gets an object and the largest key that still counts, and returns the key of the object and the
+/// answer; `None` if the object has no key or a larger one.
+pub(super) type Measure<'a, N, const D: usize, A> = dyn Fn(&Body<N, D>, N) -> Option<(N, A)> + 'a;
+
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The best answers, in order, that `measure` gives about objects that the filter allows.
+    pub(super) fn rank<A>(
+        &self,
+        probe: &Probe<N, D>,
+        ranking: Option<Ranking<N, A>>,
+        filter: &QueryFilter<'_, N, D, T>,
+        measure: &Measure<'_, N, D, A>,
+    ) -> Vec<Answer<'_, N, D, T, A>> {
+        let Some(mut ranking) = ranking else { return Vec::new() };
+        let mut limit = ranking.limit_of_boxes();
+        let mut consider = |body: &Body<N, D>| {
+            if let Some((key, answer)) =
+                self.allowed(body, filter).and_then(|_| measure(body, ranking.limit()))
+            {
+                ranking.offer(Ranked { key, handle: body.handle, answer });
+            }
+            ranking.limit_of_boxes()
+        };
+        for body in self.objects.bodies.astray() {
+            if probe.key(&body.volume()).is_some_and(|key| key <= limit) {
+                limit = consider(body);
+            }
+        }
+        probe.visit(&*self.broad_phase, limit, &mut |&handle| {
+            if let Some(body) = self.settled(handle) {
+                limit = consider(body);
+            }
+            limit
+        });
+        let found = ranking.into_sorted().into_iter();
+        found
+            .filter_map(|found| Some((self.objects.get(found.handle)?, found.key, found.answer)))
+            .collect()
+    }
+
+    /// The user's record of an object that the filter allows.
+    pub(super) fn allowed(
+        &self,
+        body: &Body<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Option<&CollisionObject<N, D, T>> {
+        let is_admitted = filter.admits(body.handle, &body.groups);
+        let object = if is_admitted { self.objects.get(body.handle) } else { None };
+        object.filter(|object| filter.accepts(object))
+    }
+}

@@ -1,0 +1,195 @@
+//! What lies near a solid, and what it overlaps.
+
+use super::ranking::Ranking;
+use super::search::Probe;
+use super::{Neighbor, QueryFilter};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::convex::Separation;
+use crate::math::{Space, max};
+use crate::query::{ClosestPoints, Placed};
+use crate::shape::Shape;
+use crate::world::bodies::{Body, aabb_at, grown};
+use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
+
+/// Solids and boxes, in the world frame.
+///
+/// The solid asked about is no object of the world: any shape will do, at any position, and a
+/// [`ShapeHandle`](crate::shape::ShapeHandle) gives its own by `&*`. A position that is not finite is
+/// near nothing. Distances are those of [`crate::query::distance`]: zero for solids that touch or
+/// overlap.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The objects whose boxes meet or touch a box, among those able to interact with `groups`. The
+    /// boxes are those of the shapes where the objects are now, without any margin.
+    pub fn interferences_with_aabb<'a>(
+        &'a self,
+        aabb: &Aabb<N, D>,
+        groups: &CollisionGroups,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        self.objects_in_aabb(aabb, &groups.into())
+    }
+
+    /// The objects whose boxes meet or touch a box, in order of their handles. The boxes are those of
+    /// the shapes where the objects are now, without any margin; [`Self::objects_overlapping`] with a
+    /// cuboid asks the shapes themselves.
+    pub fn objects_in_aabb<'a>(
+        &'a self,
+        aabb: &Aabb<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        let (aabb, mut found) = (*aabb, Vec::new());
+        self.broad_phase.interferences_with_bounding_volume(&aabb, &mut found);
+        self.candidates(found, &|_| true, filter)
+            .filter(move |object| self.body(object.handle).aabb.intersects(&aabb))
+    }
+
+    /// The objects that touch or overlap a solid, in order of their handles.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Vector};
+    /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (ball, contacts) =
+    ///     (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Contacts(0.0, 0.0));
+    /// for y in [0.0, 1.75] {
+    ///     let position = Isometry::translation(1.75, y);
+    ///     world.add(position, ball.clone(), CollisionGroups::new(), contacts, y);
+    /// }
+    ///
+    /// let square = Cuboid::new(Vector::new(1.0, 1.0));
+    /// let here = Isometry::identity();
+    /// let found: Vec<f32> = world
+    ///     .objects_overlapping(&here, &square, &QueryFilter::new())
+    ///     .map(|object| *object.data())
+    ///     .collect();
+    /// assert_eq!(found, [0.0], "the other one's box meets the square, but the ball itself does not");
+    /// ```
+    pub fn objects_overlapping<'a, 's>(
+        &'a self,
+        position: &N::Isometry,
+        shape: &'s dyn Shape<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
+        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let (aabb, mut found) = (around(position, shape), Vec::new());
+        if let Some(aabb) = &aabb {
+            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
+        }
+        let may = |body: &Body<N, D>| aabb.is_some_and(|aabb| body.volume().intersects(&aabb));
+        self.candidates(found, &may, filter)
+            .filter(move |object| separation(&placed, self.body(object.handle), N::ZERO).is_some())
+    }
+
+    /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes
+    /// first. The first of [`Self::nearest_objects`].
+    #[must_use]
+    pub fn closest_object(
+        &self,
+        position: &N::Isometry,
+        shape: &dyn Shape<N, D>,
+        max_distance: N,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Option<Neighbor<'_, N, D, T>> {
+        self.nearest_objects(position, shape, 1, max_distance, filter).pop()
+    }
+
+    /// The objects at most `distance` from a solid: in ascending order of distance, then of handle.
+    /// [`Self::nearest_objects`], however many there are.
+    #[must_use]
+    pub fn objects_within(
+        &self,
+        position: &N::Isometry,
+        shape: &dyn Shape<N, D>,
+        distance: N,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<Neighbor<'_, N, D, T>> {
+        self.nearest_objects(position, shape, usize::MAX, distance, filter)
+    }
+
+    /// The `count` objects nearest to a solid, at most `max_distance` away: in ascending order of
+    /// distance, then of handle.
+    ///
+    /// Objects that touch or overlap the solid are at distance zero and
+    /// [`ClosestPoints::Intersecting`]; of the [`ClosestPoints::WithinMargin`] of others the first lies
+    /// on the solid, the second on the object. There is nothing if `count` is zero or `max_distance`
+    /// negative or NaN.
+    ///
+    /// Costs the search of a tree, and a computation of the distance for each object found and for a
+    /// few whose boxes are as near as the last of them.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point};
+    /// use impinge::dim2::query::ClosestPoints;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (ball, contacts) =
+    ///     (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Contacts(0.0, 0.0));
+    /// for x in [20.0, 5.0, 10.0, 1.0] {
+    ///     let position = Isometry::translation(x, 0.0);
+    ///     world.add(position, ball.clone(), CollisionGroups::new(), contacts, x);
+    /// }
+    ///
+    /// let (here, small) = (Isometry::identity(), Ball::new(0.5));
+    /// let found = world.nearest_objects(&here, &small, 3, f64::INFINITY, &QueryFilter::new());
+    /// let distances: Vec<f64> = found.iter().map(|neighbor| neighbor.distance).collect();
+    /// assert_eq!(distances, [0.0, 3.5, 8.5]);
+    /// assert_eq!(*found[1].object.data(), 5.0);
+    /// let points = ClosestPoints::WithinMargin(Point::new(0.5, 0.0), Point::new(4.0, 0.0));
+    /// assert_eq!(found[1].points, points);
+    ///
+    /// let near = world.objects_within(&here, &small, 3.5, &QueryFilter::new());
+    /// assert_eq!(near.len(), 2, "all up to 3.5");
+    /// let from_point = world.nearest_to_point(&Point::origin(), 2, f64::INFINITY, &QueryFilter::new());
+    /// assert_eq!(from_point[1].distance, 4.0);
+    /// ```
+    #[must_use]
+    pub fn nearest_objects(
+        &self,
+        position: &N::Isometry,
+        shape: &dyn Shape<N, D>,
+        count: usize,
+        max_distance: N,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<Neighbor<'_, N, D, T>> {
+        let Some(aabb) = around(position, shape) else { return Vec::new() };
+        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let ranking = Ranking::new(count, max_distance);
+        let found = self.rank(&Probe::Near(aabb), ranking, filter, &|body, farthest| {
+            let found = separation(&placed, body, farthest)?;
+            Some((max(found.distance, N::ZERO), found))
+        });
+        let neighbor = |(object, distance, found): (_, _, Separation<N, D>)| {
+            let apart = ClosestPoints::WithinMargin(found.point1, found.point2);
+            let points = if distance > N::ZERO { apart } else { ClosestPoints::Intersecting };
+            Neighbor { object, distance, points }
+        };
+        found.into_iter().map(neighbor).collect()
+    }
+}
+
+/// The box of a placed solid, grown by what rounding may have taken from it; `None` if the position is
+/// not finite.
+pub(super) fn around<N: Space<D>, const D: usize>(
+    position: &N::Isometry,
+    shape: &dyn Shape<N, D>,
+) -> Option<Aabb<N, D>> {
+    let pose = N::pose(position);
+    pose.is_finite().then(|| grown(&aabb_at(shape, &pose), N::ZERO))
+}
+
+/// How far a solid is from an object, `None` beyond `limit`.
+fn separation<N: Space<D>, const D: usize>(
+    placed: &Placed<'_, N, D>,
+    body: &Body<N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let other = Placed { pose: N::pose(&body.isometry), shape: body.shape.geometry() };
+    (N::tables().separation_in_world)(placed, &other, limit)
+}
