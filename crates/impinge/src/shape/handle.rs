@@ -44,12 +44,6 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
         self.0.scaled(scale)
     }
 
-    /// The shape, if it is of the type `S` and nobody shares it.
-    pub(super) fn into_shape<S: Shape<N, D>>(self) -> Option<S> {
-        let shape: Arc<dyn Any + Send + Sync> = self.0;
-        shape.downcast().ok().and_then(|shape| Arc::try_unwrap(shape).ok())
-    }
-
     /// The two handles share one shape.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {

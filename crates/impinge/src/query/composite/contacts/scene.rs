@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::super::between::{Between, anchor, recentred};
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::manifold_build::{Patch, PatchPoint, extremes};
+use crate::query::manifold_build::{Patch, PatchPoint};
 use crate::query::{Pair, RawManifold};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
@@ -182,10 +182,12 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         if self.is_turned { -normal } else { normal }
     }
 
-    /// How far the parts are apart along a direction from the first shape to the second; negative
-    /// where they overlap. `None` of half-spaces.
-    pub(super) fn gap(&self, normal: &Vector<N, D>) -> Option<N> {
-        extremes(&self.pair(), &self.inward(normal)).map(|found| found.distance)
+    /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
+    pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+        let mut pair = self.pair();
+        pair.pose12.translation += self.inward(way);
+        let found = (N::tables().separation)(&pair, -tolerance);
+        found.is_none_or(|found| found.distance > -tolerance)
     }
 
     /// A manifold of the bodies as one of the shapes, in the frame of the first.
