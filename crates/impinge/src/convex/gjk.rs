@@ -144,16 +144,16 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         Some(next)
     }
 
-    /// The bounds lie farther apart than they should.
-    fn open(&self) -> bool {
-        let closed = self.upper - self.best.height <= N::TWO * tolerance();
+    /// The bounds lie farther apart than this.
+    fn open(&self, gap: N) -> bool {
+        let closed = self.upper - self.best.height <= gap;
         !closed
     }
 
     /// The answer from the features found; refined first where the bounds do not meet. That is the
     /// case near touching, where the direction of the nearest point is mostly rounding errors.
     fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
-        if !self.open() {
+        if !self.open(gap()) {
             return self.settled(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
@@ -164,7 +164,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             Some(mix) => placed(&self.best, &mix, N::HALF),
             None => locate(difference, &self.best, &bundle),
         };
-        if !self.open() {
+        if !self.open(N::TWO * tolerance()) {
             return apart;
         }
         let deep = N::deepest(difference, &self.simplex);
@@ -187,7 +187,8 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
             return placed(&best, &polished, N::HALF);
         }
-        if !mix.meets(&best) {
+        let raised = best.height > self.best.height;
+        if !raised && !mix.meets(&best) {
             best.prefer(self.last, tolerance());
         }
         settle(difference, &best, &mix, self.simplex.vertices())

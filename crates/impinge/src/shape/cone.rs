@@ -6,7 +6,8 @@ use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
-    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle,
+    SupportMap,
 };
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min, unit};

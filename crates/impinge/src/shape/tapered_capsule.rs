@@ -3,7 +3,9 @@
 use super::error::{or_panic, size};
 use super::segment::{box_of, length_of};
 use super::tilt::Tilt;
-use super::{CurvedSupport, Feature, FeatureId, Geometry, Kind, Segment, Shape, ShapeError, SupportMap};
+use super::{
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, Segment, Shape, ShapeError, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
 
