@@ -124,13 +124,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 break;
             }
             let corners = face.corners.map(|corner| *hull.vertex(corner));
+            let before = best.height;
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
             if -candidate.height - face.offset > noise() {
                 return sharpened(difference, hull, best);
             }
-            best.prefer(candidate, N::TWO * tolerance());
+            if best.height <= before {
+                best.prefer(candidate, N::TWO * tolerance());
+            }
             let mix = Mix::nearest(&best, &corners);
             return settle(difference, &best, &mix, hull.vertices());
         }
