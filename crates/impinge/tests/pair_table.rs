@@ -311,9 +311,11 @@ fn moving<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
 fn settings(scales: &[f64]) -> Vec<Setting> {
     let regimes = [Regime::Far, Regime::Touching, Regime::Deep, Regime::Coincident];
     let mut all = Vec::new();
-    for (regime, turned) in regimes.into_iter().flat_map(|r| [(r, false), (r, true)]) {
-        all.extend(scales.iter().map(|&scale| Setting { regime, scale, away: 0.0, turned }));
-        all.push(Setting { regime, scale: 1.0, away: 1e6, turned });
+    for regime in regimes {
+        let (away, turned) = (0.0, false);
+        all.extend(scales.iter().map(|&scale| Setting { regime, scale, away, turned }));
+        all.push(Setting { regime, scale: 1.0, away, turned: true });
+        all.push(Setting { regime, scale: 1.0, away: 1e6, turned: true });
     }
     all
 }
