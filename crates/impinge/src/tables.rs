@@ -28,7 +28,7 @@ use crate::query::{
     impact_of_flight, impact_of_pair, tangents2, tangents3, witness_features2, witness_features3,
     witness_in_world,
 };
-use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
+use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -69,6 +69,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
     pub(crate) mesh: MeshTable<N, D>,
+    pub(crate) height_field: FieldTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -175,6 +176,7 @@ struct Particular<N: Space<D>, const D: usize> {
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
+    height_field: FieldTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
@@ -186,6 +188,7 @@ impl<N: Real> Particular<N, 2> {
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
+        height_field: FieldTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -198,6 +201,7 @@ impl<N: Real> Particular<N, 3> {
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
+        height_field: FieldTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -229,6 +233,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
             mesh: particular.mesh,
+            height_field: particular.height_field,
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Tetrahedra, in space.
 
 use super::error::{finite, or_panic};
+use super::scale::Scale;
 use super::tetrahedron_flat::Outline;
 use super::{
-    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Polytope, Shape, ShapeError, SupportMap,
+    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Polytope, ScaleError, Shape, ShapeError,
+    ShapeHandle, SupportMap,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Vector, cross, max, unit};
@@ -221,6 +223,12 @@ impl<N: Real> Shape<N, 3> for Tetrahedron<N> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, 3> {
         self.polytope.bounding_sphere()
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let corners = self.corners.map(|corner| scale.point(&corner));
+        Ok(ShapeHandle::new(Self::try_new(corners)?))
     }
 }
 
