@@ -23,11 +23,12 @@ use crate::query::separation::{
     Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
-    RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3, impact_of_pair,
-    tangents2, tangents3, witness_features2, witness_features3, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
+    impact_of_flight, impact_of_pair, tangents2, tangents3, witness_features2, witness_features3,
+    witness_in_world,
 };
-use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
+use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -43,6 +44,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_features: FeaturesFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -67,6 +69,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
     pub(crate) mesh: MeshTable<N, D>,
+    pub(crate) height_field: FieldTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -80,6 +83,8 @@ type EachHitFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
 type ImpactFn<N, const D: usize> =
     fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type NonlinearImpactFn<N, const D: usize> =
+    fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
 type CompositeManifoldsFn<N, const D: usize> = fn(
@@ -171,6 +176,7 @@ struct Particular<N: Space<D>, const D: usize> {
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
+    height_field: FieldTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
@@ -182,6 +188,7 @@ impl<N: Real> Particular<N, 2> {
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
+        height_field: FieldTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -194,6 +201,7 @@ impl<N: Real> Particular<N, 3> {
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
+        height_field: FieldTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -208,6 +216,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_in_world,
             witness_features: particular.witness_features,
             impact: impact_of_pair,
+            nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             nearest_part,
@@ -224,6 +233,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
             mesh: particular.mesh,
+            height_field: particular.height_field,
         }
     }
 }

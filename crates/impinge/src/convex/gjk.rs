@@ -10,9 +10,11 @@ use smallvec::SmallVec;
 use super::Separation;
 use super::candidate::Candidate;
 use super::difference::{Difference, Vertex, noise, tolerance};
+use super::newton::settles;
+use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{Nearest, Simplex, Simplicial};
-use super::witness::{Mix, locate, settle};
+use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, max};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
@@ -149,16 +151,31 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         !closed
     }
 
+    /// The bounds meet, up to rounding. Rounding may also have put the one that should be above below
+    /// the other: slivers give poor nearest points.
+    fn met(&self) -> bool {
+        (self.upper - self.best.height).abs() <= N::TWO * gap()
+    }
+
     /// The answer from the features found; refined first where the bounds do not meet. That is the
-    /// case near touching, where the direction of the nearest point is mostly rounding errors.
+    /// case near touching, where the direction of the nearest point is mostly rounding errors, and
+    /// where one solid is much larger than the other.
     fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
-        if !self.open() {
+        if self.met() {
             return self.settled(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
+        if settles(difference, &mut self.best) {
+            bundle.push(self.best.vertex);
+            return locate(difference, &self.best, &bundle);
+        }
         bundle.extend([self.best.vertex, self.spare]);
         refine(difference, &mut bundle, &mut self.best);
-        let apart = locate(difference, &self.best, &bundle);
+        let near = lowest(&bundle, &self.best.normal);
+        let apart = match polish(difference, &mut self.best, &near) {
+            Some(mix) => placed(&self.best, &mix, N::HALF),
+            None => locate(difference, &self.best, &bundle),
+        };
         if !self.open() {
             return apart;
         }
@@ -179,8 +196,15 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
     /// the points of the nearest point lie across from each other along no other.
     fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
+        if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
+            return placed(&best, &polished, N::HALF);
+        }
         if !mix.meets(&best) {
-            best.prefer(self.last, tolerance());
+            // The points of a sliver are no proof that its plane is as near as it seems.
+            if settles(difference, &mut best) {
+                return locate(difference, &best, &[best.vertex]);
+            }
+            best.prefer(self.last, N::TWO * gap());
         }
         settle(difference, &best, &mix, self.simplex.vertices())
     }

@@ -25,6 +25,11 @@ pub(super) struct Mix<N: Real, const D: usize> {
 }
 
 impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
+    /// Of these points.
+    pub(super) fn new(on1: Vector<N, D>, on2: Vector<N, D>) -> Self {
+        Self { on1, on2 }
+    }
+
     /// By the weights that the simplex was left with.
     pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
         Self::by(simplex, simplex.weights())
@@ -84,7 +89,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
 /// The answer in units of the pair, with the points of `mix`: moved onto the supporting planes of the
 /// normal, and sideways until they lie exactly across from each other, the first by `share` of the
 /// way.
-fn placed<N: Simplicial<D>, const D: usize>(
+pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &Candidate<N, D>,
     mix: &Mix<N, D>,
     share: N,

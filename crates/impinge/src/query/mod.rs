@@ -21,8 +21,11 @@ pub use closest_points::{ClosestPoints, closest_points};
 pub(crate) use composite::{CompositeContacts, contact_in_world, own_distance};
 pub use contact::{Contact, contact};
 pub use distance::distance;
-pub(crate) use impact::impact_of_pair;
-pub use impact::{Impact, ImpactOptions, ImpactStatus, Moving, impact, time_of_impact};
+pub use impact::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
+    nonlinear_time_of_impact, time_of_impact,
+};
+pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};

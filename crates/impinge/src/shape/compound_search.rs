@@ -1,10 +1,14 @@
 //! The search of a compound: first among the boxes of its children, then within each composite.
 
-use super::{CompositeShape, Compound, PartSearch};
+use super::{CompositeShape, Compound, PartSearch, Shape};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Pose, Real, Space, Vector, max, min};
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
         self.tree.visit_overlapping(aabb, |child| {
             let first = self.firsts[child];

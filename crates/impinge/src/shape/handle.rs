@@ -1,5 +1,6 @@
 //! Shapes shared by many objects.
 
+use core::any::Any;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -25,22 +26,28 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     ///
     /// ```
     /// use impinge::dim2::na::{Vector2, Point2};
-    /// use impinge::dim2::shape::{Ball, Cuboid, ScaleError, Segment, ShapeHandle};
+    /// use impinge::dim2::shape::{Capsule, ScaleError, Segment, ShapeHandle};
     ///
     /// let (mirror, wide) = (Vector2::new(-1.0_f32, 1.0), Vector2::new(2.0, 1.0));
     /// let segment = ShapeHandle::new(Segment::new(Point2::origin(), Point2::new(3.0, 4.0)));
     /// let mirrored = segment.scaled(&mirror).expect("a segment takes every scale");
     /// assert_eq!(mirrored.local_aabb().mins(), &Point2::new(-3.0, 0.0));
     ///
-    /// let ball = ShapeHandle::new(Ball::new(1.0_f32));
-    /// assert!(ball.scaled(&mirror).is_ok());
-    /// assert!(matches!(ball.scaled(&wide), Err(ScaleError::NotSuch { .. })));
+    /// let capsule = ShapeHandle::new(Capsule::new(1.0_f32, 0.5));
+    /// assert!(capsule.scaled(&mirror).is_ok());
+    /// assert!(matches!(capsule.scaled(&wide), Err(ScaleError::NotSuch { .. })));
     /// ```
     ///
     /// # Errors
     /// If a factor is zero or not finite, or the scaled solid is no shape of the library.
     pub fn scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         self.0.scaled(scale)
+    }
+
+    /// The shape, if it is of the type `S` and nobody shares it.
+    pub(super) fn into_shape<S: Shape<N, D>>(self) -> Option<S> {
+        let shape: Arc<dyn Any + Send + Sync> = self.0;
+        shape.downcast().ok().and_then(|shape| Arc::try_unwrap(shape).ok())
     }
 
     /// The two handles share one shape.

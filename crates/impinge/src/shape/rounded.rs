@@ -1,7 +1,10 @@
 //! Any convex solid, swollen by a radius.
 
 use super::error::{or_panic, size};
-use super::{Feature, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::scale::Scale;
+use super::{
+    CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -97,6 +100,14 @@ impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D,
         self.map().core_support(direction)
     }
 
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        self.map().curved_support(point, direction)
+    }
+
     fn rounding(&self) -> N {
         self.map().rounding() + self.radius
     }
@@ -129,5 +140,12 @@ impl<N: Real, const D: usize, S: Shape<N, D>> Shape<N, D> for Rounded<N, D, S> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         self.shape.local_bounding_sphere().loosened(self.radius)
+    }
+
+    /// With factors of one magnitude; the shape in the middle must stay of its type.
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factor = Scale::try_new(scale)?.uniform()?;
+        let shape = self.shape.scaled(scale)?.into_shape::<S>().ok_or(ScaleError::Unsupported)?;
+        Ok(ShapeHandle::new(Self::try_new(shape, self.radius * factor)?))
     }
 }

@@ -1,11 +1,15 @@
 //! Tapered capsules: the hulls of two balls.
 
 use super::error::{or_panic, size};
+use super::scale::Scale;
 use super::segment::{box_of, length_of};
 use super::tilt::Tilt;
-use super::{Feature, FeatureId, Geometry, Kind, Segment, Shape, ShapeError, SupportMap};
+use super::{
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError,
+    ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use crate::math::{Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
 
 /// The convex hull of two balls around the ends of a segment.
 ///
@@ -143,6 +147,22 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         min(self.radii[0], self.radii[1])
     }
 
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let large = self.larger_end();
+        let (center, radius) = (self.end(large), self.core_radii()[large]);
+        // The core of the smaller ball is its centre, a corner.
+        let to_corner = (point - self.end(1 - large)).norm();
+        if to_corner < ((point - center).norm() - radius).abs() {
+            return None;
+        }
+        let across = Matrix::<N, D>::identity() - direction * direction.transpose();
+        Some(CurvedSupport { point: center + direction * radius, bend: across * radius })
+    }
+
     fn center(&self) -> Point<N, D> {
         self.segment.center()
     }
@@ -202,5 +222,12 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
             (Ok(ball1), Ok(ball2)) => ball1.merged(&ball2),
             _ => BoundingSphere::unbounded(),
         }
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factors = Scale::try_new(scale)?;
+        let factor = factors.uniform()?;
+        let [a, b] = [0, 1].map(|end| factors.point(self.end(end)));
+        Ok(ShapeHandle::new(Self::try_from_ends(a, b, self.radii.map(|radius| radius * factor))?))
     }
 }
