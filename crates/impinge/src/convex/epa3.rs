@@ -12,7 +12,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
-use super::newton::sharpen;
+use super::newton::{settles, sharpen};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
@@ -166,6 +166,7 @@ fn polish<N: Real>(
         climb(difference, &mut other);
         best.improve(&other);
     }
+    settles(difference, best);
 }
 
 /// What is left to say when no face of the hull has a normal.
