@@ -12,7 +12,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
-use super::newton::sharpen;
+use super::newton::{settles, sharpen};
 use super::polish::{lowest, polish};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -178,6 +178,7 @@ fn climb_on<N: Real>(
         climb(difference, &mut other);
         best.improve(&other);
     }
+    settles(difference, best);
 }
 
 /// What is left to say when no face of the hull has a normal.
