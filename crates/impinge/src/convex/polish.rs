@@ -51,6 +51,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     best: &mut Candidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<Mix<N, D>> {
+    try_round_faces(difference, best);
     let mut current = *best;
     let mut sides = active(difference, &current, vertices)?;
     for _ in 0..STEPS {
@@ -74,6 +75,20 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         }
     }
     None
+}
+
+/// Tries the very normals of round faces that the normal is close to: the height has a peak there, and
+/// no derivative.
+fn try_round_faces<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+) {
+    for face in difference.round_faces(&best.normal).into_iter().flatten() {
+        let is_close = (face - best.normal).norm_squared() < N::lit(SLACK) * tolerance();
+        if let Some((normal, _)) = unit(&face).filter(|_| is_close) {
+            best.improve(&Candidate::along(difference, normal));
+        }
+    }
 }
 
 /// The points that lie lowest along a normal, or nearly so: those that [`polish`] may need.

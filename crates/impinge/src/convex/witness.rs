@@ -189,6 +189,8 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
+    // Points a little aside are the lesser evil where the normal is known better than they are.
+    let found = if found.height < best.height - noise() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }
