@@ -204,7 +204,9 @@ pub mod transformation {
 /// assert_eq!(outline.points[1], [2.0, 1.0].into());
 /// ```
 pub mod procedural {
-    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::plane::{
+        ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
+    };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
 }
 

@@ -204,7 +204,8 @@ pub mod transformation {
 /// ```
 pub mod procedural {
     pub use crate::procedural::space::{
-        ball, capsule, cone, convex_hull, cuboid, cylinder, triangle,
+        ball, capsule, cone, convex_hull, cuboid, cylinder, ellipsoid, tapered_capsule,
+        tetrahedron, triangle,
     };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
 }

@@ -27,6 +27,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
 ) {
+    super::hidden::drop_hidden(scene, findings);
     let mut ways = Vec::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
         note(&mut ways, finding);
