@@ -64,7 +64,7 @@ fn fill<N: Space<D>, const D: usize>(
 
 /// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
 /// of each solid, and need not face each other. `None` if there is a half-space.
-pub(in crate::query) fn extremes<N: Space<D>, const D: usize>(
+fn extremes<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
 ) -> Option<Separation<N, D>> {

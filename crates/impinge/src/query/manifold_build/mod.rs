@@ -25,7 +25,7 @@ mod reduce;
 pub(super) mod tests;
 mod witness;
 
-pub(super) use self::along::{Along, build_along, build_between, extremes};
+pub(super) use self::along::{Along, build_along, build_between};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};

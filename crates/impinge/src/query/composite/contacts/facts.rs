@@ -14,6 +14,8 @@ pub(super) enum Standing {
     Own,
     /// It is one with the face of a part, whose seams the parts alone would touch at.
     Snapped,
+    /// The same, beyond a ridge: it is one if nothing else explains that the parts overlap.
+    Beyond,
     /// It is none, as long as there is another.
     Left,
 }
@@ -27,6 +29,9 @@ pub(super) struct Finding<N: Real, const D: usize> {
     /// What they say of the contact of the shapes, in the frame of the first.
     pub(super) patch: Patch<N, D>,
     pub(super) standing: Standing,
+    /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
+    /// if it touches otherwise.
+    pub(super) face: Option<Vector<N, D>>,
     /// Lengths below this are rounding errors.
     pub(super) tolerance: N,
 }
@@ -70,7 +75,8 @@ fn plain<N: Space<D>, const D: usize>(
     (N::tables().contacts)(&placed.pair(), request, &mut raw);
     let patch = placed.patch(&raw, parts);
     let (standing, tolerance) = (Standing::Own, placed.tolerance());
-    let mut finding = Finding { parts, distance: N::INFINITY, patch, standing, tolerance };
+    let (distance, face) = (N::INFINITY, None);
+    let mut finding = Finding { parts, distance, patch, standing, face, tolerance };
     finding.distance = finding.lowest();
     (!finding.patch.points.is_empty()).then_some(finding)
 }
@@ -123,7 +129,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let verdicts = meeting.verdicts(scene, &found);
     let normal = placed.outward(&found.normal);
     let mut raw = RawManifold::default();
-    let standing = match settled(placed, &verdicts, &normal) {
+    let mut standing = match settled(placed, &verdicts, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => Standing::Left,
         Settled::Found(normal) => {
@@ -131,18 +137,20 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             build_between(&pair, &witness, request, &mut raw);
             Standing::Own
         }
-        Settled::Forced(normal) => {
+        Settled::Forced(normal, standing) => {
             let least = if found.distance > N::ZERO { found.distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&normal), least };
             build_along(&pair, &along, request, &mut raw);
-            if raw.points.is_empty() { Standing::Left } else { Standing::Snapped }
+            standing
         }
     };
-    if standing == Standing::Left {
+    if raw.points.is_empty() {
+        standing = Standing::Left;
         build_between(&pair, &found, request, &mut raw);
     }
     let (patch, tolerance) = (placed.patch(&raw, parts), placed.tolerance());
-    Some(Finding { parts, distance: found.distance, patch, standing, tolerance })
+    let face = verdicts[1].face().filter(|_| standing != Standing::Left);
+    Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
 }
 
 /// What both surfaces together say.
@@ -152,7 +160,7 @@ enum Settled<N: Real, const D: usize> {
     /// A contact with this normal at the witness.
     Found(Vector<N, D>),
     /// Contacts with a face along this normal, where there are some.
-    Forced(Vector<N, D>),
+    Forced(Vector<N, D>, Standing),
 }
 
 /// Takes the verdicts together; `normal` is the one that both are about. All in the frame of
@@ -162,17 +170,22 @@ fn settled<N: Space<D>, const D: usize>(
     verdicts: &[Verdict<N, D>; 2],
     normal: &Vector<N, D>,
 ) -> Settled<N, D> {
-    use Verdict::{Admitted, Face, Nothing, Refused, Snapped};
+    use Verdict::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
     let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
+    let standing = if verdicts.iter().any(|verdict| matches!(verdict, Beyond(_))) {
+        Standing::Beyond
+    } else {
+        Standing::Snapped
+    };
     match verdicts {
         [Nothing, _] | [_, Nothing] => Settled::Nothing,
-        [Snapped(face1), Snapped(face2)] => {
+        [Snapped(face1) | Beyond(face1), Snapped(face2) | Beyond(face2)] => {
             let face2 = of_second(face2);
             let is_first_nearer = face1.dot(normal) > face2.dot(normal);
-            Settled::Forced(if is_first_nearer { *face1 } else { face2 })
+            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, standing)
         }
-        [_, Snapped(face)] => Settled::Forced(of_second(face)),
-        [Snapped(face), _] => Settled::Forced(*face),
+        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), standing),
+        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, standing),
         [Refused, _] | [_, Refused] => Settled::Refused,
         [_, Face(face)] => Settled::Found(of_second(face)),
         [Face(face), _] => Settled::Found(*face),

@@ -1,6 +1,6 @@
 //! Whether a contact with one part of a surface is one of the whole.
 
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, Surface};
 
 /// Normals this many rounding units from a face's own are that one.
@@ -9,6 +9,10 @@ const ROUNDING: f64 = 4096.0;
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A normal that points this far to the other side of a face is one of the other side.
 const BEHIND: f64 = -0.5;
+
+/// To look for a ridge a face's normal is leaned by this part of the way to another: by more than
+/// what counts as flat.
+const A_LITTLE: f64 = 1.0 / 32.0;
 
 /// What a surface says of a contact of one of its parts. Normals are away from the part, in the
 /// frame of the composite.
@@ -22,8 +26,21 @@ pub(super) enum Verdict<N: Real, const D: usize> {
     Face(Vector<N, D>),
     /// The normal is that of a seam. Contacts with the face itself have this one.
     Snapped(Vector<N, D>),
+    /// The normal lies beyond those of a ridge, at whose other side another part has a face: this
+    /// one's counts only if no other contact explains the overlap.
+    Beyond(Vector<N, D>),
     /// The normal is that of a seam, and there is no face.
     Refused,
+}
+
+impl<N: Real, const D: usize> Verdict<N, D> {
+    /// The normal of the face that a contact would be with.
+    pub(super) const fn face(&self) -> Option<Vector<N, D>> {
+        match self {
+            Self::Face(face) | Self::Snapped(face) | Self::Beyond(face) => Some(*face),
+            Self::Nothing | Self::Admitted | Self::Refused => None,
+        }
+    }
 }
 
 /// The contact of a part with the other solid, as seen by the composite.
@@ -61,8 +78,29 @@ pub(super) fn judge<N: Space<D>, const D: usize>(
     if lean <= N::lit(ROUNDING) * N::EPSILON || lean <= room {
         return Verdict::Face(face);
     }
-    let is_behind = case.outward.dot(&face) < N::lit(BEHIND);
-    if !is_behind && is_admitted() { Verdict::Admitted } else { Verdict::Snapped(face) }
+    if case.outward.dot(&face) < N::lit(BEHIND) {
+        return Verdict::Snapped(face);
+    }
+    if is_admitted() {
+        return Verdict::Admitted;
+    }
+    if is_beyond_ridge(surface, case, &face) {
+        Verdict::Beyond(face)
+    } else {
+        Verdict::Snapped(face)
+    }
+}
+
+/// The part ends at a ridge, and the normal, which is not one of the ridge's, lies beyond all that
+/// are: seen from the face, normals that lean a little the same way are the ridge's.
+fn is_beyond_ridge<N: Space<D>, const D: usize>(
+    surface: &dyn Surface<N, D>,
+    case: &Case<N, D>,
+    face: &Vector<N, D>,
+) -> bool {
+    let leaning = face + (case.outward - face) * N::lit(A_LITTLE);
+    let leaning = unit(&leaning).map(|(leaning, _)| leaning);
+    leaning.is_some_and(|leaning| surface.admits(case.part, case.feature, &leaning))
 }
 
 /// A flat piece; for the segments of a surface in the plane that is an edge.

@@ -27,25 +27,35 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
 ) {
+    super::hidden::drop_hidden(scene, findings);
     let mut ways = Vec::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
         note(&mut ways, finding);
     }
-    let mut snapped: Vec<usize> = (0..findings.len()).collect();
-    snapped.retain(|&index| findings[index].standing == Standing::Snapped);
-    // The shallowest first.
-    snapped.sort_by(|&a, &b| {
-        let lowest = |index: usize| findings[index].lowest().as_f64();
-        lowest(b).total_cmp(&lowest(a)).then(findings[a].parts.cmp(&findings[b].parts))
-    });
-    for index in snapped {
-        if is_explained(scene, &findings[index], &ways) {
-            findings[index].standing = Standing::Left;
-        } else {
-            note(&mut ways, &findings[index]);
+    for standing in [Standing::Snapped, Standing::Beyond] {
+        for index in shallowest_first(findings, standing) {
+            if is_explained(scene, &findings[index], &ways) {
+                findings[index].standing = Standing::Left;
+            } else {
+                note(&mut ways, &findings[index]);
+            }
         }
     }
     keep_one(findings);
+}
+
+/// The findings of a standing.
+fn shallowest_first<N: Real, const D: usize>(
+    findings: &[Finding<N, D>],
+    standing: Standing,
+) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..findings.len()).collect();
+    order.retain(|&index| findings[index].standing == standing);
+    order.sort_by(|&a, &b| {
+        let lowest = |index: usize| findings[index].lowest().as_f64();
+        lowest(b).total_cmp(&lowest(a)).then(findings[a].parts.cmp(&findings[b].parts))
+    });
+    order
 }
 
 /// Takes note of a contact as a way to part the shapes; of those along one normal the farthest.
@@ -57,7 +67,8 @@ fn note<N: Real, const D: usize>(ways: &mut Vec<Way<N, D>>, finding: &Finding<N,
     }
 }
 
-/// Another way that is no longer parts the two parts too.
+/// Another way parts the two parts too: one that is no longer, and of a contact with a face that
+/// is not beyond a ridge one that leads elsewhere.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     finding: &Finding<N, D>,
@@ -67,11 +78,13 @@ fn is_explained<N: Space<D>, const D: usize>(
     if depth <= finding.tolerance {
         return false;
     }
+    let is_beyond = finding.standing == Standing::Beyond;
     let placed = scene.pair(finding.parts);
     ways.iter().any(|way| {
-        let is_other = way.normal.dot(&normal) < N::lit(ALIKE) && way.depth <= depth;
-        let parts = |gap: N| gap + way.depth >= -finding.tolerance;
-        is_other && placed.gap(&way.normal).is_some_and(parts)
+        let is_other = is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
+        is_other
+            && way.depth <= depth
+            && placed.is_parted(&(way.normal * way.depth), finding.tolerance)
     })
 }
 

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::super::between::{Between, anchor, recentred};
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::manifold_build::{Patch, PatchPoint, extremes};
+use crate::query::manifold_build::{Patch, PatchPoint};
 use crate::query::{Pair, RawManifold};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
@@ -84,6 +84,39 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
         Self { between, surfaces: between.composites().map(surface) }
+    }
+
+    /// The first shape is one solid.
+    pub(super) fn first_is_convex(&self) -> bool {
+        self.between.composites()[0].is_none()
+    }
+
+    /// Two parts of the second shape hang together.
+    pub(super) fn are_adjacent(&self, part: u32, other: u32) -> bool {
+        let [_, composite] = self.between.composites();
+        composite.is_some_and(|composite| composite.are_adjacent(part, other))
+    }
+
+    /// How low and how high a part of the second shape lies over the plane of another with a given
+    /// normal, and what counts as rounding. `None` of half-spaces.
+    pub(super) fn heights(
+        &self,
+        part: u32,
+        plane: u32,
+        normal: &Vector<N, D>,
+    ) -> Option<(N, N, N)> {
+        let composite = self.between.composites()[1]?;
+        let origin = anchor(&composite.part(plane));
+        let (part, plane) =
+            (moved(&composite.part(part), &origin), moved(&composite.part(plane), &origin));
+        let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
+            let map = Geometry(body.kind()).as_support_map()?;
+            let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));
+            Some((along.dot(&point.coords), map.reach()))
+        };
+        let (level, reach1) = top(&plane, normal)?;
+        let ((high, reach2), (low, _)) = (top(&part, normal)?, top(&part, &-normal)?);
+        Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
     }
 
     /// Two parts.
@@ -182,10 +215,12 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         if self.is_turned { -normal } else { normal }
     }
 
-    /// How far the parts are apart along a direction from the first shape to the second; negative
-    /// where they overlap. `None` of half-spaces.
-    pub(super) fn gap(&self, normal: &Vector<N, D>) -> Option<N> {
-        extremes(&self.pair(), &self.inward(normal)).map(|found| found.distance)
+    /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
+    pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+        let mut pair = self.pair();
+        pair.pose12.translation += self.inward(way);
+        let found = (N::tables().separation)(&pair, -tolerance);
+        found.is_none_or(|found| found.distance > -tolerance)
     }
 
     /// A manifold of the bodies as one of the shapes, in the frame of the first.
