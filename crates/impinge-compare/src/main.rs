@@ -7,8 +7,11 @@
 //! Looking up the poses and converting them is not. On every tenth step the touching pairs of both
 //! are compared, and the table says by how many they differ: a time for another answer is no time.
 //!
+//! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
+//!
 //! Both sides use `f32`, the same prediction and as good as the same loosening of boxes.
 
+mod accuracy;
 mod contender;
 mod ours;
 mod rapier2;
@@ -31,6 +34,12 @@ struct Arguments {
 }
 
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("accuracy") {
+        let samples = std::env::args().nth(2);
+        let samples = samples.map(|word| word.parse().unwrap_or_else(|_| usage(&word)));
+        accuracy::run(samples.unwrap_or(1000));
+        return;
+    }
     let arguments = arguments();
     print_header(&arguments);
     let n = arguments.objects;
@@ -85,6 +94,6 @@ fn arguments() -> Arguments {
 }
 
 fn usage(word: &str) -> ! {
-    eprintln!("{word} is not a number\nusage: impinge-compare [objects [steps [machine]]]");
+    eprintln!("{word} is not a number\nusage: impinge-compare [objects [steps [machine]]]\n       impinge-compare accuracy [samples]");
     std::process::exit(2)
 }

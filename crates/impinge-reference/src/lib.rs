@@ -6,11 +6,13 @@
 //! crate can check it with a pencil.
 //!
 //! - [`geometry`]: poses, convex solids, signed distance, points, rays, boxes
+//! - [`precise`]: signed distance with about 25 digits
 //! - [`world`]: the naive collision world and its event log
 //! - [`random`]: the small deterministic generator that all tests share
 //! - [`topology`]: is this list of faces really a convex hull?
 
 pub mod geometry;
+pub mod precise;
 pub mod random;
 pub mod topology;
 pub mod world;

@@ -251,7 +251,7 @@ fn all_hits<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
             assert_eq!(scene.fast.cast_local_ray_until(&ray, N::lit(f64::NAN), solid), None, "NaN");
         }
     }
-    assert!(many > 100 && none > 100, "{many} with several hits, {none} without");
+    assert!(many > 40 && none > 100, "{many} with several hits, {none} without");
 }
 
 #[test]

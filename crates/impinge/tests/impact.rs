@@ -2,11 +2,13 @@
 
 mod query_support;
 
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Space, Unit, Vector};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Unit, Vector};
 use impinge::query::{
     Impact, ImpactOptions, ImpactStatus, Moving, contact, impact, time_of_impact,
 };
-use impinge::shape::{Ball, Capsule, Cuboid, Cylinder, Plane, Shape, ShapeKind};
+use impinge::shape::{
+    Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeKind,
+};
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 
@@ -267,4 +269,14 @@ fn in_space() {
     // The centre is 3 √3 from the corner, and stops at 1.
     assert!((hit.toi - (3.0 - 1.0 / 3.0_f64.sqrt())).abs() < 1e-13, "{hit:?}");
     assert!((hit.world1.coords - V3::new(1.0, 1.0, 1.0)).norm() < 1e-13, "{hit:?}");
+    assert!(matches!(hit.feature1, FeatureId::Vertex(_)), "the corner: {hit:?}");
+    let down = Moving::new(&Isometry3::translation(0.5, 4.0, 0.25), &-V3::y(), &cuboid);
+    let hit = impact(&down, &still, &ImpactOptions::new()).expect("onto the top");
+    assert_eq!(hit.toi, 2.0, "four less two halves");
+    let corners =
+        Segment::new(Point::<f64, 3>::new(-0.5, 4.0, 0.0), Point::<f64, 3>::new(0.5, 4.5, 0.0));
+    let down = Moving::new(&Isometry3::identity(), &-V3::y(), &corners);
+    let hit = impact(&down, &still, &ImpactOptions::new()).expect("with its lower end");
+    assert_eq!((hit.toi, hit.feature1), (3.0, FeatureId::Vertex(0)));
+    assert!(matches!(hit.feature2, FeatureId::Face(_)), "the top: {hit:?}");
 }

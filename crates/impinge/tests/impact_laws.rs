@@ -221,7 +221,6 @@ where
             }
         }
     }
-    println!("{scenes} scenes: {straight} straight, {turning:?} turning, {spent:?} spent");
     assert!(straight > scenes / 4, "{straight} of {scenes}");
     assert!(turning.iter().all(|&hits| hits > scenes / 4), "{turning:?} of {scenes}");
     assert!(spent[0] < scenes / 50 && spent[1] < scenes / 10, "{spent:?} of {scenes} given up");

@@ -11,7 +11,9 @@ use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector
 use impinge::query::{
     Impact, ImpactOptions, ImpactStatus, RigidMotion, distance, nonlinear_time_of_impact,
 };
-use impinge::shape::{Ball, Capsule, Cuboid, Cylinder, Plane, Segment, Shape};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle,
+};
 use query_support::corpus::{placed2, regression};
 
 type V2 = Vector<f64, 2>;
@@ -89,6 +91,7 @@ fn a_rod_swings_against_a_wall() {
     let touch = Point::<f64, 2>::new(2.0_f64.sqrt(), 2.0_f64.sqrt());
     assert!((found.world1 - touch).norm() < 1e-12, "{found:?}");
     assert!((found.normal.into_inner() - V2::y()).norm() < 1e-12, "{found:?}");
+    assert_eq!((found.feature1, found.feature2), (FeatureId::Vertex(1), FeatureId::Face(0)));
     // In the other direction it takes half a turn more.
     let found = toi(
         (&spins(at(0.0, 0.0), -1.0), &rod),
@@ -458,6 +461,55 @@ fn box2d_115_sweep() {
     };
     assert_eq!(near(least - 1e-6), None, "not so near");
     assert!(near(least + 1e-6).expect("so near") > 0.999, "at the end");
+}
+
+/// A composite is hit when the first of its parts is, and says which.
+#[test]
+fn composites() {
+    let parts = [
+        (at(-2.0, 0.25), ShapeHandle::new(Ball::new(0.5))),
+        (at(1.0, 0.0), ShapeHandle::new(Cuboid::new(V2::new(1.5, 0.25)))),
+        (turned(0.0, 1.0, 0.5), ShapeHandle::new(Capsule::<f64, 2>::new(0.75, 0.125))),
+    ];
+    let compound = Compound::new(parts.to_vec());
+    let (floor, post) = (half_plane(0.0, 1.0), Ball::new(0.25));
+    let (still, pivots) = (Turning2::still(at(0.0, 0.0)), spins(at(0.0, 0.0), -0.0625));
+    let others: [(&dyn RigidMotion<f64, 2>, &dyn Shape<f64, 2>); 3] =
+        [(&still, &floor), (&still, &post), (&pivots, &floor)];
+    let mut named = [false; 3];
+    for (turn, other) in [-2.0, -0.75, 0.5, 1.5].iter().flat_map(|t| others.map(|o| (*t, o))) {
+        let start = turned(-4.0, 5.0, turn);
+        let motion = Turning2::<f64>::new(start, V2::new(1.0, -1.25), turn);
+        let found = both((&motion, &compound), other, &until(20.0)).expect("it falls on it");
+        assert_eq!(found.status, ImpactStatus::Reached, "{found:?}");
+        let of_part = |(place, shape): &(Isometry2<f64>, ShapeHandle<f64, 2>)| {
+            // The part alone, turning about where the compound has its origin.
+            let center = place.inverse_transform_point(&Point::origin());
+            let motion = Turning2::<f64>::new(start * place, V2::new(1.0, -1.25), turn)
+                .with_local_center(center);
+            both((&motion, &**shape), other, &until(20.0)).map_or(f64::INFINITY, |hit| hit.toi)
+        };
+        let times = [0, 1, 2].map(|index| of_part(&parts[index]));
+        let part = usize::try_from(found.part1).expect("small");
+        assert_near(found.toi, times[part]);
+        assert!(times.iter().all(|&time| time > found.toi - 1e-12), "{times:?} {found:?}");
+        named[part] = true;
+    }
+    assert!(named.iter().filter(|&&named| named).count() > 1, "{named:?}");
+}
+
+/// Half-spaces make a composite unbounded; it may move and turn all the same.
+#[test]
+fn unbounded_composites() {
+    let half = |x, y| ShapeHandle::new(half_plane(x, y));
+    let wedge =
+        Compound::new(vec![(at(0.0, 0.0), half(0.0, 1.0)), (at(9.0, 0.0), half(-1.0, 0.0))]);
+    let (ball, still) = (Ball::new(0.5), Turning2::still(at(3.0, 2.0)));
+    let found = toi((&spins(at(0.0, 0.0), 1.0), &wedge), (&still, &ball), &FOR_EVER);
+    assert_near(found, (0.5 / 13.0_f64.sqrt()).acos() - 1.5_f64.atan());
+    let moves = Turning2::<f64>::new(at(0.0, 0.0), V2::new(-1.0, 0.0), 0.0);
+    let found = both((&moves, &wedge), (&still, &ball), &FOR_EVER).expect("the wall comes");
+    assert_eq!((found.toi, found.part1), (5.5, 1));
 }
 
 /// A pose is where the isometry is, for motions that do not say more.

@@ -5,7 +5,7 @@ use super::point::PointMeter;
 use super::polytope;
 use super::pose::Pose;
 use super::solid::Solid;
-use super::sphere_search::maximise;
+use super::sphere_search::{TOLERANCE, maximise};
 use super::vector::{negate, norm, perpendicular, sub};
 
 /// What [`signed_distance`] found.
@@ -155,7 +155,7 @@ fn curved<const D: usize>(
     for line1 in &lines1 {
         seeds.extend(lines2.iter().map(|line2| convert(&perpendicular(&[*line1, *line2]))));
     }
-    let found = maximise(&lowest, &seeds, size);
+    let found = maximise(&lowest, &seeds, size, TOLERANCE);
     let rounding = solid1.radius() + solid2.radius();
     Reference {
         lower: found.lower - rounding,

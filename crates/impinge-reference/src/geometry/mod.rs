@@ -11,7 +11,7 @@ mod point;
 mod polytope;
 mod pose;
 mod solid;
-mod sphere_search;
+pub(crate) mod sphere_search;
 pub mod vector;
 
 pub use cast::{Cast, linear_cast, ray_cast};

@@ -15,8 +15,8 @@ use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 
 type Vector = [f64; 3];
 
-/// The search stops when at most this share of the size of the problem can still be gained.
-const TOLERANCE: f64 = 1e-11;
+/// The share of the size of the problem that searches give up in the end.
+pub(crate) const TOLERANCE: f64 = 1e-11;
 /// Caps on the depth of the cutting and on the triangles of one depth. The second is only met when
 /// the maximum is taken on a whole curve or region, such as for coaxial cylinders; the certificate
 /// is wider then.
@@ -24,10 +24,10 @@ const MAX_DEPTH: usize = 40;
 const MAX_CELLS: usize = 10_000;
 
 /// The maximum lies between `lower`, which is `h(normal)`, and `upper`.
-pub(super) struct Bracket {
-    pub(super) lower: f64,
-    pub(super) upper: f64,
-    pub(super) normal: Vector,
+pub(crate) struct Bracket {
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    pub(crate) normal: Vector,
 }
 
 /// A spherical triangle of directions.
@@ -48,8 +48,14 @@ struct Search<'a> {
 }
 
 /// Maximises h. `seeds` are directions worth a try at the start, of any length; they only save
-/// time. `size` is a length of the problem: the radius of M.
-pub(super) fn maximise(lowest: &dyn Fn(&Vector) -> Vector, seeds: &[Vector], size: f64) -> Bracket {
+/// time. `size` is a length of the problem: the radius of M. The search stops when at most the share
+/// `tolerance` of it can still be gained.
+pub(crate) fn maximise(
+    lowest: &dyn Fn(&Vector) -> Vector,
+    seeds: &[Vector],
+    size: f64,
+    tolerance: f64,
+) -> Bracket {
     let mut search = Search { lowest, lower: f64::NEG_INFINITY, normal: [0.0; 3] };
     for seed in seeds {
         search.try_direction(seed);
@@ -62,7 +68,7 @@ pub(super) fn maximise(lowest: &dyn Fn(&Vector) -> Vector, seeds: &[Vector], siz
         for cell in &cells {
             search.try_direction(&cell.promising);
         }
-        let limit = search.lower + TOLERANCE * size;
+        let limit = search.lower + tolerance * size;
         for cell in cells.iter().filter(|cell| cell.bound <= limit) {
             discarded = discarded.max(cell.bound);
         }
@@ -193,7 +199,7 @@ mod tests {
         let lowest = |n: &Vector| {
             *points.iter().min_by(|a, b| dot(a, n).total_cmp(&dot(b, n))).expect("points")
         };
-        maximise(&lowest, &[], points.iter().map(norm).fold(0.0, f64::max))
+        maximise(&lowest, &[], points.iter().map(norm).fold(0.0, f64::max), TOLERANCE)
     }
 
     #[test]
@@ -217,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_bounded_although_all_directions_are_equal() {
-        let found = maximise(&|n: &Vector| scale(n, -2.0), &[], 2.0);
+        let found = maximise(&|n: &Vector| scale(n, -2.0), &[], 2.0, TOLERANCE);
         assert!((found.lower + 2.0).abs() < 1e-15, "lower {}", found.lower);
         assert!(found.upper > -2.0 && found.upper < -1.99, "upper {}", found.upper);
     }

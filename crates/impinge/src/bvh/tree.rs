@@ -402,13 +402,6 @@ impl<const D: usize> Tree<D> {
         (self.is_restructured, self.is_stale) = (false, false);
     }
 
-    /// The bounds of the blocks of the lowest layer with at most so many, which must be one at least:
-    /// together they enclose all objects. Free of stale bounds after a refit only.
-    pub(crate) fn groups(&self, most: usize) -> &[Bounds<D>] {
-        let layer = self.layers.iter().find(|layer| layer.bounds.len() <= most);
-        layer.map_or(&[], |layer| &layer.bounds)
-    }
-
     /// The half surfaces of all leaf blocks, summed in their order: what a search pays.
     pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()

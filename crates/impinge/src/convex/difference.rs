@@ -34,10 +34,27 @@ impl<N: Real, const D: usize> Vertex<N, D> {
     }
 }
 
+/// A point of one of the cores that stays extreme in its surroundings as the normal turns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch<N: Real, const D: usize> {
+    pub(super) is_second: bool,
+    pub(super) on: Vector<N, D>,
+    /// How the point moves as the normal turns outwards, from its own core; `None` for a corner.
+    pub(super) bend: Option<Matrix<N, D>>,
+}
+
 /// A convex set of differences `b − a`, known by its lowest points.
 pub(crate) trait Difference<N: Real, const D: usize> {
     /// The point of the set that lies lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
+
+    /// The normals of the flat round faces of either core that a normal is nearly perpendicular to, as
+    /// normals from the first core to the second.
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
+
+    /// The point of the first or second core that is lowest along the unit vector `normal`, or
+    /// highest, on the part of the core that `on` lies on.
+    fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 }
 
 /// The cores of two solids, in the frame of the first, shrunk by a power of two.
@@ -131,6 +148,33 @@ where
         let on2 = self.rotation * local2 + self.translation;
         Vertex { point: on2 - on1, on1, on2 }
     }
+
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {
+        let toward1 = self.rotation.tr_mul(&-normal);
+        let face2 = self.solid2.round_face(&toward1);
+        [self.solid1.round_face(normal), face2.map(|face| -(self.rotation * face))]
+    }
+
+    fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D> {
+        let corner = Branch { is_second, on: *on, bend: None };
+        if is_second {
+            let local = self.rotation.tr_mul(&(on - self.translation)) * self.scale;
+            let toward1 = self.rotation.tr_mul(&-normal);
+            let curved = self.solid2.curved_support(&Point::from(local), &toward1);
+            return curved.map_or(corner, |found| {
+                let bend = self.rotation * (found.bend * self.shrink) * self.rotation.transpose();
+                let on = self.rotation * (found.point.coords * self.shrink) + self.translation;
+                Branch { on, bend: Some(bend), ..corner }
+            });
+        }
+        let local = Point::from(on * self.scale);
+        let curved = self.solid1.curved_support(&local, normal);
+        curved.map_or(corner, |found| Branch {
+            on: found.point.coords * self.shrink,
+            bend: Some(found.bend * self.shrink),
+            ..corner
+        })
+    }
 }
 
 /// A difference moved away from the origin; the points of the cores are still where they were.
@@ -143,5 +187,13 @@ impl<N: Real, const D: usize> Difference<N, D> for Moved<'_, N, D> {
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D> {
         let vertex = self.inner.lowest(normal);
         Vertex { point: vertex.point + self.by, ..vertex }
+    }
+
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {
+        self.inner.round_faces(normal)
+    }
+
+    fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D> {
+        self.inner.branch(is_second, on, normal)
     }
 }

@@ -13,8 +13,9 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::newton::sharpen;
+use super::polish::polish;
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, settle};
+use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, cross2, perp, unit};
 
 /// Cap on the number of support points. Polygons need as many as they have sides near the origin.
@@ -107,11 +108,17 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
         let candidate = Candidate::along(difference, -side.outward);
         best.improve(&candidate);
         if -candidate.height - side.offset <= tolerance() {
+            let before = best.height;
+            if let Some(mix) = polish(difference, &mut best, &[side.start, next]) {
+                return placed(&best, &mix, N::HALF);
+            }
             if -candidate.height - side.offset > noise() {
                 sharpen(difference, &mut best);
                 return locate(difference, &best, &vertices(ring, &best));
             }
-            best.prefer(candidate, N::TWO * tolerance());
+            if best.height <= before {
+                best.prefer(candidate, N::TWO * tolerance());
+            }
             let mix = Mix::nearest(&best, &[side.start, next]);
             return settle(difference, &best, &mix, &vertices(ring, &best));
         }

@@ -13,8 +13,9 @@ use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
 use super::newton::{settles, sharpen};
+use super::polish::{lowest, polish};
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, settle};
+use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the number of support points. Flat faces take about ten, curved ones up to a hundred; where
@@ -122,11 +123,18 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if face.settled {
                 break;
             }
+            let corners = face.corners.map(|corner| *hull.vertex(corner));
+            let before = best.height;
+            if let Some(mix) = polish(difference, &mut best, &corners) {
+                return placed(&best, &mix, N::HALF);
+            }
             if -candidate.height - face.offset > noise() {
                 return sharpened(difference, hull, best);
             }
-            best.prefer(candidate, N::TWO * tolerance());
-            let mix = Mix::nearest(&best, &face.corners.map(|corner| *hull.vertex(corner)));
+            if best.height <= before {
+                best.prefer(candidate, N::TWO * tolerance());
+            }
+            let mix = Mix::nearest(&best, &corners);
             return settle(difference, &best, &mix, hull.vertices());
         }
         if hull.contains(&candidate.vertex) {
@@ -136,9 +144,13 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             hull.extend(index, candidate.vertex);
         }
     }
-    polish(difference, hull, &mut best);
+    climb_on(difference, hull, &mut best);
     hull.keep(&[best.vertex]);
-    locate(difference, &best, hull.vertices())
+    let near = lowest(hull.vertices(), &best.normal);
+    match polish(difference, &mut best, &near) {
+        Some(mix) => placed(&best, &mix, N::HALF),
+        None => locate(difference, &best, hull.vertices()),
+    }
 }
 
 /// The answer where a curved surface has stopped the growth.
@@ -154,7 +166,7 @@ fn sharpened<N: Real>(
 
 /// Goes on from the best normal and from that of the nearest face, where the hull is of no more use:
 /// at the cap, or bent by rounding.
-fn polish<N: Real>(
+fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &mut Hull<N>,
     best: &mut Candidate<N, 3>,

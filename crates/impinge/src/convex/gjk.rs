@@ -11,9 +11,10 @@ use super::Separation;
 use super::candidate::Candidate;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::newton::settles;
+use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{Nearest, Simplex, Simplicial};
-use super::witness::{Mix, locate, settle};
+use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, max};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
@@ -170,7 +171,11 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         }
         bundle.extend([self.best.vertex, self.spare]);
         refine(difference, &mut bundle, &mut self.best);
-        let apart = locate(difference, &self.best, &bundle);
+        let near = lowest(&bundle, &self.best.normal);
+        let apart = match polish(difference, &mut self.best, &near) {
+            Some(mix) => placed(&self.best, &mix, N::HALF),
+            None => locate(difference, &self.best, &bundle),
+        };
         if !self.open() {
             return apart;
         }
@@ -191,7 +196,11 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
     /// the points of the nearest point lie across from each other along no other.
     fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
-        if !mix.meets(&best) {
+        if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
+            return placed(&best, &polished, N::HALF);
+        }
+        let raised = best.height > self.best.height;
+        if !raised && !mix.meets(&best) {
             // The points of a sliver are no proof that its plane is as near as it seems.
             if settles(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);

@@ -20,6 +20,7 @@ mod extent;
 mod gjk;
 mod hull;
 mod newton;
+mod polish;
 mod refine;
 mod separation;
 mod simplex;

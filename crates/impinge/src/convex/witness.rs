@@ -25,6 +25,11 @@ pub(super) struct Mix<N: Real, const D: usize> {
 }
 
 impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
+    /// Of these points.
+    pub(super) fn new(on1: Vector<N, D>, on2: Vector<N, D>) -> Self {
+        Self { on1, on2 }
+    }
+
     /// By the weights that the simplex was left with.
     pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
         Self::by(simplex, simplex.weights())
@@ -73,18 +78,22 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     /// Whether the points lie across from each other but for rounding, and on the supporting planes
     /// but for the gap that answers may have.
     pub(super) fn meets(&self, best: &Candidate<N, D>) -> bool {
+        self.meets_within(best, N::TWO * noise())
+    }
+
+    /// As [`Self::meets`], with a length instead of rounding.
+    pub(super) fn meets_within(&self, best: &Candidate<N, D>, slack: N) -> bool {
         let away = self.on2 - self.on1;
         let along = best.normal.dot(&away);
         let aside = (away - best.normal * along).norm_squared();
-        let rounding = N::TWO * noise::<N>();
-        aside <= rounding * rounding && (along - best.height).abs() <= N::TWO * tolerance()
+        aside <= slack * slack && (along - best.height).abs() <= N::TWO * tolerance()
     }
 }
 
 /// The answer in units of the pair, with the points of `mix`: moved onto the supporting planes of the
 /// normal, and sideways until they lie exactly across from each other, the first by `share` of the
 /// way.
-fn placed<N: Simplicial<D>, const D: usize>(
+pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &Candidate<N, D>,
     mix: &Mix<N, D>,
     share: N,
@@ -180,6 +189,8 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
+    // Points a little aside are the lesser evil where the normal is known better than they are.
+    let found = if found.height < best.height - noise() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }

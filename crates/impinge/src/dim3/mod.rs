@@ -109,9 +109,9 @@ pub mod world {
 pub mod query {
     pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
-        ContactId, ImpactOptions, ImpactStatus, PointQuery, Proximity, RayCast, RigidMotion,
-        closest_points, contact, distance, impact, nonlinear_time_of_impact, proximity,
-        time_of_impact,
+        Barycentric, ContactId, ImpactOptions, ImpactStatus, PointLocation, PointQuery, Proximity,
+        RayCast, RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact,
+        proximity, time_of_impact, witness,
     };
 
     /// A half-line.
@@ -122,6 +122,8 @@ pub mod query {
     pub type PointProjection<N> = crate::query::PointProjection<N, 3>;
     /// The points of two solids that are nearest to each other.
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
+    /// The nearest points of two shapes with their parts and features.
+    pub type Witness<N> = crate::query::Witness<N, 3>;
     /// Where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 3>;
     /// A solid that moves along a straight line.

@@ -3,9 +3,9 @@
 use super::{BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
-use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::math::{Point, Real, Space, Vector, max};
 
-/// A tree over boxes that do not move, known by their indices.
+/// A tree over boxes that stay where they are, or move all at once; known by their indices.
 ///
 /// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
 /// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
@@ -46,9 +46,6 @@ pub struct BoxTree<N: Real, const D: usize> {
     unbounded: Vec<u32>,
     lanes: Lanes,
 }
-
-/// So many groups of boxes are placed to find the box around them all.
-const MOST_GROUPS: usize = 256;
 
 /// What a search without an order of its own asks.
 #[derive(Clone, Copy, Debug)]
@@ -300,22 +297,6 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         nearest
     }
 
-    /// A box around all boxes placed at `pose`, in the frame that the pose leads to; `None` if there are
-    /// none. Tighter than placing [`Self::bounds`]: up to 256 groups of neighbours are placed one by
-    /// one, which is the cost. In `f64` it may be larger by the rounding of `f32`.
-    #[must_use]
-    pub fn bounds_at(&self, pose: &Pose<N, D>) -> Option<Aabb<N, D>> {
-        let placed = |group: &Bounds<D>| {
-            let [lo, hi] = [group.lo, group.hi].map(|corner| corner.map(|x| N::lit(f64::from(x))));
-            Aabb::new(Point::from(lo), Point::from(hi)).transformed_by(pose)
-        };
-        if !self.unbounded.is_empty() {
-            return Some(self.bounds?.transformed_by(pose));
-        }
-        let groups = self.tree.groups(MOST_GROUPS).iter().filter(|group| group.is_finite());
-        groups.map(placed).reduce(|all, aabb| all.merged(&aabb))
-    }
-
     fn collect(&self, question: &Question<'_, N, D>) -> Vec<usize> {
         let mut found = Vec::new();
         self.each(question, |index| found.push(index));
@@ -419,6 +400,19 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.boxes.copy_from_slice(boxes);
         self.bounds = around(boxes);
         Ok(())
+    }
+
+    /// How far the things in the boxes reach along a direction: not less, and more by at most a few
+    /// rounding units of `f32` of their coordinates. `reach_of` tells it of one of them, which lies in
+    /// its box. Minus infinity if there are none. It asks O(log n) of them where they bulge, more
+    /// where many reach almost equally far.
+    pub(crate) fn reach_along(
+        &self,
+        direction: Vector<N, D>,
+        mut reach_of: impl FnMut(u32) -> N,
+    ) -> N {
+        let reach = self.tree.reach_along(direction, &mut reach_of);
+        self.unbounded.iter().fold(reach, |reach, &id| max(reach_of(id), reach))
     }
 
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {

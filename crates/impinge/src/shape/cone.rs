@@ -6,7 +6,8 @@ use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
-    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle,
+    SupportMap,
 };
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min, unit};
@@ -83,6 +84,19 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
         let rim = self.base().rim_toward(direction);
         if (self.apex() - rim).dot(direction) > N::ZERO { self.apex() } else { rim }
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, 3>,
+        direction: &Vector<N, 3>,
+    ) -> Option<CurvedSupport<N, 3>> {
+        let is_apex = point.y > N::ZERO;
+        if is_apex { None } else { self.base().curved_rim(direction) }
+    }
+
+    fn round_face(&self, direction: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        (direction.y < N::ZERO).then(|| -Vector::<N, 3>::y())
     }
 
     fn reach(&self) -> N {

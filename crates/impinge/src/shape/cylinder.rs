@@ -6,7 +6,8 @@ use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
-    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle,
+    SupportMap,
 };
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
@@ -70,6 +71,20 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
         let y = if direction.y < N::ZERO { -self.half_height } else { self.half_height };
         self.disk(y).rim_toward(direction)
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, 3>,
+        direction: &Vector<N, 3>,
+    ) -> Option<CurvedSupport<N, 3>> {
+        let y = if point.y < N::ZERO { -self.half_height } else { self.half_height };
+        self.disk(y).curved_rim(direction)
+    }
+
+    fn round_face(&self, direction: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let up = Vector::<N, 3>::y();
+        Some(if direction.y < N::ZERO { -up } else { up })
     }
 
     fn reach(&self) -> N {

@@ -3,9 +3,11 @@
 use super::error::{finite, or_panic, size};
 use super::scale::Scale;
 use super::segment::length_of;
-use super::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
+use super::{
+    CurvedSupport, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real, Vector, max_component, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit};
 
 /// The points whose coordinates, divided by the half axes, are within the unit ball: an ellipse in
 /// the plane.
@@ -66,6 +68,20 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
         Point::from(on_sphere.component_mul(&self.half_axes))
     }
 
+    fn curved_support(
+        &self,
+        _point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let (on_sphere, length) = unit(&direction.component_mul(&self.half_axes))?;
+        let point = on_sphere.component_mul(&self.half_axes);
+        let squares = Matrix::<N, D>::from_diagonal(&self.half_axes.component_mul(&self.half_axes));
+        Some(CurvedSupport {
+            point: Point::from(point),
+            bend: (squares - point * point.transpose()) / length,
+        })
+    }
+
     fn reach(&self) -> N {
         max_component(&self.half_axes)
     }
@@ -92,7 +108,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
-        let factors = Scale::try_new(scale)?.magnitudes();
-        Ok(ShapeHandle::new(Self::try_new(self.half_axes.component_mul(&factors))?))
+        let half_axes = self.half_axes.component_mul(&Scale::try_new(scale)?.magnitudes());
+        Ok(ShapeHandle::new(Self::try_new(half_axes)?))
     }
 }

@@ -1,6 +1,6 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
-use super::seam::{Seam, is_flat, is_level, slack};
+use super::seam::{Seam, slack};
 use super::tri_mesh::{aabb_at, sphere_around};
 use super::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
@@ -85,15 +85,13 @@ impl<N: Real, const D: usize> Polyline<N, D> {
     /// No segment that leaves the joint rises along the normal, and they are not straight.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
-        let (mut seam, own) = (Seam::new(), self.along(part).unwrap_or_else(Vector::zeros));
-        let is_perpendicular = is_flat(own.dot(normal));
+        let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
         for &segment in self.joints.parts(joint) {
             let Some(along) = self.along(segment) else { continue };
             let starts_here = self.joints.of(self.segments[segment as usize][0]) == joint;
             let away = if starts_here { along } else { -along };
-            let rise = away.dot(normal);
-            let is_straight = is_perpendicular && is_level(own.dot(&along));
-            seam.add(rise, self.height_over(segment, normal), is_straight);
+            seam.add_segment(&away, self.height_over(segment, normal));
         }
         seam.admits(self.is_one_sided())
     }
@@ -109,9 +107,10 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// The smallest for up to 384 segments; else around boxes of neighbours, 256 at most.
+    /// The smallest, up to rounding. O(log n) for a line that bulges, up to O(n) for one whose parts
+    /// reach almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        aabb_at(pose, self.segments.as_flattened().iter(), &self.vertices, &self.tree)
+        aabb_at(pose, &self.segments, &self.vertices, &self.tree)
     }
 
     /// The sphere around the middle of the box, through the farthest vertex: O(n).

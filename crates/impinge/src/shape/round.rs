@@ -1,6 +1,6 @@
 //! Disks across the y axis: the caps of cylinders and cones.
 
-use super::{Feature, FeatureId};
+use super::{CurvedSupport, Feature, FeatureId};
 use crate::math::{Point, Real, Vector, max, unit};
 
 /// The points within `radius` of the y axis at height `y`.
@@ -19,6 +19,20 @@ impl<N: Real> Disk<N> {
     /// The point of the rim farthest along `direction`; the middle for a direction along the axis.
     pub(super) fn rim_toward(self, direction: &Vector<N, 3>) -> Point<N, 3> {
         self.at(unit(&radial_of(direction)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| along))
+    }
+
+    /// The point of the rim farthest along the unit vector `direction`, and how it moves; `None` along
+    /// the axis or so near to it that the digits of the direction across it do not suffice.
+    pub(super) fn curved_rim(self, direction: &Vector<N, 3>) -> Option<CurvedSupport<N, 3>> {
+        let (radial, length) = unit(&radial_of(direction))?;
+        let resolved = length * length > N::EPSILON;
+        if !resolved {
+            return None;
+        }
+        // Along the rim, by the radius for each radian around the axis.
+        let around = Vector::<N, 3>::new(-radial.y, N::ZERO, radial.x);
+        let bend = around * around.transpose() * (self.radius / length);
+        Some(CurvedSupport { point: self.at(radial), bend })
     }
 
     /// How far the disk, moved to the origin, reaches along each outer axis when its axis points

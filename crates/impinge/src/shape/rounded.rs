@@ -2,7 +2,9 @@
 
 use super::error::{or_panic, size};
 use super::scale::Scale;
-use super::{Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
+use super::{
+    CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -106,6 +108,18 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Rounded<N, D> {
         self.map().core_support(direction)
     }
 
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        self.map().curved_support(point, direction)
+    }
+
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.map().round_face(direction)
+    }
+
     fn rounding(&self) -> N {
         self.map().rounding() + self.radius
     }
@@ -140,9 +154,9 @@ impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
         self.shape.local_bounding_sphere().loosened(self.radius)
     }
 
+    /// With factors of one magnitude.
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let radius = self.radius * Scale::try_new(scale)?.uniform()?;
-        let shape = self.shape.scaled(scale)?;
-        Ok(ShapeHandle::new(Self::try_from_handle(shape, radius)?))
+        Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))
     }
 }

@@ -2,7 +2,17 @@
 
 use super::segment::length_of;
 use super::{Feature, FeatureId};
-use crate::math::{Point, Real, Vector, max, unit};
+use crate::math::{Matrix, Point, Real, Vector, max, unit};
+
+/// Where the support point of a curved part lies, and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvedSupport<N: Real, const D: usize> {
+    /// The point of the part farthest along the direction.
+    pub point: Point<N, D>,
+    /// The derivative of the point by the direction, for a unit direction: a symmetric matrix that
+    /// takes the direction itself to zero; of a ball, the radius across the direction.
+    pub bend: Matrix<N, D>,
+}
 
 /// A convex solid: a core, known by its support points, swollen by a rounding radius.
 ///
@@ -17,6 +27,34 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// The radius by which the core is swollen; zero or more.
     fn rounding(&self) -> N {
         N::ZERO
+    }
+
+    /// The point farthest along the unit vector `direction` on the curved part of the core that
+    /// `point` lies on, and how it moves; `None` if `point` is a corner, or for a direction at which
+    /// there is no derivative, such as along the axis of a disk.
+    ///
+    /// `point` is an answer of [`Self::core_support`] for a direction nearby, up to rounding. A core
+    /// may have several curved parts, as a cylinder has two rims, and the part of `point` may be
+    /// another than the one that is farthest.
+    ///
+    /// The default is `None`, which is right for cores that are hulls of points. Curved ones are
+    /// found without it too, up to about half the digits in their normals.
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let _ = (point, direction);
+        None
+    }
+
+    /// The outward unit normal of the flat round face of the core that faces `direction`, such as the
+    /// cap of a cylinder; `None` if the side that faces `direction` has none.
+    ///
+    /// There support points say least: they run around the rim. The default is `None`.
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let _ = direction;
+        None
     }
 
     /// A point well inside the core.

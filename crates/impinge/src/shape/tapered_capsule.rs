@@ -5,11 +5,11 @@ use super::scale::Scale;
 use super::segment::{box_of, length_of};
 use super::tilt::Tilt;
 use super::{
-    Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError, ShapeHandle,
-    SupportMap,
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError,
+    ShapeHandle, SupportMap,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use crate::math::{Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
 
 /// The convex hull of two balls around the ends of a segment.
 ///
@@ -147,6 +147,22 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         min(self.radii[0], self.radii[1])
     }
 
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let large = self.larger_end();
+        let (center, radius) = (self.end(large), self.core_radii()[large]);
+        // The core of the smaller ball is its centre, a corner.
+        let to_corner = (point - self.end(1 - large)).norm();
+        if to_corner < ((point - center).norm() - radius).abs() {
+            return None;
+        }
+        let across = Matrix::<N, D>::identity() - direction * direction.transpose();
+        Some(CurvedSupport { point: center + direction * radius, bend: across * radius })
+    }
+
     fn center(&self) -> Point<N, D> {
         self.segment.center()
     }
@@ -212,7 +228,6 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
         let factors = Scale::try_new(scale)?;
         let factor = factors.uniform()?;
         let [a, b] = [0, 1].map(|end| factors.point(self.end(end)));
-        let radii = self.radii.map(|radius| radius * factor);
-        Ok(ShapeHandle::new(Self::try_from_ends(a, b, radii)?))
+        Ok(ShapeHandle::new(Self::try_from_ends(a, b, self.radii.map(|radius| radius * factor))?))
     }
 }

@@ -227,7 +227,8 @@ impl<N: Real> Shape<N, 3> for Tetrahedron<N> {
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
         let scale = Scale::try_new(scale)?;
-        Ok(ShapeHandle::new(Self::try_new(self.corners.map(|corner| scale.point(&corner)))?))
+        let corners = self.corners.map(|corner| scale.point(&corner));
+        Ok(ShapeHandle::new(Self::try_new(corners)?))
     }
 }
 

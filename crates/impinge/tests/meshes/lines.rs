@@ -16,7 +16,7 @@ fn open<N: Space<D>, const D: usize>(vertices: &[[f64; D]]) -> Polyline<N, D> {
 
 /// Upright, leaning by so many degrees to the right.
 fn leaning<N: Real>(degrees: f64) -> Vector<N, 2> {
-    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let (sine, cosine) = degrees.to_radians().sine_cosine();
     vector([sine, cosine])
 }
 

@@ -1,6 +1,7 @@
 //! Meshes of triangles and polylines: how they are made, which normals they have, how they move.
 
 mod build;
+mod fields;
 mod lines;
 mod moved;
 mod plane;

@@ -90,7 +90,7 @@ fn a_filler_without_area_is_no_seam() {
 
 /// Two squares that meet along the x axis, the one at negative y sloping by so many degrees.
 fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
-    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let (sine, cosine) = degrees.to_radians().sine_cosine();
     let vertices = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -104,7 +104,7 @@ fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
 
 /// Upright, leaning by so many degrees towards negative y.
 fn leaning<N: Real>(degrees: f64) -> Vector<N, 3> {
-    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let (sine, cosine) = degrees.to_radians().sine_cosine();
     vector([0.0, -sine, cosine])
 }
 
@@ -171,7 +171,8 @@ fn borders_have_what_points_out_of_the_face() {
 /// A pyramid without a base, its tip at the origin.
 fn pyramid<N: Real>(depth: f64, sides: u32) -> TriMesh<N, 3> {
     let around = |i: u32| {
-        let (sine, cosine) = (f64::from(i) * std::f64::consts::TAU / f64::from(sides)).sin_cos();
+        let (sine, cosine) =
+            (f64::from(i) * std::f64::consts::TAU / f64::from(sides)).sine_cosine();
         [cosine, sine, -depth]
     };
     let vertices: Vec<_> = std::iter::once([0.0; 3]).chain((0..sides).map(around)).collect();

@@ -182,7 +182,7 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
 }
 
 /// A point close to a part: of what is given by its corners the first of them, else its own origin.
-fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
+pub(super) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),
         PartSolid::Segment(segment) => part.pose.point(segment.a()),

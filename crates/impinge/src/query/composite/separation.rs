@@ -32,19 +32,11 @@ pub(in crate::query) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    nearest(pair, limit).map(|found| found.separation)
+    let found = nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest);
+    found.map(|found| found.separation)
 }
 
-/// The separation of the two parts that are nearest to each other, or deepest in each other; of
-/// several the first by number.
-pub(crate) fn nearest<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    limit: N,
-) -> Option<PartSeparation<N, D>> {
-    nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest)
-}
-
-/// [`nearest`] for shapes of which both relative poses are known.
+/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit.
 ///
 /// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
 /// through, near ones first, and each part searches the other: at most n log m, where n is the smaller

@@ -18,7 +18,8 @@ pub(super) struct Body<'a, N: Space<D>, const D: usize> {
     pub(super) motion: &'a dyn RigidMotion<N, D>,
     pub(super) shape: Geometry<'a, N, D>,
     center: Point<N, D>,
-    /// No point of the core is farther from the centre; infinite for a half-space.
+    /// No point of the core is farther from the centre; infinite for half-spaces and what is made of
+    /// them.
     reach: N,
     /// No point of the body is.
     radius: N,
@@ -37,9 +38,9 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
         Self { motion, shape: geometry, center, reach: reach * slack, radius }
     }
 
-    /// A length of the body for tolerances; zero for a half-space.
+    /// A length of the body for tolerances; zero for what is unbounded.
     pub(super) fn size(&self) -> N {
-        if self.is_half_space() { N::ZERO } else { self.radius }
+        if self.radius.is_finite_number() { self.radius } else { N::ZERO }
     }
 
     /// No point of the body is farther from the centre of its motion.
@@ -123,10 +124,11 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         for _ in 0..MAX_SPANS {
             let wider = min(span * N::TWO, remaining);
             let found = min(safe(wider), wider);
-            if !(found > span * N::lit(1.125)) {
+            if found > span * N::lit(1.125) {
+                span = found;
+            } else {
                 break;
             }
-            span = found;
         }
         span
     }
@@ -154,20 +156,17 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
 
     /// The time in which the spheres around the bodies use up what they are apart.
     fn spheres(&self, apart: N, to: N) -> N {
-        let Some((direction, _)) = unit(&(self.centers[1] - self.centers[0])) else {
-            return N::ZERO;
-        };
-        if !(apart > N::ZERO) {
-            return N::ZERO;
-        }
-        Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
+        let between = unit(&(self.centers[1] - self.centers[0])).filter(|_| apart > N::ZERO);
+        between.map_or(N::ZERO, |(direction, _)| {
+            Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
+        })
     }
 
     /// By the largest speed that a point of either body can have at any time.
     fn first_order(&self, to: N) -> Rate<N> {
         for (index, body) in self.bodies.iter().enumerate() {
-            if body.is_half_space() && self.swing(index, N::ONE, to) > N::ZERO {
-                return self.about_half_space(index, to);
+            if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
+                return self.about_unbounded(index, to);
             }
         }
         let swings = [0, 1].map(|index| self.swing(index, self.bodies[index].reach, to));
@@ -202,15 +201,15 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         Some(Rate { speed, bend })
     }
 
-    /// By the turning of a half-space, in whose frame the normal is fixed.
+    /// By the turning of an unbounded body, in whose frame the normal is fixed.
     ///
-    /// The body that it turns towards is met the sooner the farther it is from the centre of the
-    /// turn; that distance may grow on the way, and the normal may turn towards where the body goes.
-    fn about_half_space(&self, index: usize, to: N) -> Rate<N> {
+    /// The other body is met the sooner the farther it is from the centre of the turn; that distance
+    /// may grow on the way, and the normal may turn towards where the other body goes.
+    fn about_unbounded(&self, index: usize, to: N) -> Rate<N> {
         let other = self.bodies[1 - index];
         let turn = self.swing(index, N::ONE, to);
         let distance = length(&(self.centers[1] - self.centers[0])) + other.reach;
-        let (along, all) = (self.drift(Some(&self.normal), to), self.drift(None, to));
+        let (along, all) = (self.drift(self.direction(), to), self.drift(None, to));
         let swing = product(other.turn_bound(self.time, to), other.reach);
         Rate { speed: along + swing + product(turn, distance), bend: product(turn, all) }
     }

@@ -5,7 +5,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max_component};
 use crate::query::Pair;
 use crate::query::separation::separation;
-use crate::shape::Geometry;
+use crate::shape::{FeatureId, Geometry};
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 128;
@@ -30,6 +30,8 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
     pub(crate) along: N,
     /// How the solids lie then, in the frame of the first.
     pub(crate) separation: Separation<N, D>,
+    /// What the points lie on, of the first and of the second.
+    pub(crate) features: [FeatureId; 2],
     pub(crate) status: ImpactStatus,
 }
 
@@ -54,6 +56,18 @@ impl<N: Real, const D: usize> Path<N, D> {
     }
 }
 
+impl<N: Space<D>, const D: usize> Arrival<N, D> {
+    fn new(
+        pair: &Pair<'_, N, D>,
+        along: N,
+        separation: Separation<N, D>,
+        status: ImpactStatus,
+    ) -> Self {
+        let features = (N::tables().witness_features)(pair, &separation);
+        Self { along, separation, features, status }
+    }
+}
+
 /// The first time on a path at which two solids are at the target distance.
 ///
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): with the gap along
@@ -66,39 +80,30 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     path: &Path<N, D>,
 ) -> Option<Arrival<N, D>> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    let found = separation(start, N::INFINITY)?;
-    let arrived = |along, separation, status| Some(Arrival { along, separation, status });
-    // Written so that an end that is not a number is before the start.
-    if !(path.end >= N::ZERO) {
+    let (mut pair, mut along) = (*start, N::ZERO);
+    let mut found = separation(start, N::INFINITY).filter(|_| path.end >= N::ZERO)?;
+    let gap = found.distance - path.target;
+    if gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
         return None;
     }
-    let gap = found.distance - path.target;
-    if gap <= tolerance {
-        let counts = path.counts_at_start(&found.normal, gap, tolerance);
-        return counts.then_some(Arrival {
-            along: N::ZERO,
-            separation: found,
-            status: ImpactStatus::Reached,
-        });
-    }
-    let (mut pair, mut along, mut found) = (*start, N::ZERO, found);
     for _ in 0..MAX_STEPS {
         let (gap, closing) = (found.distance - path.target, path.closing(&found.normal));
         if gap <= tolerance {
-            return arrived(along, found, ImpactStatus::Reached);
+            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
         }
         let later = along + gap / closing;
-        if closing <= path.noise() || !(later <= path.end) {
+        let in_time = closing > path.noise() && later <= path.end;
+        if !in_time {
             return None;
         }
         if later <= along {
-            return arrived(along, found, ImpactStatus::Reached);
+            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
         }
         along = later;
         pair.pose12.translation = start.pose12.translation + path.velocity * along;
         found = separation(&pair, N::INFINITY)?;
     }
-    arrived(along, found, ImpactStatus::StepsSpent)
+    Some(Arrival::new(&pair, along, found, ImpactStatus::StepsSpent))
 }
 
 /// The length that tolerances are in proportion to: the sizes of the solids and how far they are.

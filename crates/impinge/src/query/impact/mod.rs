@@ -20,7 +20,7 @@ use super::pair::{Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
-use crate::shape::Shape;
+use crate::shape::{FeatureId, Shape};
 
 /// A solid that moves along a straight line, with the same velocity at all times, and does not turn.
 #[derive(Clone, Copy, Debug)]
@@ -127,6 +127,11 @@ pub struct Impact<N: Real, const D: usize> {
     pub part1: u32,
     /// The number of the part of the second shape that touches; zero for a shape of one part.
     pub part2: u32,
+    /// The feature of that part of the first shape that touches, named as in a
+    /// [`Witness`](super::Witness): on the core of a rounded solid.
+    pub feature1: FeatureId,
+    /// The feature of that part of the second shape that touches.
+    pub feature2: FeatureId,
     /// Whether the solids touch then for certain.
     pub status: ImpactStatus,
 }
@@ -141,6 +146,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
             normal: -self.normal,
             part1: self.part2,
             part2: self.part1,
+            feature1: self.feature2,
+            feature2: self.feature1,
             ..*self
         }
     }
@@ -286,6 +293,8 @@ impl<N: Real, const D: usize> Moving<'_, N, D> {
             normal: Unit::new_unchecked(pose.vector(&found.normal)),
             part1: 0,
             part2: 0,
+            feature1: arrival.features[0],
+            feature2: arrival.features[1],
             status: arrival.status,
         }
     }

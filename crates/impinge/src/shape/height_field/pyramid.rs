@@ -72,6 +72,11 @@ impl<N: Real> Pyramid<N> {
         pyramid
     }
 
+    /// Over rows and columns of cells that are still to be looked at.
+    pub(super) const fn unbuilt(cells: [usize; 2]) -> Self {
+        Self { cells, levels: Vec::new() }
+    }
+
     /// Its levels, with none left behind: for a field that brings them up to date by its own cells.
     pub(super) fn take(&mut self) -> Self {
         Self { cells: self.cells, levels: std::mem::take(&mut self.levels) }

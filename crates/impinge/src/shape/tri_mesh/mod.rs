@@ -101,16 +101,19 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// If there is no such triangle or side.
     #[must_use]
     pub fn neighbor(&self, triangle: u32, side: u32) -> Neighbor {
-        let at = side as usize;
-        if self.topology.has_several_across(triangle, at) {
+        self.across(triangle, side as usize)
+    }
+
+    fn across(&self, triangle: u32, side: usize) -> Neighbor {
+        if self.topology.has_several_across(triangle, side) {
             return Neighbor::Several;
         }
-        let Some(index) = self.topology.single_across(triangle, at) else {
+        let Some(index) = self.topology.single_across(triangle, side) else {
             return Neighbor::Border;
         };
-        let from = self.joint_ends(triangle, at)[0];
-        let other = self.side_between(index, self.joint_ends(triangle, at));
-        let is_flipped = other.is_some_and(|other| self.joint_ends(index, other)[0] == from);
+        let ends = self.joint_ends(triangle, side);
+        let other = self.side_between(index, ends);
+        let is_flipped = other.is_some_and(|other| self.joint_ends(index, other) == ends);
         Neighbor::Triangle { index, is_flipped }
     }
 
@@ -126,13 +129,10 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// No side has more than two triangles, and where there are two their fronts agree. O(n).
     #[must_use]
     pub fn is_oriented(&self) -> bool {
-        self.each_side().all(|(triangle, side)| {
-            let side = u32::try_from(side).expect("there are three sides");
-            match self.neighbor(triangle, side) {
-                Neighbor::Border => true,
-                Neighbor::Triangle { is_flipped, .. } => !is_flipped,
-                Neighbor::Several => false,
-            }
+        self.each_side().all(|(triangle, side)| match self.across(triangle, side) {
+            Neighbor::Border => true,
+            Neighbor::Triangle { is_flipped, .. } => !is_flipped,
+            Neighbor::Several => false,
         })
     }
 

@@ -1,6 +1,6 @@
 //! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
 
-use super::super::seam::{Seam, is_flat, is_level, slack};
+use super::super::seam::{Seam, is_across, slack};
 use super::super::segment::length_of;
 use super::TriMesh;
 use super::around::noise;
@@ -65,54 +65,31 @@ impl<N: Real> TriMesh<N, 3> {
     /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
     /// are not flat there.
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        let mut around = Around::new(self, part, normal);
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        let mut add = |triangle: u32, inward: Vector<N, 3>| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+        };
         if let Some(inward) = self.inward(part, side) {
-            around.add(part, inward.dot(normal));
+            add(part, inward);
         }
-        self.each_beyond(part, side, |other, inward| around.add(other, inward.dot(normal)));
+        self.each_beyond(part, side, add);
         let corners = self.corners(part);
-        let along = unit(&(corners[(side + 1) % 3] - corners[side]));
-        let is_across = along.is_none_or(|(along, _)| is_flat(along.dot(normal)));
-        is_across && around.seam.admits(self.is_one_sided)
+        let edge = corners[(side + 1) % 3] - corners[side];
+        is_across(&edge, normal) && seam.admits(self.is_one_sided)
     }
 
     /// No side that leaves the corner rises along the normal, and the faces are not flat there.
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        let mut around = Around::new(self, part, normal);
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         for &triangle in self.topology.joints.parts(joint) {
             let leaving = self.leaving(triangle, joint);
-            around.add(triangle, leaving.iter().map(|side| side.dot(normal)).fold(-N::ONE, max));
+            let rise = leaving.iter().map(|side| side.dot(normal)).fold(-N::ONE, max);
+            seam.add_face(rise, &self.normals[triangle as usize]);
         }
-        self.each_beyond_joint(joint, |other, inward| around.add(other, inward.dot(normal)));
-        around.seam.admits(self.is_one_sided)
-    }
-}
-
-/// The faces around an edge or a corner of one of them.
-struct Around<'a, N: Real> {
-    mesh: &'a TriMesh<N, 3>,
-    own: Vector<N, 3>,
-    normal: &'a Vector<N, 3>,
-    /// The normal is, as far as flatness goes, that of the face.
-    is_level: bool,
-    seam: Seam<N>,
-}
-
-impl<'a, N: Real> Around<'a, N> {
-    fn new(mesh: &'a TriMesh<N, 3>, part: u32, normal: &'a Vector<N, 3>) -> Self {
-        let own = mesh.normals[part as usize];
-        Self { mesh, own, normal, is_level: is_level(own.dot(normal)), seam: Seam::new() }
-    }
-
-    /// A triangle, and how much its steepest direction from here rises along the normal.
-    fn add(&mut self, triangle: u32, rise: N) {
-        match self.mesh.normal(triangle) {
-            Some(front) => {
-                let is_level = self.is_level && is_level(front.dot(&self.own));
-                self.seam.add(rise, front.dot(self.normal), is_level);
-            }
-            None => self.seam.add_rise(rise),
-        }
+        self.each_beyond_joint(joint, |triangle, inward| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+        });
+        seam.admits(self.is_one_sided)
     }
 }

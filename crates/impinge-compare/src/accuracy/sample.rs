@@ -1,0 +1,218 @@
+//! Random pairs at a distance of choice, and the truth about them.
+
+use impinge_reference::geometry::vector::{add, norm, scale};
+use impinge_reference::precise::vector::rounded;
+use impinge_reference::precise::{Pose, Precise, Solid, signed_distance};
+use impinge_reference::random::Random;
+
+use super::form::{Form, Kind, Placement, Sample, Scalar};
+
+/// How far apart the solids of a sample are; `R` is the sum of their bounding radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Regime {
+    /// 1 to 8 R.
+    Far,
+    /// 1e-4 to 1e-1 R.
+    Near,
+    /// Zero up to rounding of the position.
+    Touching,
+    /// 1e-4 to 1e-1 R deep.
+    Shallow,
+    /// One about in the middle of the other.
+    Deep,
+}
+
+impl Regime {
+    pub const ALL: [Self; 5] = [Self::Far, Self::Near, Self::Touching, Self::Shallow, Self::Deep];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Far => "far",
+            Self::Near => "near",
+            Self::Touching => "touching",
+            Self::Shallow => "shallow",
+            Self::Deep => "deep",
+        }
+    }
+
+    /// Whether the solids overlap.
+    pub fn is_overlap(self) -> bool {
+        matches!(self, Self::Shallow | Self::Deep)
+    }
+
+    /// The signed distance to strive for, in parts of R.
+    fn target(self, random: &mut Random) -> f64 {
+        let mut part = || random.magnitude(1e-4, 10);
+        match self {
+            Self::Far => 1.0 + 70.0 * part(),
+            Self::Near => part(),
+            Self::Touching => 0.0,
+            Self::Shallow => -part(),
+            Self::Deep => -0.5,
+        }
+    }
+
+    /// Whether the truth is what was striven for; `reach` is R.
+    fn holds(self, truth: f64, size: f64, reach: f64, epsilon: f64) -> bool {
+        match self {
+            Self::Far => truth > 0.5 * reach,
+            Self::Near => truth > 64.0 * epsilon * size && truth < 0.5 * reach,
+            Self::Touching => truth.abs() < 16.0 * epsilon * size,
+            Self::Shallow => truth < -1e-5 * size && truth > -0.2 * reach,
+            Self::Deep => truth < -1e-3 * size,
+        }
+    }
+}
+
+/// What is particular to a dimension.
+#[derive(Clone, Copy)]
+pub struct Dimension<const D: usize> {
+    /// The solids of the reference for the kinds that are particular to it.
+    pub particular: fn(&Form<D>) -> Solid<D>,
+    /// The pose of the reference.
+    pub pose: fn(&Placement<D>) -> Pose<D>,
+    /// A rotation that is known to the last digit: of any angle, of quarter turns, or by a small
+    /// angle.
+    pub rotation: fn(&mut Random, Scalar, Turn) -> [f64; 4],
+}
+
+/// What kind of rotation.
+#[derive(Clone, Copy, Debug)]
+pub enum Turn {
+    /// Any.
+    Free,
+    /// One that takes axes to axes.
+    Aligned,
+    /// By less than 1e-1, down to 1e-6.
+    Slight,
+}
+
+/// A sample whose truth is known.
+pub struct Known<const D: usize> {
+    pub sample: Sample<D>,
+    pub solids: [Solid<D>; 2],
+    pub poses: [Pose<D>; 2],
+    pub truth: Precise<D>,
+}
+
+/// How often a pair is drawn anew until its regime holds.
+const TRIES: usize = 12;
+
+/// A pair of these kinds in a regime; `None` if there seems to be none, as of the depth of two
+/// segments in space.
+pub fn draw<const D: usize>(
+    dimension: Dimension<D>,
+    kinds: [Kind; 2],
+    regime: Regime,
+    scalar: Scalar,
+    random: &mut Random,
+) -> Option<Known<D>> {
+    (0..TRIES).find_map(|_| attempt(dimension, kinds, regime, scalar, random))
+}
+
+fn attempt<const D: usize>(
+    dimension: Dimension<D>,
+    kinds: [Kind; 2],
+    regime: Regime,
+    scalar: Scalar,
+    random: &mut Random,
+) -> Option<Known<D>> {
+    let forms = kinds.map(|kind| kind.draw::<D>(random, scalar));
+    let solids = [0, 1].map(|i: usize| {
+        forms[i].solid().unwrap_or_else(|| (dimension.particular)(&forms[i]))
+    });
+    let radii = [0, 1].map(|i: usize| {
+        let radius = solids[i].bounding_radius();
+        if radius.is_finite() { radius } else { 0.0 }
+    });
+    let reach = radii[0] + radii[1];
+    let turns = turns(random);
+    let rotations = turns.map(|turn| (dimension.rotation)(random, scalar, turn));
+    let at1 = scalar.vector(&random.vector(1.0));
+    let is_deep = regime == Regime::Deep && kinds[0] != Kind::HalfSpace && kinds[1] != Kind::HalfSpace;
+    // Apart or touching, or one in the middle of the other.
+    let away = if is_deep { random.range(0.0, 0.3) * radii[0].min(radii[1]) } else { reach };
+    let at2 = scalar.vector(&add(&at1, &scale(&random.unit_vector(), away)));
+    let placed = |at2: [f64; D]| -> Known<D> {
+        let placements = [
+            Placement { translation: at1, rotation: rotations[0] },
+            Placement { translation: at2, rotation: rotations[1] },
+        ];
+        let poses = placements.map(|placement| (dimension.pose)(&placement));
+        let truth = signed_distance(&solids[0], &poses[0], &solids[1], &poses[1]);
+        let sample = Sample { forms: forms.clone(), placements };
+        Known { sample, solids: solids.clone(), poses, truth }
+    };
+    let mut known = placed(at2);
+    if !is_deep {
+        let way = regime.target(random) * reach - known.truth.distance.to_f64();
+        let normal = rounded(&known.truth.normal);
+        known = placed(scalar.vector(&add(&at2, &scale(&normal, way))));
+    }
+    let truth = known.truth.distance.to_f64();
+    regime.holds(truth, known.truth.size, reach, scalar.epsilon()).then_some(known)
+}
+
+/// Most pairs are turned at random; some have parallel axes, exactly or nearly.
+fn turns(random: &mut Random) -> [Turn; 2] {
+    match random.below(10) {
+        0 => [Turn::Aligned, Turn::Aligned],
+        1 => [Turn::Aligned, Turn::Slight],
+        _ => [Turn::Free, Turn::Free],
+    }
+}
+
+/// The plane.
+pub const PLANE: Dimension<2> = Dimension {
+    particular: |form| unreachable!("{form:?} is of space"),
+    pose: |placement| {
+        let [cosine, sine, ..] = placement.rotation;
+        Pose::from_complex(placement.translation, [cosine, sine])
+    },
+    rotation: |random, scalar, turn| {
+        let [cosine, sine] = match turn {
+            Turn::Free => scalar.unit(|| random.unit_vector::<2>()),
+            Turn::Aligned => *random.pick(&[[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]),
+            Turn::Slight => {
+                let limit = random.magnitude(1e-6, 17);
+                scalar.unit(|| slight([random.range(-limit, limit)]))
+            }
+        };
+        [cosine, sine, 0.0, 0.0]
+    },
+};
+
+/// Space.
+pub const SPACE: Dimension<3> = Dimension {
+    particular: |form| match form {
+        Form::Cylinder { half_height, radius } => Solid::cylinder(*half_height, *radius),
+        Form::Cone { half_height, radius } => Solid::cone(*half_height, *radius),
+        other => unreachable!("{other:?} is of every dimension"),
+    },
+    pose: |placement| Pose::from_quaternion(placement.translation, placement.rotation),
+    rotation: |random, scalar, turn| match turn {
+        Turn::Free => scalar.unit(|| random.quaternion()),
+        // The quaternions of length one whose components are numbers of few bits.
+        Turn::Aligned if random.chance(0.5) => {
+            std::array::from_fn(|_| if random.chance(0.5) { 0.5 } else { -0.5 })
+        }
+        Turn::Aligned => {
+            let axis = random.below(4);
+            std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 })
+        }
+        Turn::Slight => {
+            let limit = random.magnitude(1e-6, 17);
+            scalar.unit(|| {
+                let [w, x, y, z] = slight(random.vector::<3>(limit));
+                [x, y, z, w]
+            })
+        }
+    },
+};
+
+/// The unit vector that ends with these small numbers.
+fn slight<const FEW: usize, const MANY: usize>(small: [f64; FEW]) -> [f64; MANY] {
+    let length = norm(&small);
+    let first = (1.0 - length * length).sqrt();
+    std::array::from_fn(|i| if i == 0 { first } else { small[i - 1] })
+}

@@ -1,0 +1,377 @@
+//! From a normal that is about right to one that is right to all digits.
+//!
+//! Let `s` be the extent of a part of the first solid along n and `t` the least height of a part of
+//! the second. At the best normal some parts are active, that is, equally extreme, and a mix of their
+//! support points, `x = Σ w b − Σ u a` with weights that are not negative and sum to one, is a
+//! multiple of n: the point of the difference on its supporting plane that is across from the
+//! origin. These are as many equations as unknowns (n, the weights and the multiple); Newton's method
+//! solves them, with second derivatives in closed form. Which parts are active is guessed by their
+//! heights along the first normal, and every guess is judged by the height it ends with.
+
+use super::linear::solve;
+use super::number::Quad;
+use super::solid::{Placed, height, mixed};
+use super::vector::{Vector, add, dot, negate, norm, scale, sub, unit};
+
+/// Cap on the steps: a start with three right digits needs five.
+const STEPS: usize = 12;
+/// Cap on how often the parts are chosen anew.
+const ROUNDS: usize = 4;
+
+/// A normal with the proofs of how good it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Polished<const D: usize> {
+    pub(super) normal: Vector<D>,
+    /// The height of the normal: a lower bound of the signed distance.
+    pub(super) height: Quad,
+    /// A point of the difference; its length is an upper bound where the solids are apart.
+    pub(super) point: Vector<D>,
+}
+
+impl<const D: usize> Polished<D> {
+    /// How far the point is from where the normal has it: zero at every local maximum of the height.
+    pub(super) fn miss(&self) -> f64 {
+        norm(&sub(&self.point, &scale(&self.normal, self.height))).to_f64()
+    }
+}
+
+/// Two solids without their rounding.
+#[derive(Clone, Copy)]
+pub(super) struct Pair<'a, const D: usize> {
+    pub(super) parts1: &'a [Placed<D>],
+    pub(super) parts2: &'a [Placed<D>],
+}
+
+/// The best normal near `start`. The active parts are looked for among the `breadth` most extreme of
+/// each solid; more than one is needed where edges or faces are parallel, so that some choices of
+/// active parts have no solution.
+pub(super) fn polish<const D: usize>(
+    pair: Pair<'_, D>,
+    start: &Vector<D>,
+    breadth: usize,
+) -> Polished<D> {
+    let mut best = Polished {
+        normal: *start,
+        height: height(pair.parts1, pair.parts2, start),
+        point: supported(pair, start),
+    };
+    for _ in 0..ROUNDS {
+        let before = best.height;
+        let order1 = by_extent(pair.parts1, &best.normal);
+        let order2 = by_extent(pair.parts2, &negate(&best.normal));
+        let around = best.normal;
+        for active in choices(pair, &order1, &order2, breadth) {
+            if let Some(found) = active.polished(pair, &around)
+                && is_better(&found, &best)
+            {
+                best = found;
+            }
+        }
+        if (best.height - before).to_f64() <= 1e-29 * best.height.to_f64().abs() {
+            break;
+        }
+    }
+    best
+}
+
+/// The sets of parts that may be active.
+fn choices<'a, const D: usize>(
+    pair: Pair<'a, D>,
+    order1: &[usize],
+    order2: &[usize],
+    breadth: usize,
+) -> Vec<Active<'a, D>> {
+    let mut found = Vec::new();
+    for (count1, count2) in [(1, 1), (2, 1), (1, 2), (3, 1), (2, 2), (1, 3)] {
+        if count1 + count2 > D + 1 {
+            continue;
+        }
+        for chosen1 in subsets(order1, count1, breadth) {
+            for chosen2 in subsets(order2, count2, breadth) {
+                let parts1 = chosen1.iter().map(|&i| &pair.parts1[i]).collect();
+                let parts2 = chosen2.iter().map(|&i| &pair.parts2[i]).collect();
+                found.push(Active { parts1, parts2 });
+            }
+        }
+    }
+    found
+}
+
+/// The choices of `count` among the first `breadth`, or `count` if that is more.
+fn subsets(order: &[usize], count: usize, breadth: usize) -> Vec<Vec<usize>> {
+    let first = &order[..breadth.max(count).min(order.len())];
+    let masks = (0_u32..1 << first.len()).filter(|mask| mask.count_ones() as usize == count);
+    let chosen = |mask: u32| {
+        let places = (0..first.len()).filter(|place| mask >> place & 1 == 1);
+        places.map(|place| first[place]).collect()
+    };
+    masks.map(chosen).collect()
+}
+
+/// The better normal; of equals the one that is proven better.
+pub(super) fn is_better<const D: usize>(found: &Polished<D>, best: &Polished<D>) -> bool {
+    let gain = (found.height - best.height).to_f64();
+    let noise = 1e-29 * (found.height.to_f64().abs() + norm(&found.point).to_f64());
+    gain > noise || gain > -noise && found.miss() < best.miss()
+}
+
+/// The normal of a disk, with the point of the difference across it.
+pub(super) fn across_disk<const D: usize>(
+    pair: Pair<'_, D>,
+    disk: &Placed<D>,
+    is_second: bool,
+    normal: &Vector<D>,
+) -> Polished<D> {
+    let outward = if is_second { negate(normal) } else { *normal };
+    let others = if is_second { pair.parts1 } else { pair.parts2 };
+    let height = height(pair.parts1, pair.parts2, normal);
+    let touching = touching_points(others, &negate(&outward), &disk.center);
+    let candidate = |on_other: &Vector<D>| {
+        let on_disk = disk.nearest_in_disk(on_other);
+        let (on1, on2) = if is_second { (*on_other, on_disk) } else { (on_disk, *on_other) };
+        Polished { normal: *normal, height, point: sub(&on2, &on1) }
+    };
+    let candidates = common_candidates(&touching, &disk.center, &outward);
+    let mut found = candidate(&touching[0]);
+    for other in candidates.iter().map(candidate) {
+        if other.miss() < found.miss() {
+            found = other;
+        }
+    }
+    found
+}
+
+/// The support points of the parts that reach farthest along a normal; of a disk that lies flat, the
+/// point nearest to `center`.
+fn touching_points<const D: usize>(
+    parts: &[Placed<D>],
+    normal: &Vector<D>,
+    center: &Vector<D>,
+) -> Vec<Vector<D>> {
+    let order = by_extent(parts, normal);
+    let most = parts[order[0]].extent(normal);
+    let slack = 1e-27 * (most.to_f64().abs() + norm(&parts[order[0]].center).to_f64());
+    let equal = |i: &&usize| (most - parts[**i].extent(normal)).to_f64() <= slack;
+    let point = |&i: &usize| {
+        let part = &parts[i];
+        let flat = !part.is_point() && {
+            let components = part.components(normal);
+            components.iter().all(|x| x.to_f64().abs() <= 1e-25 * norm(&part.columns[0]).to_f64())
+        };
+        if flat { part.nearest_in_disk(center) } else { part.support(normal) }
+    };
+    order.iter().take_while(equal).map(point).collect()
+}
+
+/// Points of a flat polygon of which one lies in a disk with this center, if any does: the nearest to
+/// the center, seen along the normal, on all lines between two corners, and the center itself where
+/// it lies within.
+fn common_candidates<const D: usize>(
+    corners: &[Vector<D>],
+    center: &Vector<D>,
+    normal: &Vector<D>,
+) -> Vec<Vector<D>> {
+    let mut found = corners.to_vec();
+    let away = dot(&sub(&corners[0], center), normal);
+    let projected = add(center, &scale(normal, away));
+    for (i, a) in corners.iter().enumerate() {
+        for (j, b) in corners.iter().enumerate().skip(i + 1) {
+            let along = sub(b, a);
+            let share = dot(&sub(&projected, a), &along) / dot(&along, &along);
+            found.push(add(a, &scale(&along, share.max(Quad::ZERO).min(Quad::ONE))));
+            for c in &corners[j + 1..] {
+                if D == 3 && holds(&[*a, *b, *c], &projected, normal) {
+                    found.push(projected);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Whether a point of the plane of a triangle lies in it.
+fn holds<const D: usize>([a, b, c]: &[Vector<D>; 3], p: &Vector<D>, normal: &Vector<D>) -> bool {
+    let side = |from: &Vector<D>, to: &Vector<D>| {
+        dot(&super::vector::perpendicular(&[sub(to, from), sub(p, from)]), normal)
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    sides.iter().all(|s| *s >= Quad::ZERO) || sides.iter().all(|s| *s <= Quad::ZERO)
+}
+
+/// The mean of the support points of the parts that reach farthest along a normal.
+fn touched<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vector<D> {
+    let points = touching_points(parts, normal, &parts[0].center);
+    mixed(&points, &vec![Quad::ONE / Quad::new(points.len() as f64); points.len()])
+}
+
+/// The support point of the difference.
+fn supported<const D: usize>(pair: Pair<'_, D>, normal: &Vector<D>) -> Vector<D> {
+    sub(&touched(pair.parts2, &negate(normal)), &touched(pair.parts1, normal))
+}
+
+/// The numbers of the parts, those that reach farthest along a normal first.
+fn by_extent<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vec<usize> {
+    let extents: Vec<Quad> = parts.iter().map(|part| part.extent(normal)).collect();
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    let falling = |&i: &usize, &j: &usize| {
+        extents[j].partial_cmp(&extents[i]).unwrap_or(std::cmp::Ordering::Equal)
+    };
+    order.sort_by(falling);
+    order
+}
+
+/// The parts that are taken to be active.
+struct Active<'a, const D: usize> {
+    parts1: Vec<&'a Placed<D>>,
+    parts2: Vec<&'a Placed<D>>,
+}
+
+/// The unknowns.
+#[derive(Clone)]
+struct State<const D: usize> {
+    normal: Vector<D>,
+    /// What multiple of the normal the point is.
+    multiple: Quad,
+    weights1: Vec<Quad>,
+    weights2: Vec<Quad>,
+}
+
+/// A part seen along a normal, to second order.
+struct Local<const D: usize> {
+    extent: Quad,
+    support: Vector<D>,
+    /// The second derivative of the extent, by rows.
+    bend: [Vector<D>; D],
+}
+
+impl<const D: usize> Local<D> {
+    /// `None` along the axis of a disk, where the extent has a kink.
+    fn new(part: &Placed<D>, normal: &Vector<D>) -> Option<Self> {
+        let support = part.support(normal);
+        let mut bend = [[Quad::ZERO; D]; D];
+        if !part.is_point() {
+            let components = part.components(normal);
+            let squared = components.iter().fold(Quad::ZERO, |sum, x| sum + *x * *x);
+            let size = part.columns.iter().fold(Quad::ZERO, |sum, c| sum + dot(c, c));
+            if squared.to_f64() <= 1e-40 * size.to_f64() {
+                return None;
+            }
+            let length = squared.sqrt();
+            let outward = sub(&support, &part.center);
+            for (i, row) in bend.iter_mut().enumerate() {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    let product = part.columns.iter().fold(Quad::ZERO, |sum, c| sum + c[i] * c[j]);
+                    *entry = (product - outward[i] * outward[j]) / length;
+                }
+            }
+        }
+        Some(Self { extent: dot(&support, normal), support, bend })
+    }
+}
+
+impl<const D: usize> Active<'_, D> {
+    /// Newton's method from `start`, and the true height of where it ends.
+    fn polished(&self, pair: Pair<'_, D>, start: &Vector<D>) -> Option<Polished<D>> {
+        let equal = |count: usize| vec![Quad::ONE / Quad::new(count as f64); count];
+        let mut state = State {
+            normal: *start,
+            multiple: height(pair.parts1, pair.parts2, start),
+            weights1: equal(self.parts1.len()),
+            weights2: equal(self.parts2.len()),
+        };
+        for _ in 0..STEPS {
+            let moved = self.step(&mut state)?;
+            if moved < 1e-30 {
+                break;
+            }
+        }
+        let normal = unit(&state.normal)?;
+        let supports = |parts: &[&Placed<D>], normal: &Vector<D>| -> Vec<Vector<D>> {
+            parts.iter().map(|part| part.support(normal)).collect()
+        };
+        let on1 = mixed(&supports(&self.parts1, &normal), &proper(&state.weights1));
+        let on2 = mixed(&supports(&self.parts2, &negate(&normal)), &proper(&state.weights2));
+        let height = height(pair.parts1, pair.parts2, &normal);
+        Some(Polished { normal, height, point: sub(&on2, &on1) })
+    }
+
+    /// One step; says how far the normal was turned.
+    fn step(&self, state: &mut State<D>) -> Option<f64> {
+        let inward = negate(&state.normal);
+        let local = |parts: &[&Placed<D>], normal: &Vector<D>| -> Option<Vec<Local<D>>> {
+            parts.iter().map(|part| Local::new(part, normal)).collect()
+        };
+        let (local1, local2) = (local(&self.parts1, &state.normal)?, local(&self.parts2, &inward)?);
+        let change = solve(equations(state, &local1, &local2));
+        let turned: Vector<D> = std::array::from_fn(|i| change[i]);
+        // A step across half the sphere is none of Newton's.
+        let length = norm(&turned).to_f64();
+        let sane = length < 1.5;
+        if !sane {
+            return None;
+        }
+        state.normal = unit(&add(&state.normal, &turned))?;
+        state.multiple += change[D];
+        let (count1, count2) = (local1.len() - 1, local2.len() - 1);
+        shift(&mut state.weights1, &change[D + 1..D + 1 + count1]);
+        shift(&mut state.weights2, &change[D + 1 + count1..D + 1 + count1 + count2]);
+        Some(length)
+    }
+}
+
+/// The first weight gives what the others take.
+fn shift(weights: &mut [Quad], change: &[Quad]) {
+    for (index, &by) in change.iter().enumerate() {
+        weights[index + 1] += by;
+        weights[0] -= by;
+    }
+}
+
+/// Weights that are not negative and sum to one.
+fn proper(weights: &[Quad]) -> Vec<Quad> {
+    let kept: Vec<Quad> = weights.iter().map(|weight| weight.max(Quad::ZERO)).collect();
+    let sum = kept.iter().fold(Quad::ZERO, |sum, weight| sum + *weight);
+    kept.iter().map(|weight| *weight / sum).collect()
+}
+
+/// The linear equations of a step, each row with its right side at the end. In this order: the point
+/// is a multiple of the normal, the normal is unit, the active parts are equally extreme.
+fn equations<const D: usize>(
+    state: &State<D>,
+    local1: &[Local<D>],
+    local2: &[Local<D>],
+) -> Vec<Vec<Quad>> {
+    let supports = |local: &[Local<D>]| local.iter().map(|l| l.support).collect::<Vec<_>>();
+    let (supports1, supports2) = (supports(local1), supports(local2));
+    let point = sub(&mixed(&supports2, &state.weights2), &mixed(&supports1, &state.weights1));
+    let away1 = supports1[1..].iter().map(|a| sub(&supports1[0], a));
+    let away2 = supports2[1..].iter().map(|b| sub(b, &supports2[0]));
+    // How the point moves with each weight.
+    let columns: Vec<Vector<D>> = away1.chain(away2).collect();
+    let unknowns = D + 1 + columns.len();
+    let mut rows = vec![vec![Quad::ZERO; unknowns + 1]; unknowns];
+    let bends = || {
+        let one = local1.iter().zip(&state.weights1);
+        one.chain(local2.iter().zip(&state.weights2))
+    };
+    for i in 0..D {
+        for j in 0..D {
+            let bend = bends().fold(Quad::ZERO, |sum, (l, weight)| sum + l.bend[i][j] * *weight);
+            rows[i][j] = -bend - if i == j { state.multiple } else { Quad::ZERO };
+        }
+        rows[i][D] = -state.normal[i];
+        rows[D][i] = state.normal[i];
+        for (k, column) in columns.iter().enumerate() {
+            rows[i][D + 1 + k] = column[i];
+            rows[D + 1 + k][i] = column[i];
+        }
+        rows[i][unknowns] = state.multiple * state.normal[i] - point[i];
+    }
+    let apart1 = local1[1..].iter().map(|l| local1[0].extent - l.extent);
+    let apart2 = local2[1..].iter().map(|l| local2[0].extent - l.extent);
+    for (k, difference) in apart1.chain(apart2).enumerate() {
+        // Extents of the second solid are against the normal, so heights are minus them.
+        rows[D + 1 + k][unknowns] = -difference;
+    }
+    rows
+}

@@ -1,0 +1,112 @@
+//! Arithmetic on plain arrays of [`Quad`]; see [`crate::geometry::vector`].
+
+use super::number::Quad;
+
+/// A point, a vector or a direction.
+pub type Vector<const D: usize> = [Quad; D];
+
+/// The vector with these components.
+#[must_use]
+pub fn exact<const D: usize>(v: &[f64; D]) -> Vector<D> {
+    v.map(Quad::new)
+}
+
+/// The nearest vector of `f64`.
+#[must_use]
+pub fn rounded<const D: usize>(v: &Vector<D>) -> [f64; D] {
+    v.map(Quad::to_f64)
+}
+
+/// The zero vector.
+#[must_use]
+pub fn zero<const D: usize>() -> Vector<D> {
+    [Quad::ZERO; D]
+}
+
+/// `a + b`
+#[must_use]
+pub fn add<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+/// `a - b`
+#[must_use]
+pub fn sub<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// `a * factor`
+#[must_use]
+pub fn scale<const D: usize>(a: &Vector<D>, factor: Quad) -> Vector<D> {
+    a.map(|x| x * factor)
+}
+
+/// `-a`
+#[must_use]
+pub fn negate<const D: usize>(a: &Vector<D>) -> Vector<D> {
+    a.map(|x| -x)
+}
+
+/// The sum of the products of the components.
+#[must_use]
+pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Quad {
+    let mut sum = Quad::ZERO;
+    for i in 0..D {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// Euclidean length.
+#[must_use]
+pub fn norm<const D: usize>(a: &Vector<D>) -> Quad {
+    dot(a, a).sqrt()
+}
+
+/// `a` at length one; `None` for the zero vector.
+#[must_use]
+pub fn unit<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
+    // Squares of components below 1e-140 would lose digits, so it is brought to a length near one.
+    let size = a.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
+    if size == 0.0 || !size.is_finite() {
+        return None;
+    }
+    let near_one = a.map(|x| x / Quad::new(size));
+    let length = norm(&near_one);
+    Some(near_one.map(|x| x / length))
+}
+
+/// The part of `a` that is perpendicular to the vector `direction`, which need not be unit.
+#[must_use]
+pub fn reject<const D: usize>(a: &Vector<D>, direction: &Vector<D>) -> Vector<D> {
+    let share = dot(a, direction) / dot(direction, direction);
+    sub(a, &scale(direction, share))
+}
+
+/// A vector perpendicular to the D-1 given ones; see [`crate::geometry::vector::perpendicular`].
+///
+/// # Panics
+/// Unless D is 2 or 3 and D-1 vectors are given.
+#[must_use]
+pub fn perpendicular<const D: usize>(spans: &[Vector<D>]) -> Vector<D> {
+    assert_eq!(spans.len() + 1, D, "a hyperplane is spanned by D - 1 vectors");
+    let mut result = zero();
+    if D == 2 {
+        result[0] = -spans[0][1];
+        result[1] = spans[0][0];
+        return result;
+    }
+    let (a, b) = (&spans[0], &spans[1]);
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        result[i] = a[j] * b[k] - a[k] * b[j];
+    }
+    result
+}
+
+/// The angle between two unit vectors, from the length of their difference: right for small angles.
+#[must_use]
+pub fn angle<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
+    let chord = norm(&sub(a, b)).to_f64();
+    2.0 * (chord / 2.0).min(1.0).asin()
+}

@@ -1,0 +1,310 @@
+//! Curved cores: from half of the digits of a normal to all of them.
+//!
+//! Support points alone find a normal of curved cores up to about the root of the accuracy of its
+//! height, and the last digits of the height slowly. A core that says how its support points move
+//! ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)) lets Newton's method
+//! finish. At the best normal `n` a few points `a` of the first core are equally extreme, a few
+//! points `b` of the second, and some mix of them lies across: `Σ w b − Σ u a = λ n`, with weights that
+//! are not negative and sum to one. Derived by `n`, the weights and `λ`, these are linear equations
+//! for a step; that active sets and curvature go together like this is the VU-decomposition of
+//! C. Lemaréchal, F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000).
+//! As everywhere, the normal that a step leads to is trusted for its certificate only.
+
+use smallvec::SmallVec;
+
+use super::candidate::Candidate;
+use super::difference::{Branch, Difference, Vertex, noise, tolerance};
+use super::simplex::Simplicial;
+use super::witness::Mix;
+use crate::math::{Matrix, Real, Vector, max, min, unit};
+
+/// Cap on the steps; a normal with a quarter of its digits takes two, and one for each point that turns
+/// out to be active or not to be.
+const STEPS: usize = 10;
+/// How much less extreme than the most extreme point others may be along a normal that has yet to be
+/// polished, in units of the root of the tolerance: that is what a normal may be off by.
+const SLACK: f64 = 8.0;
+/// The longest step: Newton's method is of no use farther away.
+const LONGEST: f64 = 0.25;
+/// The unknowns of three dimensions: `n`, `λ`, and a weight for each active point but the first of
+/// each core; and the right side.
+const COLUMNS: usize = 7;
+
+/// Points of one core that are, or move to be, equally extreme.
+type Branches<N, const D: usize> = SmallVec<[Branch<N, D>; 4]>;
+
+/// What a core contributes.
+#[derive(Clone)]
+struct Side<N: Real, const D: usize> {
+    branches: Branches<N, D>,
+    weights: SmallVec<[N; 4]>,
+}
+
+/// Raises the height of `best`, given points of the difference that lie lowest along it or nearly so;
+/// the points across from each other, if they were found on the way. These are as near to their
+/// places as the normal was to its own; without them, a normal may have been found all the same.
+///
+/// Does nothing where nothing is curved. A point that the next normal finds lower than the active
+/// ones becomes active; one that would have to pull instead of push is no more.
+pub(super) fn polish<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+    vertices: &[Vertex<N, D>],
+) -> Option<Mix<N, D>> {
+    try_round_faces(difference, best);
+    let mut current = *best;
+    let mut sides = active(difference, &current, vertices)?;
+    for _ in 0..STEPS {
+        let mut turn = step(&current, &mut sides)?;
+        let squared = turn.norm_squared();
+        if squared > N::lit(LONGEST * LONGEST) {
+            turn *= N::lit(LONGEST) / squared.sqrt();
+        }
+        current = Candidate::along(difference, unit(&(current.normal + turn))?.0);
+        best.improve(&current);
+        sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
+        let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides);
+        if changed {
+            current = *best;
+            sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
+        } else if squared <= N::EPSILON {
+            // What is left after a step is about its square.
+            best.prefer(current, N::EPSILON);
+            let mix = Mix::new(sides[0].mixed(), sides[1].mixed());
+            return Some(mix).filter(|mix| mix.meets_within(best, N::TWO * tolerance()));
+        }
+    }
+    None
+}
+
+/// Tries the very normals of round faces that the normal is close to: the height has a peak there, and
+/// no derivative.
+fn try_round_faces<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+) {
+    for face in difference.round_faces(&best.normal).into_iter().flatten() {
+        let is_close = (face - best.normal).norm_squared() < N::lit(SLACK) * tolerance();
+        if let Some((normal, _)) = unit(&face).filter(|_| is_close) {
+            best.improve(&Candidate::along(difference, normal));
+        }
+    }
+}
+
+/// The points that lie lowest along a normal, or nearly so: those that [`polish`] may need.
+pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
+    vertices: &[Vertex<N, D>],
+    normal: &Vector<N, D>,
+) -> SmallVec<[Vertex<N, D>; 8]> {
+    let height = |vertex: &Vertex<N, D>| normal.dot(&vertex.point);
+    let least = vertices.iter().fold(N::MAX, |least, vertex| min(height(vertex), least));
+    let slack = N::lit(SLACK) * tolerance::<N>().sqrt();
+    vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
+}
+
+/// The active points of both cores; `None` if all are corners.
+fn active<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    vertices: &[Vertex<N, D>],
+) -> Option<[Side<N, D>; 2]> {
+    let mut sides = [Branches::new(), Branches::new()];
+    for vertex in vertices.iter().chain([&best.vertex]) {
+        for (index, on) in [vertex.on1, vertex.on2].iter().enumerate() {
+            let branch = difference.branch(index == 1, on, &best.normal);
+            if !sides[index].iter().any(|known| known.on == branch.on) {
+                sides[index].push(branch);
+            }
+        }
+    }
+    if sides.iter().flatten().all(|branch| branch.bend.is_none()) {
+        return None;
+    }
+    keep_extreme(&mut sides, &best.normal);
+    Some(sides.map(Side::new))
+}
+
+/// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
+/// the others the least extreme, until there are no more than can determine a normal.
+fn keep_extreme<N: Simplicial<D>, const D: usize>(
+    sides: &mut [Branches<N, D>; 2],
+    normal: &Vector<N, D>,
+) {
+    let extent = |branch: &Branch<N, D>| {
+        if branch.is_second { -normal.dot(&branch.on) } else { normal.dot(&branch.on) }
+    };
+    let most = [0, 1].map(|index: usize| {
+        sides[index].iter().fold(-N::MAX, |most, branch| max(extent(branch), most))
+    });
+    let lag = |branch: &Branch<N, D>| most[usize::from(branch.is_second)] - extent(branch);
+    let slack = N::lit(SLACK) * tolerance::<N>().sqrt();
+    sides.iter_mut().for_each(|side| side.retain(|branch| lag(branch) <= slack));
+    while sides[0].len() + sides[1].len() > D + 1 {
+        let mut worst = (0, 0, -N::ONE);
+        for (index, side) in sides.iter().enumerate() {
+            for (place, branch) in side.iter().enumerate() {
+                if side.len() > 1 && lag(branch) >= worst.2 {
+                    worst = (index, place, lag(branch));
+                }
+            }
+        }
+        sides[worst.0].remove(worst.1);
+    }
+}
+
+impl<N: Simplicial<D>, const D: usize> Side<N, D> {
+    fn new(branches: Branches<N, D>) -> Self {
+        let share = N::ONE / branches.iter().fold(N::ZERO, |count, _| count + N::ONE);
+        Self { weights: branches.iter().map(|_| share).collect(), branches }
+    }
+
+    /// The points as they are for another normal.
+    fn turn(&mut self, difference: &dyn Difference<N, D>, normal: &Vector<N, D>) {
+        for branch in &mut self.branches {
+            *branch = difference.branch(branch.is_second, &branch.on, normal);
+        }
+    }
+
+    fn mixed(&self) -> Vector<N, D> {
+        let zero = Vector::<N, D>::zeros();
+        self.branches.iter().zip(&self.weights).fold(zero, |sum, (b, &weight)| sum + b.on * weight)
+    }
+
+    /// How the mix moves with the normal.
+    fn bend(&self) -> Matrix<N, D> {
+        let mut sum = Matrix::<N, D>::zeros();
+        for (branch, &weight) in self.branches.iter().zip(&self.weights) {
+            if let Some(bend) = &branch.bend {
+                sum += bend * weight;
+            }
+        }
+        sum
+    }
+
+    /// The place of the least weight that is negative by more than noise.
+    fn worst(&self) -> Option<(usize, N)> {
+        let mut worst = None;
+        let mut least = -noise::<N>().sqrt();
+        for (index, &weight) in self.weights.iter().enumerate() {
+            if weight < least {
+                (worst, least) = (Some((index, weight)), weight);
+            }
+        }
+        worst
+    }
+
+    fn drop(&mut self, index: usize) {
+        self.branches.remove(index);
+        *self = Self::new(std::mem::take(&mut self.branches));
+    }
+}
+
+/// Adds the points that the last normal has found beyond the active ones, by more than noise, as long
+/// as these can determine a normal; says whether there were any.
+fn add_lower<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    current: &Candidate<N, D>,
+    sides: &mut [Side<N, D>; 2],
+) -> bool {
+    let mut added = false;
+    for (index, on) in [current.vertex.on1, current.vertex.on2].iter().enumerate() {
+        let outward = if index == 1 { -current.normal } else { current.normal };
+        let branches = &sides[index].branches;
+        let most = branches.iter().fold(-N::MAX, |most, b| max(outward.dot(&b.on), most));
+        let is_beyond = outward.dot(on) > most + noise::<N>();
+        if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
+            sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
+            sides[index] = Side::new(std::mem::take(&mut sides[index].branches));
+            added = true;
+        }
+    }
+    added
+}
+
+/// Drops the point that would have to pull instead of push; says whether there was one.
+fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2]) -> bool {
+    let place = match (sides[0].worst(), sides[1].worst()) {
+        (Some((index, one)), Some((_, two))) if one <= two => (0, index),
+        (Some((index, _)), None) => (0, index),
+        (_, Some((index, _))) => (1, index),
+        (None, None) => return false,
+    };
+    sides[place.0].drop(place.1);
+    true
+}
+
+/// A step of the normal; the weights are set to those that go with it.
+fn step<N: Simplicial<D>, const D: usize>(
+    current: &Candidate<N, D>,
+    sides: &mut [Side<N, D>; 2],
+) -> Option<Vector<N, D>> {
+    let [first, second] = &*sides;
+    let (normal, height) = (&current.normal, current.height);
+    let bend = first.bend() + second.bend();
+    let across = second.branches[0].on - first.branches[0].on;
+    let ways = first.branches[1..].iter().map(|branch| first.branches[0].on - branch.on);
+    let ways: SmallVec<[Vector<N, D>; 4]> =
+        ways.chain(second.branches[1..].iter().map(|b| b.on - second.branches[0].on)).collect();
+    let count = D + 1 + ways.len();
+    let mut rows = [[N::ZERO; COLUMNS]; COLUMNS - 1];
+    for i in 0..D {
+        for j in 0..D {
+            rows[i][j] = -bend[(i, j)];
+        }
+        rows[i][i] -= height;
+        (rows[i][D], rows[D][i]) = (-normal[i], normal[i]);
+        rows[i][count] = -across[i];
+        for (k, way) in ways.iter().enumerate() {
+            (rows[i][D + 1 + k], rows[D + 1 + k][i]) = (way[i], way[i]);
+        }
+    }
+    for (k, way) in ways.iter().enumerate() {
+        rows[D + 1 + k][count] = -way.dot(normal);
+    }
+    let solution = solve(rows, count)?;
+    let (mut rest, mut turn) = (solution[D + 1..count].iter(), Vector::<N, D>::zeros());
+    (0..D).for_each(|i| turn[i] = solution[i]);
+    for side in sides {
+        let mut sum = N::ZERO;
+        for weight in &mut side.weights[1..] {
+            *weight = *rest.next()?;
+            sum += *weight;
+        }
+        side.weights[0] = N::ONE - sum;
+    }
+    Some(turn)
+}
+
+/// Solves the first `count` equations, each with its right side in the column `count`, by elimination
+/// with row pivoting; `None` if they are dependent.
+fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option<[N; COLUMNS - 1]> {
+    for column in 0..count {
+        let mut pivot = column;
+        for row in column + 1..count {
+            if rows[row][column].abs() > rows[pivot][column].abs() {
+                pivot = row;
+            }
+        }
+        rows.swap(column, pivot);
+        let usable = rows[column][column].abs() > noise::<N>() * noise();
+        if !usable {
+            return None;
+        }
+        for row in column + 1..count {
+            let factor = rows[row][column] / rows[column][column];
+            for k in column..=count {
+                let above = rows[column][k];
+                rows[row][k] -= factor * above;
+            }
+        }
+    }
+    let mut solution = [N::ZERO; COLUMNS - 1];
+    for row in (0..count).rev() {
+        let mut value = rows[row][count];
+        for k in row + 1..count {
+            value -= rows[row][k] * solution[k];
+        }
+        solution[row] = value / rows[row][row];
+    }
+    Some(solution)
+}
