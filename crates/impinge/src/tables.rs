@@ -10,10 +10,10 @@ use core::fmt;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space};
+use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactState, DefaultNarrowPhase, Events, ObjectTable, Posed,
-    proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events, KeptContacts,
+    ObjectTable, Posed, proximity_of,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part};
@@ -23,11 +23,12 @@ use crate::query::separation::{
     Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    ContactManifold, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed, Proximity,
-    RawManifold, RayIntersection, Witness, contacts2, contacts3, impact_of_pair, witness_features2,
-    witness_features3, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
+    impact_of_flight, impact_of_pair, tangents2, tangents3, witness_features2, witness_features3,
+    witness_in_world,
 };
-use crate::shape::{CompositeShape, FeatureId, Kind, MeshTable, ShapeHandle};
+use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -35,6 +36,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
+    pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
     pub(crate) touching_in_world: InWorldFn<N, D>,
     pub(crate) witness_in_world: WitnessFn<N, D>,
@@ -42,6 +44,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_features: FeaturesFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     /// The point of a solid's boundary that is nearest to a point.
@@ -52,8 +55,13 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+    /// Two directions across a normal; the second is zero in the plane.
+    pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
     pub(crate) public_manifold: PublicManifoldFn<N, D>,
+    pub(crate) update_composites:
+        fn(&mut CompositeState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
+    pub(crate) composite_manifolds: CompositeManifoldsFn<N, D>,
     pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
     pub(crate) update_pairs: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events),
     /// The step of a broad phase: what is pending, the filter, and what hears of changes.
@@ -61,6 +69,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) world: WorldTables<N, D>,
     pub(crate) partitioning: PartitioningTables<N, D>,
     pub(crate) mesh: MeshTable<N, D>,
+    pub(crate) height_field: FieldTable<N, D>,
 }
 
 type InWorldFn<N, const D: usize> =
@@ -74,8 +83,16 @@ type EachHitFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
 type ImpactFn<N, const D: usize> =
     fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type NonlinearImpactFn<N, const D: usize> =
+    fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
     fn(&ContactState<N, D>, &Posed<'_, N, D>, u64, ContactManifold<N, D>) -> ContactManifold<N, D>;
+type CompositeManifoldsFn<N, const D: usize> = fn(
+    &CompositeState<N, D>,
+    &Posed<'_, N, D>,
+    u64,
+    Vec<ContactManifold<N, D>>,
+) -> Vec<ContactManifold<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FindPairsFn<N, const D: usize> =
@@ -154,20 +171,24 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     contacts: ContactsFn<N, D>,
+    tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
+    height_field: FieldTable<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
+        tangents: tangents2,
         witness_features: witness_features2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
+        height_field: FieldTable::<N, 2>::IN_PLANE,
     };
 }
 
@@ -175,10 +196,12 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         contacts: contacts3,
+        tangents: tangents3,
         witness_features: witness_features3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
+        height_field: FieldTable::<N, 3>::IN_SPACE,
     };
 }
 
@@ -188,23 +211,29 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separation_in_world: in_world,
+            contact_in_world,
             touching_in_world,
             witness_in_world,
             witness_features: particular.witness_features,
             impact: impact_of_pair,
+            nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,
             nearest_part,
             each_hit,
             contacts: particular.contacts,
+            tangents: particular.tangents,
             update_contacts: ContactState::update,
-            public_manifold: ContactState::manifold,
+            public_manifold: ContactState::manifolds,
+            update_composites: CompositeState::update,
+            composite_manifolds: CompositeState::manifolds,
             proximity: proximity_of,
             update_pairs: DefaultNarrowPhase::update_pairs_here,
             find_pairs: PairFinder::update,
             world: WorldTables::new(),
             partitioning: PartitioningTables::new(),
             mesh: particular.mesh,
+            height_field: particular.height_field,
         }
     }
 }

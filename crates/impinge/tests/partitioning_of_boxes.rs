@@ -212,6 +212,23 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
+/// Squares of these distances are no numbers of the type.
+fn huge<N: Space<D>, const D: usize>() {
+    let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
+    let unit = f64::from(unit) / 64.0;
+    let boxes: Vec<Corners<D>> = (0..40)
+        .map(|x| [[f64::from(x % 20) * unit; D], [f64::from(x % 20 + 1) * unit; D]])
+        .collect();
+    let tree = tree_of::<N, D>(&boxes);
+    let own = aabb([[-1.0; D], [0.5 * unit; D]]);
+    let expected = sorted(tree.boxes().iter().map(|other| Some(other.distance_to_aabb(&own))));
+    let finite = expected.iter().filter(|(distance, _)| distance.is_finite_number()).count();
+    assert_eq!(finite, 40, "no distance is infinite: {expected:?}");
+    assert_eq!(nearest(&tree, &own, N::INFINITY), expected, "in order");
+    let (limit, within) = up_to(&expected);
+    assert_eq!(nearest(&tree, &own, limit), within, "up to {limit}");
+}
+
 fn not_a_number<N: Space<D>, const D: usize>() {
     let unit = aabb::<N, D>([[0.0; D], [1.0; D]]);
     let (tree, v) = (BoxTree::from_boxes(&[unit, Aabb::unbounded()]), vector([1.0; D]));
@@ -236,6 +253,7 @@ fn all<N: Space<D>, const D: usize>() {
     anywhere::<N, D>(1e6);
     unbounded::<N, D>();
     limits::<N, D>();
+    huge::<N, D>();
     not_a_number::<N, D>();
 }
 

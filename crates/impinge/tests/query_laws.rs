@@ -114,6 +114,11 @@ fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
         // In f32 this is 1e-4.
         return max(N::EPSILON * N::lit(1024.0), N::lit(relative));
     }
+    // The generating line of a tapered capsule and the edge of a flat solid are kinks; the iterations
+    // of the general algorithm stop a little earlier there.
+    if kinds.contains(&ShapeKind::TaperedCapsule) && D == 3 && !ball {
+        return max(N::EPSILON * N::lit(128.0), N::lit(2e-11));
+    }
     let closed = |kind| matches!(kind, ShapeKind::Segment | ShapeKind::Capsule);
     if D == 2 || ball || kinds.into_iter().all(closed) {
         return N::EPSILON * N::lit(128.0);

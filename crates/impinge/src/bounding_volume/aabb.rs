@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{BoundingVolume, Ray};
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 
 /// The points between two corners, the faces included.
 ///
@@ -221,11 +221,14 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         self.distance_to_aabb(&Self::at(*point))
     }
 
-    /// The distance between two boxes, zero if they meet.
+    /// The distance between two boxes, zero if they meet. Distances whose squares are too small for
+    /// the scalar count as zero.
     pub fn distance_to_aabb(&self, other: &Self) -> N {
         let below = (self.mins - other.maxs).map(|x| max(x, N::ZERO));
         let above = (other.mins - self.maxs).map(|x| max(x, N::ZERO));
-        (below + above).norm()
+        let gaps = below + above;
+        let distance = gaps.norm();
+        if distance.is_finite_number() { distance } else { long_distance(&gaps) }
     }
 
     /// The box holds a finite point: it is neither inverted nor NaN nor wholly at infinity.
@@ -233,6 +236,18 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         let holds = |low: N, high: N| low <= high && low < N::INFINITY && high > -N::INFINITY;
         (0..D).all(|axis| holds(self.mins[axis], self.maxs[axis]))
     }
+}
+
+/// The length of a vector whose square is too large for the scalar. Never below those whose square is
+/// not, so that a box that encloses another is not farther than it.
+#[cold]
+fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
+    let largest = max_component(gaps);
+    if !largest.is_finite_number() {
+        return N::INFINITY;
+    }
+    let scale = largest.power_of_two_below();
+    max((gaps / scale).norm() * scale, N::MAX.sqrt())
 }
 
 impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
@@ -364,6 +379,13 @@ mod tests {
         assert_eq!(unit_box().distance_to_aabb(&at(1.0, -2.0)), 0.0, "they touch");
         assert_eq!(unit_box().distance_to_aabb(&Aabb::unbounded()), 0.0, "in everything");
         assert_eq!(Aabb::unbounded().distance_to_aabb(&Aabb::<f64, 2>::unbounded()), 0.0, "both");
+        let far = Aabb::at(P::new(3e200, 4e200));
+        assert!(
+            (far.distance_to_aabb(&unit_box()) / 5e200 - 1.0).abs() < 1e-15,
+            "squares overflow"
+        );
+        let edge = Aabb::at(P::new(f64::MAX, -f64::MAX));
+        assert_eq!(edge.distance_to_aabb(&unit_box()), f64::INFINITY, "beyond the scalar");
     }
 
     #[test]

@@ -23,6 +23,7 @@
 
 mod block;
 mod bounds;
+mod farthest;
 mod join;
 mod kernel;
 mod order;

@@ -12,6 +12,7 @@ use super::candidate::Candidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
+use super::newton::sharpen;
 use super::polish::polish;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -110,6 +111,10 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
             let before = best.height;
             if let Some(mix) = polish(difference, &mut best, &[side.start, next]) {
                 return placed(&best, &mix, N::HALF);
+            }
+            if -candidate.height - side.offset > noise() {
+                sharpen(difference, &mut best);
+                return locate(difference, &best, &vertices(ring, &best));
             }
             if best.height <= before {
                 best.prefer(candidate, N::TWO * tolerance());

@@ -12,6 +12,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
+use super::newton::{settles, sharpen};
 use super::polish::{lowest, polish};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -127,6 +128,9 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
+            if -candidate.height - face.offset > noise() {
+                return sharpened(difference, hull, best);
+            }
             if best.height <= before {
                 best.prefer(candidate, N::TWO * tolerance());
             }
@@ -149,6 +153,17 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
+/// The answer where a curved surface has stopped the growth.
+fn sharpened<N: Real>(
+    difference: &dyn Difference<N, 3>,
+    hull: &mut Hull<N>,
+    mut best: Candidate<N, 3>,
+) -> Separation<N, 3> {
+    sharpen(difference, &mut best);
+    hull.keep(&[best.vertex]);
+    locate(difference, &best, hull.vertices())
+}
+
 /// Goes on from the best normal and from that of the nearest face, where the hull is of no more use:
 /// at the cap, or bent by rounding.
 fn climb_on<N: Real>(
@@ -163,6 +178,7 @@ fn climb_on<N: Real>(
         climb(difference, &mut other);
         best.improve(&other);
     }
+    settles(difference, best);
 }
 
 /// What is left to say when no face of the hull has a normal.

@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 use super::Separation;
 use super::candidate::Candidate;
 use super::difference::{Difference, Vertex, noise, tolerance};
+use super::newton::settles;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{Nearest, Simplex, Simplicial};
@@ -144,19 +145,30 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         Some(next)
     }
 
-    /// The bounds lie farther apart than this.
-    fn open(&self, gap: N) -> bool {
-        let closed = self.upper - self.best.height <= gap;
+    /// The bounds lie farther apart than they should.
+    fn open(&self) -> bool {
+        let closed = self.upper - self.best.height <= N::TWO * tolerance();
         !closed
     }
 
+    /// The bounds meet, up to rounding. Rounding may also have put the one that should be above below
+    /// the other: slivers give poor nearest points.
+    fn met(&self) -> bool {
+        (self.upper - self.best.height).abs() <= N::TWO * gap()
+    }
+
     /// The answer from the features found; refined first where the bounds do not meet. That is the
-    /// case near touching, where the direction of the nearest point is mostly rounding errors.
+    /// case near touching, where the direction of the nearest point is mostly rounding errors, and
+    /// where one solid is much larger than the other.
     fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
-        if !self.open(gap()) {
+        if self.met() {
             return self.settled(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
+        if settles(difference, &mut self.best) {
+            bundle.push(self.best.vertex);
+            return locate(difference, &self.best, &bundle);
+        }
         bundle.extend([self.best.vertex, self.spare]);
         refine(difference, &mut bundle, &mut self.best);
         let near = lowest(&bundle, &self.best.normal);
@@ -164,7 +176,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             Some(mix) => placed(&self.best, &mix, N::HALF),
             None => locate(difference, &self.best, &bundle),
         };
-        if !self.open(N::TWO * tolerance()) {
+        if !self.open() {
             return apart;
         }
         let deep = N::deepest(difference, &self.simplex);
@@ -189,7 +201,11 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         }
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
-            best.prefer(self.last, tolerance());
+            // The points of a sliver are no proof that its plane is as near as it seems.
+            if settles(difference, &mut best) {
+                return locate(difference, &best, &[best.vertex]);
+            }
+            best.prefer(self.last, N::TWO * gap());
         }
         settle(difference, &best, &mix, self.simplex.vertices())
     }

@@ -19,6 +19,7 @@ mod epa3;
 mod extent;
 mod gjk;
 mod hull;
+mod newton;
 mod polish;
 mod refine;
 mod separation;

@@ -109,8 +109,9 @@ pub mod world {
 pub mod query {
     pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
-        ContactId, ImpactOptions, ImpactStatus, PointQuery, Proximity, RayCast, closest_points,
-        contact, distance, impact, proximity, time_of_impact,
+        Barycentric, ContactId, ImpactOptions, ImpactStatus, PointLocation, PointQuery, Proximity,
+        RayCast, RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact,
+        proximity, time_of_impact, witness,
     };
 
     /// A half-line.
@@ -121,10 +122,14 @@ pub mod query {
     pub type PointProjection<N> = crate::query::PointProjection<N, 2>;
     /// The points of two solids that are nearest to each other.
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 2>;
+    /// The nearest points of two shapes with their parts and features.
+    pub type Witness<N> = crate::query::Witness<N, 2>;
     /// Where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 2>;
     /// A solid that moves along a straight line.
     pub type Moving<'a, N> = crate::query::Moving<'a, N, 2>;
+    /// A body that moves and turns with constant velocities.
+    pub type ConstantVelocities<N> = crate::query::ConstantVelocities<N, 2>;
     /// When two moving solids first touch, and where.
     pub type Impact<N> = crate::query::Impact<N, 2>;
     /// How a contact moves with its solids.
@@ -157,7 +162,7 @@ pub mod shape {
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 2>;
     /// The points within a radius of a convex shape.
-    pub type Rounded<N, S> = crate::shape::Rounded<N, 2, S>;
+    pub type Rounded<N> = crate::shape::Rounded<N, 2>;
     /// The hull of two balls.
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 2>;
     /// A stretched disk.
@@ -199,7 +204,9 @@ pub mod transformation {
 /// assert_eq!(outline.points[1], [2.0, 1.0].into());
 /// ```
 pub mod procedural {
-    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::plane::{
+        ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
+    };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
 }
 

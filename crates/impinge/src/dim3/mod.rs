@@ -109,8 +109,9 @@ pub mod world {
 pub mod query {
     pub use crate::narrow_phase::ContactPrediction;
     pub use crate::query::{
-        ContactId, ImpactOptions, ImpactStatus, PointQuery, Proximity, RayCast, closest_points,
-        contact, distance, impact, proximity, time_of_impact,
+        Barycentric, ContactId, ImpactOptions, ImpactStatus, PointLocation, PointQuery, Proximity,
+        RayCast, RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact,
+        proximity, time_of_impact, witness,
     };
 
     /// A half-line.
@@ -121,10 +122,14 @@ pub mod query {
     pub type PointProjection<N> = crate::query::PointProjection<N, 3>;
     /// The points of two solids that are nearest to each other.
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
+    /// The nearest points of two shapes with their parts and features.
+    pub type Witness<N> = crate::query::Witness<N, 3>;
     /// Where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 3>;
     /// A solid that moves along a straight line.
     pub type Moving<'a, N> = crate::query::Moving<'a, N, 3>;
+    /// A body that moves and turns with constant velocities.
+    pub type ConstantVelocities<N> = crate::query::ConstantVelocities<N, 3>;
     /// When two moving solids first touch, and where.
     pub type Impact<N> = crate::query::Impact<N, 3>;
     /// How a contact moves with its solids.
@@ -144,7 +149,7 @@ pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, SupportMap, Surface,
+        ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// A box.
@@ -158,7 +163,7 @@ pub mod shape {
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
     /// The points within a radius of a convex shape.
-    pub type Rounded<N, S> = crate::shape::Rounded<N, 3, S>;
+    pub type Rounded<N> = crate::shape::Rounded<N, 3>;
     /// The hull of two balls.
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 3>;
     /// A stretched ball.
@@ -199,7 +204,8 @@ pub mod transformation {
 /// ```
 pub mod procedural {
     pub use crate::procedural::space::{
-        ball, capsule, cone, convex_hull, cuboid, cylinder, triangle,
+        ball, capsule, cone, convex_hull, cuboid, cylinder, ellipsoid, tapered_capsule,
+        tetrahedron, triangle,
     };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
 }

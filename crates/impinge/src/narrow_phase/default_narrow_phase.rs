@@ -8,7 +8,7 @@ use super::entry::{
     Change, ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry,
 };
 use super::generator::DefaultContactDispatcher;
-use super::lanes::{Carried, Lane, Lanes, Location, kind_pair};
+use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::math::Space;
@@ -139,7 +139,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         match table.query(key.0).pair(table.query(key.1)) {
             PairQuery::Contacts { .. } => {
                 let max_points = self.contact_dispatcher.built_in(a, b)?;
-                Some((Lane::Contacts(kind_pair(a, b)), max_points))
+                Some((contact_lane(a, b), max_points))
             }
             PairQuery::Proximity { .. } => {
                 let built_in = self.proximity_dispatcher.is_built_in(a, b);
@@ -161,6 +161,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 let place = self.lanes.contacts[usize::from(new)].push(key, entry);
                 self.locations[index] = Location { lane: new_lane, place, is_touching };
+            }
+            (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
+                let entry = self.lanes.composites.state_mut(place);
+                entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
                 let (mut entry, moved) = self.lanes.proximity[usize::from(old)].swap_remove(place);
@@ -202,12 +206,17 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) -> (Location, Option<Change>) {
         let is_touching = carried.is_touching();
         if let Some((lane, max_points)) = self.built_in_lane(table, key) {
-            let Lane::Contacts(group) = lane else { unreachable!("the query asks for contacts") };
             let (touch, change) = carried.into_touch();
             let number = self.ids.allocate();
-            let entry =
-                ContactEntry::new(ManifoldRequest::new(linear, angular, max_points), number, touch);
-            let place = self.lanes.contacts[usize::from(group)].push(key, entry);
+            let request = ManifoldRequest::new(linear, angular, max_points);
+            let place = match lane {
+                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)]
+                    .push(key, ContactEntry::new(request, number, touch)),
+                Lane::Composites => {
+                    self.lanes.composites.push(key, ContactEntry::new(request, number, touch))
+                }
+                _ => unreachable!("the query asks for contacts"),
+            };
             return (Location { lane, place, is_touching }, change);
         }
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());

@@ -3,13 +3,13 @@
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::state::{ContactState, Posed, proximity_of};
+use super::state::{KeptContacts, Posed, proximity_of};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
 };
 use super::{IdAllocator, ObjectTable};
 use crate::math::{Real, Space};
-use crate::query::{ContactManifold, ManifoldRequest, Proximity};
+use crate::query::{ManifoldRequest, Proximity};
 
 /// What an update, or the end, of a pair means to the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
         shape1: table.shape(first).as_ref(),
         pose2: table.pose(second),
         shape2: table.shape(second).as_ref(),
+        is_self: first == second,
     }
 }
 
@@ -70,75 +71,72 @@ impl Status {
 
 /// Contacts by the library's own algorithm.
 #[derive(Debug)]
-pub(crate) struct ContactEntry<N: Real, const D: usize> {
+pub(crate) struct ContactEntry<N: Real, S> {
     pub(crate) request: ManifoldRequest<N>,
     /// Names the pair's contacts.
     pub(crate) number: u64,
     /// To be updated even if both objects stand still.
     pub(crate) due: bool,
     pub(crate) touch: Touch,
-    pub(crate) state: ContactState<N, D>,
+    pub(crate) state: S,
 }
 
-/// The manifold of a pair as users see it: made when first read after an update.
+/// The manifolds of a pair as users see them: made when first read after an update.
 #[derive(Debug)]
-pub(crate) struct ContactView<N: Real, const D: usize> {
-    manifold: OnceLock<ContactManifold<N, D>>,
-    /// That of an update before, for its memory. Locked by whoever makes the manifold, once.
-    old: Mutex<ContactManifold<N, D>>,
+pub(crate) struct ContactView<M> {
+    manifolds: OnceLock<M>,
+    /// Those of an update before, for their memory. Locked by whoever makes the manifolds, once.
+    old: Mutex<M>,
 }
 
-impl<N: Real, const D: usize> Default for ContactView<N, D> {
+impl<M: Default> Default for ContactView<M> {
     fn default() -> Self {
-        Self { manifold: OnceLock::new(), old: Mutex::default() }
+        Self { manifolds: OnceLock::new(), old: Mutex::default() }
     }
 }
 
-impl<N: Real, const D: usize> ContactView<N, D> {
-    /// Forgets the manifold, but keeps its memory.
+impl<M: Default> ContactView<M> {
+    /// Forgets the manifolds, but keeps their memory.
     fn expire(&mut self) {
-        if let Some(manifold) = self.manifold.take() {
-            *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifold;
+        if let Some(manifolds) = self.manifolds.take() {
+            *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifolds;
         }
     }
 
-    /// The manifold; `make` writes it over an old one if this is the first time it is asked for.
-    pub(crate) fn manifold(
-        &self,
-        make: impl FnOnce(ContactManifold<N, D>) -> ContactManifold<N, D>,
-    ) -> &ContactManifold<N, D> {
-        self.manifold.get_or_init(|| {
+    /// The manifolds; `make` writes them over old ones if this is the first time they are asked for.
+    pub(crate) fn manifolds(&self, make: impl FnOnce(M) -> M) -> &M {
+        self.manifolds.get_or_init(|| {
             let mut old = self.old.lock().unwrap_or_else(PoisonError::into_inner);
             make(core::mem::take(&mut *old))
         })
     }
 }
 
-impl<N: Space<D>, const D: usize> ContactEntry<N, D> {
-    pub(crate) fn new(request: ManifoldRequest<N>, number: u64, touch: Touch) -> Self {
-        let state = ContactState::default();
-        Self { request, number, due: true, touch, state }
+impl<N: Real, S> ContactEntry<N, S> {
+    pub(crate) fn new<const D: usize>(
+        request: ManifoldRequest<N>,
+        number: u64,
+        touch: Touch,
+    ) -> Self
+    where
+        S: KeptContacts<N, D>,
+    {
+        Self { request, number, due: true, touch, state: S::default() }
     }
 
     /// Brings the contacts up to date.
-    pub(crate) fn update(
+    pub(crate) fn update<const D: usize>(
         &mut self,
-        view: &mut ContactView<N, D>,
+        view: &mut ContactView<S::Manifolds>,
         posed: &Posed<'_, N, D>,
-    ) -> Option<Change> {
+    ) -> Option<Change>
+    where
+        S: KeptContacts<N, D>,
+    {
         self.due = false;
         view.expire();
         self.state.update(posed, &self.request);
         self.touch.set(self.state.len() > 0)
-    }
-
-    /// The manifold as users see it, over the memory of an old one.
-    pub(crate) fn manifold(
-        &self,
-        posed: &Posed<'_, N, D>,
-        old: ContactManifold<N, D>,
-    ) -> ContactManifold<N, D> {
-        (N::tables().public_manifold)(&self.state, posed, self.number, old)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The library's own contact algorithm as an object, for use alone.
 
 use super::IdAllocator;
-use super::state::{ContactState, Posed};
+use super::state::{CompositeState, ContactState, Posed};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
 };
@@ -15,18 +15,20 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
 
-/// Contacts of any two built-in solids.
+/// Contacts of any two built-in solids, composites among them.
 ///
 /// One type serves all pairs: it looks the algorithm up by the kinds of the solids at each update,
 /// so it may even be given other solids from one update to the next.
 #[derive(Clone, Debug)]
 pub struct PairManifoldGenerator<N: Real, const D: usize> {
     state: ContactState<N, D>,
+    /// Where one of the solids is a composite.
+    composite: CompositeState<N, D>,
     /// The number that names the pair, once it has one.
     number: Option<u64>,
     max_points: usize,
-    /// At most one; as of the last update.
-    manifold: ContactManifold<N, D>,
+    /// As of the last update; all hold a contact.
+    manifolds: Vec<ContactManifold<N, D>>,
 }
 
 impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
@@ -36,9 +38,10 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     pub fn new(max_points: usize) -> Self {
         Self {
             state: ContactState::default(),
+            composite: CompositeState::default(),
             number: None,
             max_points: max_points.max(1),
-            manifold: ContactManifold::default(),
+            manifolds: Vec::new(),
         }
     }
 }
@@ -61,25 +64,30 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         ids: &mut IdAllocator,
     ) -> bool {
         let (pose1, pose2) = (N::pose(ma), N::pose(mb));
-        let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b };
+        let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b, is_self: false };
         let angle = prediction.angular1() + prediction.angular2();
         let request = ManifoldRequest::new(prediction.linear(), angle, self.max_points);
         let number = *self.number.get_or_insert_with(|| ids.allocate());
         let tables = N::tables();
-        (tables.update_contacts)(&mut self.state, &posed, &request);
-        let old = core::mem::take(&mut self.manifold);
-        self.manifold = (tables.public_manifold)(&self.state, &posed, number, old);
+        let mut old = core::mem::take(&mut self.manifolds);
+        if posed.has_composite() {
+            (tables.update_composites)(&mut self.composite, &posed, &request);
+            self.manifolds = (tables.composite_manifolds)(&self.composite, &posed, number, old);
+        } else {
+            (tables.update_contacts)(&mut self.state, &posed, &request);
+            let old = old.pop().unwrap_or_default();
+            let manifold = (tables.public_manifold)(&self.state, &posed, number, old);
+            self.manifolds.extend(Some(manifold).filter(|manifold| !manifold.is_empty()));
+        }
         true
     }
 
     fn num_contacts(&self) -> usize {
-        self.manifold.len()
+        self.manifolds.iter().map(ContactManifold::len).sum()
     }
 
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N, D>>) {
-        if !self.manifold.is_empty() {
-            out.push(&self.manifold);
-        }
+        out.extend(&self.manifolds);
     }
 }
 

@@ -6,8 +6,9 @@ use super::entry::{
     Status, Touch,
 };
 use super::group::Group;
+use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
-use crate::query::Proximity;
+use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
 /// How many pairs of kinds there are; one built-in lane each for contacts and for proximity.
@@ -18,6 +19,8 @@ const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 pub(crate) enum Lane {
     /// The library's contacts, for this pair of kinds.
     Contacts(u8),
+    /// The library's contacts of composites.
+    Composites,
     /// The library's proximity, for this pair of kinds.
     Proximity(u8),
     CustomContacts,
@@ -76,10 +79,19 @@ impl Carried {
     }
 }
 
+/// The contacts of pairs of convex solids.
+pub(crate) type ContactGroup<N, const D: usize> =
+    Group<ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+
+/// The contacts of pairs with composites.
+pub(crate) type CompositeGroup<N, const D: usize> =
+    Group<ContactEntry<N, CompositeState<N, D>>, ContactView<Vec<ContactManifold<N, D>>>>;
+
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
 pub(crate) struct Lanes<N: Space<D>, const D: usize> {
-    pub(crate) contacts: Vec<Group<ContactEntry<N, D>, ContactView<N, D>>>,
+    pub(crate) contacts: Vec<ContactGroup<N, D>>,
+    pub(crate) composites: CompositeGroup<N, D>,
     pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
     pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
@@ -89,6 +101,7 @@ impl<N: Space<D>, const D: usize> Default for Lanes<N, D> {
     fn default() -> Self {
         Self {
             contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
+            composites: Group::default(),
             proximity: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
             custom_contacts: Group::default(),
             custom_proximity: Group::default(),
@@ -107,6 +120,17 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
     u8::try_from(number).expect("there are fewer than 16 kinds")
 }
 
+/// The library's lane for the contacts of two shapes.
+pub(crate) fn contact_lane<N: Real, const D: usize>(
+    shape1: &dyn Shape<N, D>,
+    shape2: &dyn Shape<N, D>,
+) -> Lane {
+    if has_composite(shape1, shape2) {
+        return Lane::Composites;
+    }
+    Lane::Contacts(kind_pair(shape1, shape2))
+}
+
 impl<N: Space<D>, const D: usize> Lanes<N, D> {
     /// Takes a pair's state out; also answers which pair now has its place.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<(u32, u32)>) {
@@ -114,6 +138,10 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
         match location.lane {
             Lane::Contacts(lane) => {
                 let (entry, moved) = self.contacts[usize::from(lane)].swap_remove(place);
+                (Carried::Contacts(entry.touch), moved)
+            }
+            Lane::Composites => {
+                let (entry, moved) = self.composites.swap_remove(place);
                 (Carried::Contacts(entry.touch), moved)
             }
             Lane::Proximity(lane) => {
@@ -137,6 +165,7 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
         let place = location.place;
         match location.lane {
             Lane::Contacts(lane) => self.contacts[usize::from(lane)].state_mut(place).due = true,
+            Lane::Composites => self.composites.state_mut(place).due = true,
             Lane::Proximity(lane) => self.proximity[usize::from(lane)].state_mut(place).due = true,
             Lane::CustomContacts => self.custom_contacts.state_mut(place).due = true,
             Lane::CustomProximity => self.custom_proximity.state_mut(place).due = true,

@@ -30,7 +30,7 @@ pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;
 pub use query_type::GeometricQueryType;
 pub(crate) use query_type::PairQuery;
-pub(crate) use state::{ContactState, Posed, proximity_of};
+pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,

@@ -1,9 +1,10 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
 use crate::math::{Pose, Real, Space};
+use crate::query::composite::Between;
 use crate::query::{
-    ContactManifold, ManifoldRequest, Pair, Placed, Placement, Proximity, RawManifold, canonical,
-    materialise,
+    CompositeContacts, ContactManifold, ManifoldRequest, Pair, Placed, Placement, Proximity,
+    RawManifold, canonical, materialise, own_distance,
 };
 use crate::shape::{Geometry, Shape};
 
@@ -14,6 +15,8 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) shape1: &'a dyn Shape<N, D>,
     pub(crate) pose2: &'a Pose<N, D>,
     pub(crate) shape2: &'a dyn Shape<N, D>,
+    /// Both are one object, which is tested against itself.
+    pub(crate) is_self: bool,
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
@@ -21,9 +24,56 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
     }
+
+    /// The two solids, each for itself.
+    fn placed(&self) -> [Placed<'a, N, D>; 2] {
+        [(self.pose1, self.shape1), (self.pose2, self.shape2)]
+            .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
+    }
+
+    /// Where the pair in canonical order stands.
+    fn placement(&self, pair: u64, is_swapped: bool) -> Placement<'a, N, D> {
+        let pose1 = if is_swapped { self.pose2 } else { self.pose1 };
+        Placement { pose1, pair, is_swapped }
+    }
+
+    /// A composite is among them.
+    pub(crate) fn has_composite(&self) -> bool {
+        has_composite(self.shape1, self.shape2)
+    }
 }
 
-/// The contacts of a pair, in the frame of the solid that comes first in canonical order.
+/// One of two shapes at least is a composite.
+pub(crate) fn has_composite<N: Real, const D: usize>(
+    shape1: &dyn Shape<N, D>,
+    shape2: &dyn Shape<N, D>,
+) -> bool {
+    let is_composite = |shape: &dyn Shape<N, D>| shape.geometry().as_composite().is_some();
+    is_composite(shape1) || is_composite(shape2)
+}
+
+/// The contacts of a pair, kept from update to update.
+pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
+    /// As users see them.
+    type Manifolds: Default;
+
+    /// How many contact points there are.
+    fn len(&self) -> usize;
+
+    /// Computes the contacts for new poses; points whose features stay keep their numbers.
+    fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
+
+    /// The contacts as users see them; `posed` is that of the last update and `pair_number` names
+    /// the pair; `old` gives its memory.
+    fn manifolds(
+        &self,
+        posed: &Posed<'_, N, D>,
+        pair_number: u64,
+        old: Self::Manifolds,
+    ) -> Self::Manifolds;
+}
+
+/// The contacts of two convex solids, in the frame of the solid that comes first in canonical order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     raw: RawManifold<N, D>,
@@ -31,16 +81,14 @@ pub(crate) struct ContactState<N: Real, const D: usize> {
     swapped: bool,
 }
 
-impl<N: Real, const D: usize> ContactState<N, D> {
-    /// How many contact points there are.
-    pub(crate) fn len(&self) -> usize {
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
+    type Manifolds = ContactManifold<N, D>;
+
+    fn len(&self) -> usize {
         self.raw.points.len()
     }
-}
 
-impl<N: Space<D>, const D: usize> ContactState<N, D> {
-    /// Computes the contacts for new poses; points whose features stay keep their numbers.
-    pub(crate) fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
+    fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
         if swapped != self.swapped {
             self.raw.flip_names();
@@ -49,9 +97,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         (N::tables().contacts)(&pair, request, &mut self.raw);
     }
 
-    /// The manifold as users see it; `posed` is that of the last update and `pair_number` names the
-    /// pair; `old` gives its memory.
-    pub(crate) fn manifold(
+    fn manifolds(
         &self,
         posed: &Posed<'_, N, D>,
         pair_number: u64,
@@ -61,9 +107,44 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
             return ContactManifold::default();
         }
         let (pair, is_swapped) = posed.canonical();
-        let pose1 = if is_swapped { posed.pose2 } else { posed.pose1 };
-        let placement = Placement { pose1, pair: pair_number, is_swapped };
-        materialise(&pair, &self.raw, &placement, old)
+        materialise(&pair, &self.raw, &posed.placement(pair_number, is_swapped), old)
+    }
+}
+
+/// The contacts of a pair of which one solid at least is a composite, as [`ContactState`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompositeState<N: Real, const D: usize> {
+    contacts: CompositeContacts<N, D>,
+    swapped: bool,
+}
+
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
+    type Manifolds = Vec<ContactManifold<N, D>>;
+
+    fn len(&self) -> usize {
+        self.contacts.len()
+    }
+
+    fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
+        let (pair, swapped) = posed.canonical();
+        if swapped != self.swapped {
+            self.contacts.flip_names();
+            self.swapped = swapped;
+        }
+        let (first, second) =
+            if swapped { (posed.pose2, posed.pose1) } else { (posed.pose1, posed.pose2) };
+        let between = Between { pair, pose21: Pose::relative(second, first) };
+        self.contacts.update(&between, posed.is_self, request);
+    }
+
+    fn manifolds(
+        &self,
+        posed: &Posed<'_, N, D>,
+        pair_number: u64,
+        old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        let (pair, is_swapped) = posed.canonical();
+        self.contacts.manifolds(&pair, &posed.placement(pair_number, is_swapped), old)
     }
 }
 
@@ -74,16 +155,17 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
 ) -> Proximity {
     let (pair, _) = posed.canonical();
     let is_composite = |kind| Geometry(kind).as_composite().is_some();
-    let found = if is_composite(pair.first) || is_composite(pair.second) {
-        let [placed1, placed2] = [(posed.pose1, posed.shape1), (posed.pose2, posed.shape2)]
-            .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() });
-        (N::tables().touching_in_world)(&placed1, &placed2, margin)
+    let found = if posed.is_self {
+        own_distance(&pair, margin)
+    } else if is_composite(pair.first) || is_composite(pair.second) {
+        let [placed1, placed2] = posed.placed();
+        (N::tables().touching_in_world)(&placed1, &placed2, margin).map(|found| found.distance)
     } else {
-        (N::tables().separation)(&pair, margin)
+        (N::tables().separation)(&pair, margin).map(|found| found.distance)
     };
     match found {
         None => Proximity::Disjoint,
-        Some(separation) if separation.distance <= N::ZERO => Proximity::Intersecting,
+        Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,
     }
 }

@@ -62,6 +62,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 if needed { entry.update(view, &posed(table, key)) } else { None }
             });
         }
+        update_group(&mut self.lanes.composites, changes, |key, entry, view| {
+            let needed = needs_update(entry.due, table, key);
+            if needed { entry.update(view, &posed(table, key)) } else { None }
+        });
         for group in &mut self.lanes.proximity {
             update_group(group, changes, |key, entry, ()| {
                 let needed = needs_update(entry.due, table, key);
@@ -125,6 +129,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         match lane {
             Lane::Contacts(group) => {
                 let (entry, view) = self.lanes.contacts[usize::from(group)].parts_mut(place);
+                entry.update(view, &posed(table, key))
+            }
+            Lane::Composites => {
+                let (entry, view) = self.lanes.composites.parts_mut(place);
                 entry.update(view, &posed(table, key))
             }
             Lane::Proximity(group) => {

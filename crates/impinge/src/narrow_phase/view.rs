@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use super::entry::{ContactEntry, ContactView, posed};
-use super::group::Group;
-use super::lanes::{Lane, Location};
+use super::entry::posed;
+use super::lanes::{CompositeGroup, ContactGroup, Lane, Location};
+use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;
@@ -18,6 +18,7 @@ pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
 #[derive(Clone, Copy)]
 enum Contacts<'a, N: Space<D>, const D: usize> {
     BuiltIn(BuiltIn<'a, N, D>),
+    Composite(Composite<'a, N, D>),
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
 }
 
@@ -25,9 +26,17 @@ enum Contacts<'a, N: Space<D>, const D: usize> {
 #[derive(Clone, Copy)]
 struct BuiltIn<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
-    group: &'a Group<ContactEntry<N, D>, ContactView<N, D>>,
+    group: &'a ContactGroup<N, D>,
     place: u32,
     is_touching: bool,
+}
+
+/// Where the contacts of a pair with a composite are.
+#[derive(Clone, Copy)]
+struct Composite<'a, N: Space<D>, const D: usize> {
+    table: &'a ObjectTable<N, D>,
+    group: &'a CompositeGroup<N, D>,
+    place: u32,
 }
 
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
@@ -38,8 +47,21 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         }
         let (group, place) = (self.group, self.place);
         let posed = || posed(self.table, group.key(place));
-        let make = |old| group.state(place).manifold(&posed(), old);
-        Some(group.view(place).manifold(make))
+        let entry = group.state(place);
+        let make = |old| (N::tables().public_manifold)(&entry.state, &posed(), entry.number, old);
+        Some(group.view(place).manifolds(make))
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
+    /// The manifolds, all of which hold a contact.
+    fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
+        let (group, place) = (self.group, self.place);
+        let posed = || posed(self.table, group.key(place));
+        let entry = group.state(place);
+        let make =
+            |old| (N::tables().composite_manifolds)(&entry.state, &posed(), entry.number, old);
+        group.view(place).manifolds(make)
     }
 }
 
@@ -55,28 +77,28 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     pub fn num_contacts(&self) -> usize {
         match self.0 {
             Contacts::BuiltIn(pair) => pair.group.state(pair.place).state.len(),
+            Contacts::Composite(pair) => pair.group.state(pair.place).state.len(),
             Contacts::Custom(algorithm) => algorithm.num_contacts(),
         }
     }
 
     /// The manifolds that hold a contact.
     pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
-        let mut others = Vec::new();
-        let own = match self.0 {
-            // The common case allocates nothing.
-            Contacts::BuiltIn(pair) => pair.manifold(),
-            Contacts::Custom(algorithm) => {
-                algorithm.contacts(&mut others);
-                None
-            }
-        };
-        own.into_iter().chain(others)
+        let (mut own, mut parts, mut others) = (None, &[][..], Vec::new());
+        match self.0 {
+            // The common cases allocate nothing.
+            Contacts::BuiltIn(pair) => own = pair.manifold(),
+            Contacts::Composite(pair) => parts = pair.manifolds(),
+            Contacts::Custom(algorithm) => algorithm.contacts(&mut others),
+        }
+        own.into_iter().chain(parts).chain(others)
     }
 
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
             Contacts::BuiltIn(pair) => out.extend(pair.manifold()),
+            Contacts::Composite(pair) => out.extend(pair.manifolds()),
             Contacts::Custom(algorithm) => algorithm.contacts(out),
         }
     }
@@ -112,7 +134,7 @@ fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let (mut order, mut partners) = (Vec::new(), Vec::new());
     for object in 0..objects {
         for (partner, place) in pairs.partners(object) {
-            if partner > object && is_wanted(place) {
+            if partner >= object && is_wanted(place) {
                 partners.push((partner, place));
             }
         }
@@ -186,6 +208,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let pair = BuiltIn { table, group, place, is_touching };
                 Some(ContactPair(Contacts::BuiltIn(pair)))
             }
+            Lane::Composites => {
+                let (group, place) = (&self.lanes.composites, location.place);
+                Some(ContactPair(Contacts::Composite(Composite { table, group, place })))
+            }
             Lane::CustomContacts => {
                 let entry = self.lanes.custom_contacts.state(location.place);
                 Some(ContactPair(Contacts::Custom(&*entry.algorithm)))
@@ -231,6 +257,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let place = location.place;
             let found = match location.lane {
                 Lane::Contacts(group) => self.lanes.contacts[usize::from(group)].key(place),
+                Lane::Composites => self.lanes.composites.key(place),
                 Lane::Proximity(group) => self.lanes.proximity[usize::from(group)].key(place),
                 Lane::CustomContacts => self.lanes.custom_contacts.key(place),
                 Lane::CustomProximity => self.lanes.custom_proximity.key(place),
@@ -243,6 +270,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 Lane::Contacts(group) => {
                     self.lanes.contacts[usize::from(group)].state(place).touch.touching
                 }
+                Lane::Composites => self.lanes.composites.state(place).touch.touching,
                 Lane::CustomContacts => self.lanes.custom_contacts.state(place).touch.touching,
                 _ => false,
             };

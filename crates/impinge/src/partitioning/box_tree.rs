@@ -3,9 +3,9 @@
 use super::{BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Point, Real, Space, Vector, max};
 
-/// A tree over boxes that do not move, known by their indices.
+/// A tree over boxes that stay where they are, or move all at once; known by their indices.
 ///
 /// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
 /// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
@@ -226,7 +226,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     ///
     /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
     /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
-    /// finite is near nothing. Distances whose squares leave the range of `N` count as infinite or zero.
+    /// finite is near nothing. Distances whose squares are too small for `N` count as zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,
@@ -400,6 +400,19 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.boxes.copy_from_slice(boxes);
         self.bounds = around(boxes);
         Ok(())
+    }
+
+    /// How far the things in the boxes reach along a direction: not less, and more by at most a few
+    /// rounding units of `f32` of their coordinates. `reach_of` tells it of one of them, which lies in
+    /// its box. Minus infinity if there are none. It asks O(log n) of them where they bulge, more
+    /// where many reach almost equally far.
+    pub(crate) fn reach_along(
+        &self,
+        direction: Vector<N, D>,
+        mut reach_of: impl FnMut(u32) -> N,
+    ) -> N {
+        let reach = self.tree.reach_along(direction, &mut reach_of);
+        self.unbounded.iter().fold(reach, |reach, &id| max(reach_of(id), reach))
     }
 
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {

@@ -1,6 +1,7 @@
 //! What the functions of this module return.
 
 use crate::math::{Point, Real, Vector};
+use crate::shape::{MeshError, Polyline, TriMesh};
 
 /// A closed line through points of the plane, counter-clockwise; the last leads back to the first.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,5 +44,43 @@ impl<N: Real> TriangleSurface<N> {
             self.triangles.push([ring[0], side[0], side[1]]);
             self.normals.push([normal; 3]);
         }
+    }
+}
+
+/// The closed surface as a shape. Its vertices, triangles and their numbers stay.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::procedural;
+/// use impinge::dim3::shape::{Cuboid, TriMesh};
+///
+/// let surface = procedural::cuboid(&Cuboid::new(Vector::new(1.0_f32, 2.0, 3.0)));
+/// let mesh = TriMesh::try_from(surface).expect("a good surface").one_sided();
+/// assert!(mesh.is_closed() && mesh.is_oriented());
+/// assert_eq!(mesh.normal(0), Some([1.0, 0.0, 0.0].into()));
+/// ```
+impl<N: Real> TryFrom<TriangleSurface<N>> for TriMesh<N, 3> {
+    type Error = MeshError;
+
+    fn try_from(surface: TriangleSurface<N>) -> Result<Self, MeshError> {
+        Self::try_new(surface.vertices, surface.triangles)
+    }
+}
+
+/// The closed line as a shape: segment `i` starts at point `i`.
+///
+/// ```
+/// use impinge::dim2::procedural;
+/// use impinge::dim2::shape::{Ball, Polyline};
+///
+/// let ring = Polyline::try_from(procedural::ball(&Ball::new(2.0_f64), 24)).expect("a good line");
+/// assert!(ring.is_closed());
+/// assert_eq!(ring.num_segments(), 24);
+/// ```
+impl<N: Real> TryFrom<Outline<N>> for Polyline<N, 2> {
+    type Error = MeshError;
+
+    fn try_from(outline: Outline<N>) -> Result<Self, MeshError> {
+        Self::try_closed(outline.points)
     }
 }

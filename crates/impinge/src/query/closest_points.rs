@@ -31,7 +31,8 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
 ///
 /// Where several pairs of points are equally near, one is chosen, the same for every order of the
 /// arguments. A distance equal to `max_distance` counts as within; a negative or NaN
-/// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite.
+/// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. Of composites the
+/// points lie on the nearest parts, which [`witness`](super::witness()) names.
 pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -54,7 +54,7 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     prediction: N,
 ) -> Option<Contact<N, D>> {
     let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
-    let found = (N::tables().separation_in_world)(&placed1, &placed2, prediction)?;
+    let found = (N::tables().contact_in_world)(&placed1, &placed2, prediction)?;
     found.distance.is_finite_number().then(|| Contact {
         world1: found.point1,
         world2: found.point2,

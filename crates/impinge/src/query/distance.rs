@@ -7,7 +7,10 @@ use crate::shape::Shape;
 /// The distance between two solids: zero if they touch or overlap.
 ///
 /// The smallest length of a translation that makes them touch. Swapping the solids gives the same
-/// bits. Infinite if a pose is not finite.
+/// bits. Infinite if a pose is not finite, and for a composite without parts.
+///
+/// That of composites is the distance of their nearest parts: [`witness`](super::witness()) names them,
+/// and says what it costs.
 ///
 /// ```
 /// use impinge::math::{Isometry2, Vector};

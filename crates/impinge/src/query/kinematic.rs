@@ -134,6 +134,34 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
+    /// The same, if the normal is that of a face of the first solid or the second, though the solid
+    /// alone does not say so: where the geometry does not give the normal, it turns with that solid.
+    pub(super) fn turning_with(self, is_second: bool) -> Self {
+        let own = if is_second { NormalRule::Second } else { NormalRule::First };
+        let rule = if self.rule == NormalRule::Geometry { NormalRule::Geometry } else { own };
+        Self { rule, ..self }
+    }
+
+    /// The same, told in other frames than those of the solids: `pose1` and `pose2` are the poses of
+    /// the solids in these.
+    pub(super) fn seen_from(&self, pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Self {
+        Self {
+            local1: pose1.point(&self.local1),
+            local2: pose2.point(&self.local2),
+            geometry1: self.geometry1.moved(pose1),
+            geometry2: self.geometry2.moved(pose2),
+            normal1: pose1.vector(&self.normal1),
+            normal2: pose2.vector(&self.normal2),
+            rule: match self.rule {
+                NormalRule::Edges(edge1, edge2) => {
+                    NormalRule::Edges(pose1.vector(&edge1), pose2.vector(&edge2))
+                }
+                rule => rule,
+            },
+            ..*self
+        }
+    }
+
     /// The contact in the frame of the first solid, for a pose of the second in it.
     pub(crate) fn predicted(&self, pose12: &Pose<N, D>) -> Separation<N, D> {
         let point2 = pose12.point(&self.local2);

@@ -36,11 +36,28 @@ pub struct TrackedContact<N: Real, const D: usize> {
     pub kinematic: ContactKinematic<N, D>,
     /// The name, kept while the contact lives.
     pub id: ContactId,
+    /// The part of the first shape that touches; 0 if the shape is not a composite.
+    pub part1: u32,
+    /// The part of the second shape that touches; 0 if the shape is not a composite.
+    pub part2: u32,
+}
+
+impl<N: Real, const D: usize> TrackedContact<N, D> {
+    /// The same contact with the solids swapped.
+    pub(super) fn flipped(&self) -> Self {
+        Self {
+            contact: self.contact.flipped(),
+            kinematic: self.kinematic.flipped(),
+            id: self.id,
+            part1: self.part2,
+            part2: self.part1,
+        }
+    }
 }
 
 /// Points that delimit a flat area of contact, with one common normal.
 ///
-/// A box that rests on a plane is one manifold of four points in space and two in the plane; a ball
+/// Two convex solids have one manifold, composites one for each flat patch that they touch in. A box that rests on a plane is one manifold of four points in space and two in the plane; a ball
 /// gives one point. The deepest pair of points of the two solids is always among them, so that
 /// [`Self::deepest_contact`] is the answer of the query for one contact. Empty means that the solids
 /// are farther apart than the prediction.
@@ -55,6 +72,12 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
     #[must_use]
     pub fn from_contacts(contacts: impl IntoIterator<Item = TrackedContact<N, D>>) -> Self {
         Self { contacts: contacts.into_iter().collect() }
+    }
+
+    /// Holds other contacts from now on, in the same memory.
+    pub(super) fn refill(&mut self, contacts: impl Iterator<Item = TrackedContact<N, D>>) {
+        self.contacts.clear();
+        self.contacts.extend(contacts);
     }
 
     /// How many contacts it holds.
@@ -112,14 +135,11 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     let mut sides = Sides::new(pair, &raw.normal);
     let normal = placement.pose1.vector(&raw.normal);
     let tracked = |point: &RawPoint<N, D>| {
-        let contact = placed(raw, point, placement.pose1, normal);
+        let contact = placed(&raw.normal, point, placement.pose1, normal);
         let kinematic = sides.kinematic(point);
         let id = ContactId { pair: placement.pair, number: point.id };
-        if placement.is_swapped {
-            let (contact, kinematic) = (contact.flipped(), kinematic.flipped());
-            return TrackedContact { contact, kinematic, id };
-        }
-        TrackedContact { contact, kinematic, id }
+        let tracked = TrackedContact { contact, kinematic, id, part1: 0, part2: 0 };
+        if placement.is_swapped { tracked.flipped() } else { tracked }
     };
     let mut contacts = old.contacts;
     contacts.clear();
@@ -127,16 +147,16 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     ContactManifold { contacts }
 }
 
-/// A point in the world; `normal` is the manifold's, in the world.
-fn placed<N: Real, const D: usize>(
-    raw: &RawManifold<N, D>,
+/// A point in the world; `own` is the manifold's normal, `normal` that in the world.
+pub(super) fn placed<N: Real, const D: usize>(
+    own: &Vector<N, D>,
     point: &RawPoint<N, D>,
     pose1: &Pose<N, D>,
     normal: Vector<N, D>,
 ) -> Contact<N, D> {
     Contact {
         world1: pose1.point(&point.point1),
-        world2: pose1.point(&(point.point1 + raw.normal * point.distance)),
+        world2: pose1.point(&(point.point1 + own * point.distance)),
         normal: Unit::new_unchecked(normal),
         depth: -point.distance,
     }

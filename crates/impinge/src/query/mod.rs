@@ -18,18 +18,24 @@ mod witness;
 
 pub use crate::bounding_volume::Ray;
 pub use closest_points::{ClosestPoints, closest_points};
+pub(crate) use composite::{CompositeContacts, contact_in_world, own_distance};
 pub use contact::{Contact, contact};
 pub use distance::distance;
-pub(crate) use impact::impact_of_pair;
-pub use impact::{Impact, ImpactOptions, ImpactStatus, Moving, impact, time_of_impact};
+pub use impact::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
+    nonlinear_time_of_impact, time_of_impact,
+};
+pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
-pub(crate) use manifold_build::{contacts2, contacts3, witness_features2, witness_features3};
+pub(crate) use manifold_build::{
+    contacts2, contacts3, tangents2, tangents3, witness_features2, witness_features3,
+};
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
-pub(crate) use raw_manifold::{ManifoldRequest, RawManifold, RawPoint};
+pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
 pub use ray::{RayCast, RayIntersection};
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};

@@ -20,7 +20,8 @@ pub enum Proximity {
 ///
 /// Touching counts as intersecting and a distance equal to `margin` as within it. A negative or NaN
 /// `margin` counts as zero. Half-spaces that overlap without bound intersect.
-/// [`Proximity::Disjoint`] if a pose is not finite.
+/// [`Proximity::Disjoint`] if a pose is not finite. Of composites the nearest parts count; the search for
+/// them ends at any two that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

@@ -2,13 +2,13 @@
 
 use super::error::{or_panic, size};
 use super::scale::Scale;
-use super::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
+use super::{Ellipsoid, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Vector};
 
 /// The points within `radius` of the local origin.
 ///
-/// Radius zero is a point. Its only feature is `Face(0)`.
+/// Radius zero is a point. Scaled by factors of different magnitudes it is an [`Ellipsoid`]. Its only feature is `Face(0)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball<N: Real> {
     radius: N,
@@ -73,7 +73,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ball<N> {
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
-        let radius = self.radius * Scale::try_new(scale)?.uniform()?;
-        Ok(ShapeHandle::new(Self::try_new(radius)?))
+        let scale = Scale::try_new(scale)?;
+        if let Ok(factor) = scale.uniform() {
+            return Ok(ShapeHandle::new(Self::try_new(self.radius * factor)?));
+        }
+        Ok(ShapeHandle::new(Ellipsoid::try_new(scale.magnitudes() * self.radius)?))
     }
 }

@@ -50,6 +50,7 @@ pub struct Compound<N: Space<D>, const D: usize> {
     pub(super) firsts: Vec<u32>,
     /// Over the boxes of the children.
     pub(super) tree: BoxTree<N, D>,
+    sphere: BoundingSphere<N, D>,
     /// A child has a surface that knows its seams.
     has_surface: bool,
 }
@@ -84,7 +85,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let boxes = children.iter().zip(&poses).map(|((_, shape), pose)| boxed(&**shape, pose));
         let tree = BoxTree::from_boxes(&boxes.collect::<Vec<_>>());
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
-        Ok(Self { children, poses, firsts, tree, has_surface })
+        let around = tree.bounds().copied().unwrap_or_else(Aabb::unbounded);
+        let sphere = sphere_around(&around, &children, &poses);
+        Ok(Self { children, poses, firsts, tree, sphere, has_surface })
     }
 
     /// The shapes and their positions in the frame of the compound.
@@ -201,6 +204,26 @@ fn boxed<N: Space<D>, const D: usize>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>
     Aabb::try_new(*aabb.mins(), *aabb.maxs()).unwrap_or_else(|_| Aabb::unbounded())
 }
 
+/// The sphere around the middle of a box that holds the spheres of the children; no larger than the box
+/// asks for.
+fn sphere_around<N: Space<D>, const D: usize>(
+    aabb: &Aabb<N, D>,
+    children: &[(N::Isometry, ShapeHandle<N, D>)],
+    poses: &[Pose<N, D>],
+) -> BoundingSphere<N, D> {
+    if !aabb.is_bounded() {
+        return BoundingSphere::unbounded();
+    }
+    let center = aabb.center();
+    let reach = children.iter().zip(poses).map(|((_, shape), pose)| {
+        let sphere = shape.local_bounding_sphere().transformed_by(pose);
+        length_of(&(sphere.center() - center)) + sphere.radius()
+    });
+    let radius = min(reach.fold(N::ZERO, max), length_of(&aabb.half_extents()));
+    let rounding = N::ONE + N::lit(8.0) * N::EPSILON;
+    BoundingSphere::try_new(center, radius * rounding).unwrap_or(BoundingSphere::unbounded())
+}
+
 fn surface_of<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<&dyn Surface<N, D>> {
@@ -277,29 +300,23 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// Of many children the box is that of the box of all, turned.
+    /// Of many children the box is that of the box of all, turned, and so is that of a composite child.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);
         }
         let placed = self.children.iter().zip(&self.poses);
-        let boxes = placed.map(|((_, shape), own)| boxed(&**shape, &pose.compose(own)));
+        let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
+            // One level down is enough: compounds may be nested, and share what they are made of.
+            Some(_) => shape.local_aabb().transformed_by(&pose.compose(own)),
+            None => boxed(&**shape, &pose.compose(own)),
+        });
         boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded)
     }
 
     /// Around the middle of the box; no larger than the box asks for.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        let aabb = self.local_aabb();
-        let center = aabb.center();
-        let placed = self.children.iter().zip(&self.poses);
-        let reach = placed.map(|((_, shape), pose)| {
-            let sphere = shape.local_bounding_sphere().transformed_by(pose);
-            length_of(&(sphere.center() - center)) + sphere.radius()
-        });
-        let radius = reach.fold(N::ZERO, max) * (N::ONE + N::lit(8.0) * N::EPSILON);
-        let of_box = length_of(&aabb.half_extents());
-        let radius = if aabb.is_bounded() { min(radius, of_box) } else { N::INFINITY };
-        BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
+        self.sphere
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -1,10 +1,14 @@
 //! The search of a compound: first among the boxes of its children, then within each composite.
 
-use super::{CompositeShape, Compound, PartSearch};
+use super::{CompositeShape, Compound, PartSearch, Shape};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Pose, Real, Space, Vector, max, min};
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
         self.tree.visit_overlapping(aabb, |child| {
             let first = self.firsts[child];
@@ -84,7 +88,8 @@ fn within<N: Real, const D: usize>(
 ) -> Aabb<N, D> {
     let corners = [aabb.mins(), aabb.maxs(), own.mins(), own.maxs()];
     let ends = corners.iter().flat_map(|corner| corner.iter()).chain(pose.translation.iter());
-    let finite = ends.map(|x| x.abs()).filter(|x| x.is_finite_number());
-    let slack = N::lit(32.0) * N::EPSILON * finite.fold(N::ZERO, max);
+    let finite = ends.filter(|x| x.is_finite_number());
+    let largest = finite.fold(N::ZERO, |largest, x| max(largest, x.abs()));
+    let slack = N::lit(32.0) * N::EPSILON * largest;
     aabb.transformed_by(&pose.inverse()).loosened(slack)
 }

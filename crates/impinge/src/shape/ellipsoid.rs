@@ -1,8 +1,11 @@
 //! Ellipsoids, and ellipses in the plane.
 
 use super::error::{finite, or_panic, size};
+use super::scale::Scale;
 use super::segment::length_of;
-use super::{CurvedSupport, Geometry, Kind, Shape, ShapeError, SupportMap};
+use super::{
+    CurvedSupport, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit};
 
@@ -102,5 +105,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         BoundingSphere::new(Point::origin(), self.reach())
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let half_axes = self.half_axes.component_mul(&Scale::try_new(scale)?.magnitudes());
+        Ok(ShapeHandle::new(Self::try_new(half_axes)?))
     }
 }

@@ -25,16 +25,16 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     ///
     /// ```
     /// use impinge::dim2::na::{Vector2, Point2};
-    /// use impinge::dim2::shape::{Ball, Cuboid, ScaleError, Segment, ShapeHandle};
+    /// use impinge::dim2::shape::{Capsule, ScaleError, Segment, ShapeHandle};
     ///
     /// let (mirror, wide) = (Vector2::new(-1.0_f32, 1.0), Vector2::new(2.0, 1.0));
     /// let segment = ShapeHandle::new(Segment::new(Point2::origin(), Point2::new(3.0, 4.0)));
     /// let mirrored = segment.scaled(&mirror).expect("a segment takes every scale");
     /// assert_eq!(mirrored.local_aabb().mins(), &Point2::new(-3.0, 0.0));
     ///
-    /// let ball = ShapeHandle::new(Ball::new(1.0_f32));
-    /// assert!(ball.scaled(&mirror).is_ok());
-    /// assert!(matches!(ball.scaled(&wide), Err(ScaleError::NotSuch { .. })));
+    /// let capsule = ShapeHandle::new(Capsule::new(1.0_f32, 0.5));
+    /// assert!(capsule.scaled(&mirror).is_ok());
+    /// assert!(matches!(capsule.scaled(&wide), Err(ScaleError::NotSuch { .. })));
     /// ```
     ///
     /// # Errors

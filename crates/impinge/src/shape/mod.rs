@@ -42,6 +42,8 @@ mod seam;
 mod segment;
 mod support_map;
 mod tapered_capsule;
+mod tetrahedron;
+mod tetrahedron_flat;
 mod tilt;
 mod tri_mesh;
 mod triangle;
@@ -64,6 +66,7 @@ pub use feature::{Feature, FeatureId};
 pub(crate) use geometry::Kind;
 pub use geometry::{Geometry, ShapeKind};
 pub use handle::ShapeHandle;
+pub(crate) use height_field::FieldTable;
 pub use height_field::{Diagonal, Diagonals, HeightField};
 pub use mesh_error::MeshError;
 pub use plane::Plane;
@@ -74,7 +77,9 @@ pub(crate) use rounded::RoundedSolid;
 pub use scale::ScaleError;
 pub use segment::Segment;
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
+pub(crate) use tapered_capsule::Taper;
 pub use tapered_capsule::TaperedCapsule;
+pub use tetrahedron::Tetrahedron;
 pub(crate) use tilt::FACING_SINE_SQUARED;
 pub(crate) use tri_mesh::MeshTable;
 pub use tri_mesh::{Neighbor, TriMesh};
@@ -105,9 +110,10 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 
     /// The solid scaled along the axes of its frame, about its origin; factors may be negative.
     ///
-    /// The answer is exact up to rounding, and of the same type but for what its type says: a shape
-    /// never becomes an approximation of itself. What is round across an axis stays round: it needs
-    /// factors of one magnitude there; a cone cannot be turned over, a compound sheared.
+    /// The answer is exact up to rounding and of the same type, but that a ball may become an
+    /// [`Ellipsoid`]: no shape becomes an approximation of itself. Other round shapes need factors of
+    /// one magnitude, cylinders and cones across their axis; a cone cannot be turned over, a compound
+    /// not sheared.
     /// Polygons number their vertices the other way round if mirrored; other parts and features keep
     /// their numbers.
     ///

@@ -1,7 +1,7 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
-use super::seam::{Seam, is_flat, slack};
-use super::tri_mesh::sphere_around;
+use super::seam::{Seam, slack};
+use super::tri_mesh::{aabb_at, sphere_around};
 use super::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
     Shape, ShapeHandle, Surface,
@@ -85,13 +85,13 @@ impl<N: Real, const D: usize> Polyline<N, D> {
     /// No segment that leaves the joint rises along the normal, and they are not straight.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
-        let mut seam = Seam::new();
+        let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
         for &segment in self.joints.parts(joint) {
             let Some(along) = self.along(segment) else { continue };
             let starts_here = self.joints.of(self.segments[segment as usize][0]) == joint;
             let away = if starts_here { along } else { -along };
-            let rise = away.dot(normal);
-            seam.add(rise, self.height_over(segment, normal), is_flat(rise));
+            seam.add_segment(&away, self.height_over(segment, normal));
         }
         seam.admits(self.is_one_sided())
     }
@@ -107,9 +107,15 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
+    /// The smallest, up to rounding. O(log n) for a line that bulges, up to O(n) for one whose parts
+    /// reach almost equally far.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, &self.segments, &self.vertices, &self.tree)
+    }
+
     /// The sphere around the middle of the box, through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        sphere_around(&self.local_aabb(), self.segments.iter().flatten(), &self.vertices)
+        sphere_around(&self.local_aabb(), self.segments.as_flattened().iter(), &self.vertices)
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -92,6 +92,30 @@ impl<N: Real> Polytope<N, 3> {
         Some(hull)
     }
 
+    /// Numbers the edges anew, and turns them round, so that edge `i` joins the given ends.
+    ///
+    /// There are as many as there are edges, and each is one of them.
+    pub(super) fn name_edges(&mut self, ends: &[[u32; 2]]) {
+        let place = |edge: &PolytopeEdge| {
+            let [a, b] = edge.vertices;
+            let found = ends.iter().position(|&ends| ends == [a, b] || ends == [b, a]);
+            found.expect("each edge is one of those given")
+        };
+        let places: Vec<usize> = self.edges.iter().map(place).collect();
+        for side in &mut self.loop_sides {
+            *side = count32(places[*side as usize]);
+        }
+        let mut edges = self.edges.clone();
+        for (edge, &place) in self.edges.iter().zip(&places) {
+            let faces = edge.faces;
+            let is_turned = edge.vertices != ends[place];
+            let faces = if is_turned { [faces[1], faces[0]] } else { faces };
+            edges[place] = PolytopeEdge { vertices: ends[place], faces };
+        }
+        self.edges = edges;
+        self.collect_fans();
+    }
+
     /// Finds the edges: numbered by the place in the loops where they are seen first.
     fn connect(&mut self) -> Option<()> {
         let sides = self.directed_sides();

@@ -9,7 +9,7 @@
 //! normals are ghosts of the pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman, "Contact
 //! generation for meshes" (2015); and the active edges of Jolt and Box3D.
 
-use crate::math::Real;
+use crate::math::{Real, Vector, unit};
 
 /// The sine of the angle up to which faces count as one flat: 0.57 degrees.
 const FLAT_SINE: f64 = 0.01;
@@ -24,19 +24,31 @@ pub(super) fn is_flat<N: Real>(sine: N) -> bool {
     sine.abs() <= N::lit(FLAT_SINE)
 }
 
-/// The normal of a face and the unit vector that the rule is asked about enclose an angle that
-/// counts as none, on either side; given their scalar product.
-pub(super) fn is_level<N: Real>(cosine: N) -> bool {
+/// The angle between two lines, whichever way each points, counts as none; given the scalar product
+/// of unit vectors along them.
+fn is_level<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
+}
+
+/// A unit vector is perpendicular to an edge. Not to the last digit: what it is asked of may have
+/// been found by iteration, and an edge has no other normals to take instead.
+pub(super) fn is_across<N: Real, const D: usize>(
+    edge: &Vector<N, D>,
+    normal: &Vector<N, D>,
+) -> bool {
+    unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
 /// What is known of a normal at a seam while its pieces are gone through.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seam<N: Real> {
+pub(super) struct Seam<N: Real, const D: usize> {
+    normal: Vector<N, D>,
+    /// The normal of the face, or the direction of the segment, that is asked; zero if it has none.
+    own: Vector<N, D>,
+    /// The normal and the pieces, that which is asked and all others, lie flat.
+    is_flat: bool,
     /// No direction into a piece rises along the normal.
     is_in_cone: bool,
-    /// The normal is, within the tolerance, that of each piece.
-    is_level: bool,
     pieces: u32,
     /// How much the highest piece rises, how flat it lies, and whether its front is up. The highest
     /// piece at the seam is the one that a point far along the normal sees; of two in one edge, the
@@ -46,11 +58,23 @@ pub(super) struct Seam<N: Real> {
     is_front: bool,
 }
 
-impl<N: Real> Seam<N> {
-    pub(super) fn new() -> Self {
+impl<N: Real, const D: usize> Seam<N, D> {
+    /// A seam between faces, asked by the one with the normal `own`.
+    pub(super) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
+        Self::new(own, normal, is_level(own.dot(normal)))
+    }
+
+    /// A seam between segments, asked by the one with the direction `own`.
+    pub(super) fn of_segments(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
+        Self::new(own, normal, is_flat(own.dot(normal)))
+    }
+
+    fn new(own: Vector<N, D>, normal: &Vector<N, D>, is_flat: bool) -> Self {
         Self {
+            normal: *normal,
+            own,
+            is_flat,
             is_in_cone: true,
-            is_level: true,
             pieces: 0,
             highest: -N::INFINITY,
             flatness: -N::ONE,
@@ -58,16 +82,26 @@ impl<N: Real> Seam<N> {
         }
     }
 
-    /// A direction into a piece rises so much along the normal.
-    pub(super) fn add_rise(&mut self, rise: N) {
-        self.is_in_cone &= rise <= slack();
+    /// A face whose steepest direction from the seam rises so much along the normal, and its normal
+    /// on the front; zero if it has no area.
+    pub(super) fn add_face(&mut self, rise: N, front: &Vector<N, D>) {
+        if *front == Vector::<N, D>::zeros() {
+            self.is_in_cone &= rise <= slack();
+        } else {
+            self.add(rise, front, front.dot(&self.normal));
+        }
     }
 
-    /// A piece whose steepest direction rises so much along the normal, and the scalar product of
-    /// its front normal with it; `is_level` if that counts as its own normal, on either side.
-    pub(super) fn add(&mut self, rise: N, front: N, is_level: bool) {
-        self.add_rise(rise);
-        self.is_level &= is_level;
+    /// A segment by its direction away from the seam, and how much its front faces the normal; zero
+    /// if it has no front.
+    pub(super) fn add_segment(&mut self, away: &Vector<N, D>, front: N) {
+        self.add(away.dot(&self.normal), away, front);
+    }
+
+    /// `line` is compared with what is asked to tell whether the two lie flat.
+    fn add(&mut self, rise: N, line: &Vector<N, D>, front: N) {
+        self.is_in_cone &= rise <= slack();
+        self.is_flat &= is_level(line.dot(&self.own));
         self.pieces += 1;
         if rise > self.highest || (rise == self.highest && front.abs() > self.flatness) {
             (self.highest, self.flatness) = (rise, front.abs());
@@ -78,7 +112,7 @@ impl<N: Real> Seam<N> {
     /// The normal is one that the whole has at the seam and that is not better given by a face:
     /// between pieces that lie flat, only the faces' own normals count.
     pub(super) const fn admits(&self, is_one_sided: bool) -> bool {
-        let is_flat = self.is_level && self.pieces > 1;
+        let is_flat = self.is_flat && self.pieces > 1;
         self.is_in_cone && !is_flat && (self.is_front || !is_one_sided)
     }
 }

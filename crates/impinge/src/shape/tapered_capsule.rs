@@ -1,10 +1,12 @@
 //! Tapered capsules: the hulls of two balls.
 
 use super::error::{or_panic, size};
+use super::scale::Scale;
 use super::segment::{box_of, length_of};
 use super::tilt::Tilt;
 use super::{
-    CurvedSupport, Feature, FeatureId, Geometry, Kind, Segment, Shape, ShapeError, SupportMap,
+    CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError,
+    ShapeHandle, SupportMap,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
@@ -220,5 +222,12 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
             (Ok(ball1), Ok(ball2)) => ball1.merged(&ball2),
             _ => BoundingSphere::unbounded(),
         }
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let factors = Scale::try_new(scale)?;
+        let factor = factors.uniform()?;
+        let [a, b] = [0, 1].map(|end| factors.point(self.end(end)));
+        Ok(ShapeHandle::new(Self::try_from_ends(a, b, self.radii.map(|radius| radius * factor))?))
     }
 }

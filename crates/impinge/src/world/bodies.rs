@@ -25,6 +25,8 @@ pub(crate) struct Body<N: Space<D>, const D: usize> {
     pub(crate) query: GeometricQueryType<N>,
     pub(crate) groups: CollisionGroups,
     pub(crate) alive: bool,
+    /// The narrow phase has been told to test the object against itself.
+    pub(crate) has_self_pair: bool,
     changes: Changes,
 }
 
@@ -49,6 +51,8 @@ pub(crate) struct Bodies<N: Space<D>, const D: usize> {
     bodies: Vec<Body<N, D>>,
     /// The indices of what changed since the last update, each once.
     changed: Vec<u32>,
+    /// Of the last flush: the indices of those whose pairs with themselves begin or end.
+    self_changed: Vec<u32>,
 }
 
 impl<N: Space<D>, const D: usize> Body<N, D> {
@@ -62,7 +66,8 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         let proxy = proxy(volume(&aabb, row.query));
         let ObjectRow { handle, isometry, shape, query } = row;
         let changes = Changes::default();
-        Self { handle, proxy, isometry, aabb, shape, query, groups, alive: true, changes }
+        let (alive, has_self_pair) = (true, false);
+        Self { handle, proxy, isometry, aabb, shape, query, groups, alive, has_self_pair, changes }
     }
 
     /// The volume for the broad phase.
@@ -73,6 +78,14 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
     /// Queries must test the object itself: the broad phase does not know where it is now.
     pub(crate) fn is_astray(&self) -> bool {
         self.changes.volume
+    }
+
+    /// The object shall be tested against itself: its groups ask for it, and it has parts that could
+    /// touch each other.
+    pub(crate) fn wants_self_pair(&self) -> bool {
+        self.alive
+            && self.groups.can_interact_with_self()
+            && self.shape.geometry().as_composite().is_some()
     }
 
     fn row(&self) -> ObjectRow<N, D> {
@@ -112,7 +125,7 @@ pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aab
 
 impl<N: Space<D>, const D: usize> Bodies<N, D> {
     pub(crate) const fn new() -> Self {
-        Self { bodies: Vec::new(), changed: Vec::new() }
+        Self { bodies: Vec::new(), changed: Vec::new(), self_changed: Vec::new() }
     }
 
     /// Puts an object at its index: one that is free, or the next one.
@@ -134,6 +147,7 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
     pub(crate) fn remove(&mut self, index: u32) {
         let body = &mut self.bodies[index as usize];
         body.alive = false;
+        body.has_self_pair = false;
         // An index must have a row before later ones can: the row is written if it never was.
         body.changes =
             Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
@@ -202,6 +216,19 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
         self.at(index1).groups.can_interact_with_groups(&self.at(index2).groups)
     }
 
+    /// The objects whose pairs with themselves begin or end, as of the last flush, and which of the
+    /// two; forgotten hereby.
+    pub(crate) fn take_self_changes(&mut self) -> Vec<(CollisionObjectHandle, bool)> {
+        let changed = core::mem::take(&mut self.self_changed);
+        let one = |index: u32| (self.at(index).handle, self.at(index).has_self_pair);
+        changed.into_iter().map(one).collect()
+    }
+
+    /// The objects that are tested against themselves.
+    pub(crate) fn with_self_pairs(&self) -> impl Iterator<Item = CollisionObjectHandle> {
+        self.iter().filter(|body| body.has_self_pair).map(|body| body.handle)
+    }
+
     fn note_row(&mut self, index: u32) {
         let changes = self.note(index);
         changes.row = true;
@@ -233,6 +260,10 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
         for index in self.changed.drain(..) {
             let body = &mut self.bodies[index as usize];
             let changes = core::mem::take(&mut body.changes);
+            if body.wants_self_pair() != body.has_self_pair {
+                body.has_self_pair = !body.has_self_pair;
+                self.self_changed.push(index);
+            }
             if changes.row {
                 table.set(body.row());
             } else if changes.volume {

@@ -151,6 +151,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             narrow_phase.handle_removal(queued, objects, first, second);
         });
         for &handle in handles {
+            if objects.bodies.at(handle.index()).has_self_pair {
+                narrow_phase.handle_removal(queued, objects, handle, handle);
+            }
+        }
+        for &handle in handles {
             self.objects.remove(handle);
         }
         Ok(())

@@ -30,6 +30,8 @@ pub enum WorldError {
         /// The number.
         value: f64,
     },
+    /// The shape of the object is of another type than the one to be deformed.
+    ShapeType(CollisionObjectHandle),
     /// The world holds as many objects as it can name.
     Full,
 }
@@ -53,6 +55,9 @@ impl fmt::Display for WorldError {
             }
             Self::Margin { value } => {
                 write!(f, "the margin is {value}: it must be finite and not negative")
+            }
+            Self::ShapeType(handle) => {
+                write!(f, "the shape of {handle:?} is not of the type to be deformed")
             }
             Self::Full => write!(f, "the world holds as many objects as it can name"),
         }

@@ -216,8 +216,10 @@ impl CollisionGroups {
         has(self.blacklist, group)
     }
 
-    /// Lets the narrow phase query the object against itself: meaningful for deformable and
-    /// composite shapes. Off by default.
+    /// Lets the narrow phase query the object against itself: contacts and events then name it
+    /// twice. Of a composite those parts are tested that do not hang together
+    /// ([`CompositeShape::are_adjacent`](crate::shape::CompositeShape::are_adjacent)); a convex solid
+    /// never touches itself. No filter is asked. Off by default.
     pub const fn enable_self_collision(&mut self) {
         self.self_collision = true;
     }

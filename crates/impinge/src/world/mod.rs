@@ -6,6 +6,7 @@
 
 mod bodies;
 mod collision_world;
+mod deform;
 mod error;
 mod filter;
 mod groups;

@@ -26,7 +26,8 @@ pub type ContactManifolds<'a, N, const D: usize> = Box<
 ///
 /// A world calls, in each update: [`Self::handle_change`] for each object with another shape or
 /// query type, [`Self::handle_interaction`] for each pair that started or stopped, then
-/// [`Self::update`]. In all calls `handle1 < handle2`, and [`CollisionObjects::table`] has the poses,
+/// [`Self::update`]. In all calls `handle1 < handle2`, except that both are the same for an object that
+/// is tested against itself, and [`CollisionObjects::table`] has the poses,
 /// shapes and query types that the call is about.
 pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     /// Computes all contacts and proximities, with the events of what changed.

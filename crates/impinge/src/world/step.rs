@@ -28,6 +28,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn write_changes(&mut self) {
         let CollisionObjects { bodies, table, .. } = &mut self.objects;
         (N::tables().world.flush)(bodies, table, &mut *self.broad_phase, &mut self.algorithms);
+        for (handle, started) in bodies.take_self_changes() {
+            let (events, objects) = (&mut self.events, &self.objects);
+            self.narrow_phase.handle_interaction(events, objects, handle, handle, started);
+        }
         for &index in &self.algorithms {
             let handle = self.objects.bodies.at(index).handle;
             self.narrow_phase.handle_change(&mut self.events, &self.objects, handle);
@@ -111,6 +115,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.narrow_phase = narrow_phase;
         self.renew_proxies();
         self.write_changes();
+        for handle in self.objects.bodies.with_self_pairs() {
+            // Known already, if it only now began.
+            let (events, objects) = (&mut self.events, &self.objects);
+            self.narrow_phase.handle_interaction(events, objects, handle, handle, true);
+        }
         self.started_pairs();
         self.narrow_phase.update(&self.objects, &mut Events::default());
         push_differences(&before, &self.statuses(), &mut self.events);

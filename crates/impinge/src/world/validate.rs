@@ -36,7 +36,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The allowed pairs whose volumes meet.
     fn expected_pairs(&self) -> Vec<(CollisionObjectHandle, CollisionObjectHandle)> {
         let bodies: Vec<_> = self.objects.bodies.iter().collect();
-        let mut pairs = Vec::new();
+        let mut pairs: Vec<_> =
+            self.objects.bodies.with_self_pairs().map(|handle| (handle, handle)).collect();
         for (place, first) in bodies.iter().enumerate() {
             let volume = first.volume();
             let meets = |second: &&Body<N, D>| volume.intersects(&second.volume());
@@ -49,6 +50,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Groups and filters allow the pair.
     fn is_allowed(&self, handle1: CollisionObjectHandle, handle2: CollisionObjectHandle) -> bool {
+        if handle1 == handle2 {
+            return self.objects.bodies.at(handle1.index()).wants_self_pair();
+        }
         let both = self.objects.get(handle1).zip(self.objects.get(handle2));
         self.objects.bodies.can_interact(handle1.index(), handle2.index())
             && both.is_some_and(|(co1, co2)| self.filters.allow(co1, co2))

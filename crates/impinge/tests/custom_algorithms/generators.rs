@@ -61,7 +61,13 @@ impl<N: Real> ContactManifoldGenerator<N, DIM> for OwnBalls<N> {
         let kinematic = ContactKinematic::from_contact(&contact, (ma, side(a)), (mb, side(b)));
         let pair = *self.pair.get_or_insert_with(|| ids.allocate());
         let id = ContactId::new(pair, self.touches);
-        self.manifold = ContactManifold::from_contacts([TrackedContact { contact, kinematic, id }]);
+        self.manifold = ContactManifold::from_contacts([TrackedContact {
+            contact,
+            kinematic,
+            id,
+            part1: 0,
+            part2: 0,
+        }]);
         true
     }
 

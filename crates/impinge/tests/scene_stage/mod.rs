@@ -255,7 +255,7 @@ pub(crate) fn digest_state<N: Space<D>, const D: usize, T>(
 
 fn digest_manifold<N: Real, const D: usize>(manifold: &ContactManifold<N, D>, digest: &mut Digest) {
     digest.write_usize(manifold.deepest_contact_id());
-    for TrackedContact { contact, kinematic, id } in manifold.contacts() {
+    for TrackedContact { contact, kinematic, id, .. } in manifold.contacts() {
         digest.numbers(contact.world1.coords.as_slice());
         digest.numbers(contact.world2.coords.as_slice());
         digest.numbers(contact.normal.as_slice());

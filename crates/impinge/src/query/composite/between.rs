@@ -7,8 +7,10 @@
 //! The same point serves all parts that one solid is held against, so that triangles that shared a
 //! corner still do.
 
+use super::bounds::{aabb_of, enclosing};
+use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector};
+use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::Pair;
 use crate::query::pair::{Placed, canonical};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
@@ -97,6 +99,36 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
     }
 }
 
+impl<N: Space<D>, const D: usize> Between<'_, N, D> {
+    /// A box around one of the shapes, the first (0) or the second (1), in the frame of the other.
+    pub(super) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
+        let (kind, pose) = self.seen_by_other(which);
+        enclosing(&aabb_of(kind, pose), pose)
+    }
+
+    /// A box around a part of the first shape (0) or the second (1), in the frame of the other; all of a
+    /// convex solid is its part.
+    pub(super) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {
+        let (kind, pose) = self.seen_by_other(which);
+        let Some(own) = Geometry(kind).as_composite() else { return self.whole_in_other(which) };
+        let own = own.part(part);
+        enclosing(&own.solid.as_shape().aabb(&pose.compose(&own.pose)), pose)
+    }
+
+    fn seen_by_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
+        let Pair { first, second, pose12 } = &self.pair;
+        if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }
+    }
+}
+
+/// Which of two composites has fewer parts, the first (0) or the second (1); it, and the other.
+pub(super) fn by_number<'a, N: Real, const D: usize>(
+    parts1: &'a dyn CompositeShape<N, D>,
+    parts2: &'a dyn CompositeShape<N, D>,
+) -> (usize, &'a dyn CompositeShape<N, D>, &'a dyn CompositeShape<N, D>) {
+    if parts2.num_parts() < parts1.num_parts() { (1, parts2, parts1) } else { (0, parts1, parts2) }
+}
+
 impl<'a, N: Real, const D: usize> Seen<'a, N, D> {
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
@@ -132,6 +164,11 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         Pair { first: self.seen1.kind(), second: self.seen2.kind(), pose12: self.pose12 }
     }
 
+    /// A vector of the frame of the first shape, in that of the first part.
+    pub(super) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
+        self.seen1.pose.inverse_vector(vector)
+    }
+
     /// An answer about [`Self::pair`], in the frame of the first shape.
     pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed = |point| self.origin1 + self.seen1.pose.point(point).coords;
@@ -145,7 +182,7 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
 }
 
 /// A point close to a part: of what is given by its corners the first of them, else its own origin.
-fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
+pub(super) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),
         PartSolid::Segment(segment) => part.pose.point(segment.a()),

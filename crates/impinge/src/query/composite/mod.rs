@@ -7,12 +7,15 @@
 
 mod between;
 mod bounds;
+mod contacts;
+mod impact;
 mod point;
 mod ray;
 mod separation;
 
-pub(crate) use between::Between;
-pub(crate) use between::PartPair;
+pub(crate) use between::{Between, PartPair};
+pub(crate) use contacts::{CompositeContacts, contact_in_world, own_distance};
+pub(crate) use impact::first_arrival;
 pub(in crate::query) use point::surface_point;
 pub(crate) use point::{Near, PartPoint, nearest_part};
 pub(crate) use ray::{RayQuestion, each_hit};

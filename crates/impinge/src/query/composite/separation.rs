@@ -1,12 +1,12 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
-use super::between::Between;
-use super::bounds::{aabb_of, enclosing, loosened};
+use super::between::{Between, by_number};
+use super::bounds::loosened;
 use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::query::Pair;
 use crate::query::separation::separation as of_convex;
-use crate::shape::{CompositeShape, Geometry};
+use crate::shape::CompositeShape;
 
 /// The separation of two parts, in the frame of the first shape, and which parts they are.
 #[derive(Clone, Copy, Debug)]
@@ -32,19 +32,11 @@ pub(in crate::query) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    nearest(pair, limit).map(|found| found.separation)
+    let found = nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest);
+    found.map(|found| found.separation)
 }
 
-/// The separation of the two parts that are nearest to each other, or deepest in each other; of
-/// several the first by number.
-pub(crate) fn nearest<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    limit: N,
-) -> Option<PartSeparation<N, D>> {
-    nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest)
-}
-
-/// [`nearest`] for shapes of which both relative poses are known.
+/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit.
 ///
 /// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
 /// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
@@ -95,10 +87,8 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
         parts1: &dyn CompositeShape<N, D>,
         parts2: &dyn CompositeShape<N, D>,
     ) -> Option<PartSeparation<N, D>> {
-        let which = usize::from(parts2.num_parts() < parts1.num_parts());
-        let (fewer, more) = if which == 0 { (parts1, parts2) } else { (parts2, parts1) };
-        let pose = [&self.between.pair.pose12, &self.between.pose21][which];
-        let aabb = enclosing(&more.search().bounds().transformed_by(pose), pose);
+        let (which, fewer, more) = by_number(parts1, parts2);
+        let aabb = self.between.whole_in_other(1 - which);
         let bound = self.bound();
         fewer.search().nearest(&aabb, bound, &mut |part, _| {
             self.each_near(which, part, more);
@@ -109,18 +99,9 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
 
     /// Holds one part of one shape against those of the other that are near.
     fn each_near(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
-        let pair = &self.between.pair;
-        let pose = [&self.between.pose21, &pair.pose12][which];
-        let kind = [pair.first, pair.second][which];
-        let aabb = match Geometry(kind).as_composite() {
-            None => aabb_of(kind, pose),
-            Some(own) => {
-                let own = own.part(part);
-                own.solid.as_shape().aabb(&pose.compose(&own.pose))
-            }
-        };
+        let aabb = self.between.aabb_in_other(which, part);
         let bound = self.bound();
-        others.search().nearest(&enclosing(&aabb, pose), bound, &mut |other, _| {
+        others.search().nearest(&aabb, bound, &mut |other, _| {
             self.hold(if which == 0 { [part, other] } else { [other, part] });
             self.bound()
         });

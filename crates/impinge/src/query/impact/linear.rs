@@ -5,7 +5,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max_component};
 use crate::query::Pair;
 use crate::query::separation::separation;
-use crate::shape::Geometry;
+use crate::shape::{FeatureId, Geometry};
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 128;
@@ -30,6 +30,8 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
     pub(crate) along: N,
     /// How the solids lie then, in the frame of the first.
     pub(crate) separation: Separation<N, D>,
+    /// What the points lie on, of the first and of the second.
+    pub(crate) features: [FeatureId; 2],
     pub(crate) status: ImpactStatus,
 }
 
@@ -47,9 +49,22 @@ impl<N: Real, const D: usize> Path<N, D> {
 
     /// Whether a contact at the start counts: one that gets deeper does; one that is neither deep nor
     /// gets deeper, or gets less deep, does not. What overlaps without bound is never parted.
-    fn counts_at_start(&self, found: &Separation<N, D>, deep: bool) -> bool {
-        let (closing, noise) = (self.closing(&found.normal), self.noise());
-        closing > noise || (deep && (closing >= -noise || found.distance == -N::INFINITY))
+    fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
+        let (closing, noise) = (self.closing(normal), self.noise());
+        let deep = gap < -tolerance;
+        closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+    }
+}
+
+impl<N: Space<D>, const D: usize> Arrival<N, D> {
+    fn new(
+        pair: &Pair<'_, N, D>,
+        along: N,
+        separation: Separation<N, D>,
+        status: ImpactStatus,
+    ) -> Self {
+        let features = (N::tables().witness_features)(pair, &separation);
+        Self { along, separation, features, status }
     }
 }
 
@@ -65,39 +80,30 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     path: &Path<N, D>,
 ) -> Option<Arrival<N, D>> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    let found = separation(start, N::INFINITY)?;
-    let arrived = |along, separation, status| Some(Arrival { along, separation, status });
-    // Written so that an end that is not a number is before the start.
-    if !(path.end >= N::ZERO) {
+    let (mut pair, mut along) = (*start, N::ZERO);
+    let mut found = separation(start, N::INFINITY).filter(|_| path.end >= N::ZERO)?;
+    let gap = found.distance - path.target;
+    if gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
         return None;
     }
-    let gap = found.distance - path.target;
-    if gap <= tolerance {
-        let counts = path.counts_at_start(&found, gap < -tolerance);
-        return counts.then_some(Arrival {
-            along: N::ZERO,
-            separation: found,
-            status: ImpactStatus::Reached,
-        });
-    }
-    let (mut pair, mut along, mut found) = (*start, N::ZERO, found);
     for _ in 0..MAX_STEPS {
         let (gap, closing) = (found.distance - path.target, path.closing(&found.normal));
         if gap <= tolerance {
-            return arrived(along, found, ImpactStatus::Reached);
+            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
         }
         let later = along + gap / closing;
-        if closing <= path.noise() || !(later <= path.end) {
+        let in_time = closing > path.noise() && later <= path.end;
+        if !in_time {
             return None;
         }
         if later <= along {
-            return arrived(along, found, ImpactStatus::Reached);
+            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
         }
         along = later;
         pair.pose12.translation = start.pose12.translation + path.velocity * along;
         found = separation(&pair, N::INFINITY)?;
     }
-    arrived(along, found, ImpactStatus::StepsSpent)
+    Some(Arrival::new(&pair, along, found, ImpactStatus::StepsSpent))
 }
 
 /// The length that tolerances are in proportion to: the sizes of the solids and how far they are.

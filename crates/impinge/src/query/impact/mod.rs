@@ -2,17 +2,25 @@
 //!
 //! [`linear`] serves solids that do not turn: the front here brings the pair into its canonical order
 //! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
-//! path.
+//! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
+//! a motion than where it is and how fast it can be ([`motion`], [`bounds`]).
 
+mod bounds;
 mod linear;
+mod motion;
+mod nonlinear;
 
 pub(crate) use linear::{Arrival, Path, advance};
+pub use motion::{ConstantVelocities, RigidMotion};
+pub use nonlinear::nonlinear_time_of_impact;
+pub(crate) use nonlinear::{Flight, impact_of_flight};
 
-use super::pair::{Placed, canonical, indistinguishable};
+use super::composite::{Between, first_arrival};
+use super::pair::{Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
-use crate::shape::Shape;
+use crate::shape::{FeatureId, Shape};
 
 /// A solid that moves along a straight line, with the same velocity at all times, and does not turn.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +67,7 @@ pub struct ImpactOptions<N: Real> {
     /// negative or NaN. Infinite by default.
     pub max_time: N,
     /// The solids count as touching when they are so far apart. Zero by default; negative and NaN
-    /// count as zero.
+    /// count as zero. At an infinite distance everything touches at time zero.
     pub target_distance: N,
 }
 
@@ -119,6 +127,11 @@ pub struct Impact<N: Real, const D: usize> {
     pub part1: u32,
     /// The number of the part of the second shape that touches; zero for a shape of one part.
     pub part2: u32,
+    /// The feature of that part of the first shape that touches, named as in a
+    /// [`Witness`](super::Witness): on the core of a rounded solid.
+    pub feature1: FeatureId,
+    /// The feature of that part of the second shape that touches.
+    pub feature2: FeatureId,
     /// Whether the solids touch then for certain.
     pub status: ImpactStatus,
 }
@@ -133,6 +146,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
             normal: -self.normal,
             part1: self.part2,
             part2: self.part1,
+            feature1: self.feature2,
+            feature2: self.feature1,
             ..*self
         }
     }
@@ -144,8 +159,13 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives the
 /// same bits. The unit of time is the one that velocities are lengths per.
 ///
-/// The time is right up to the rounding of the solids' sizes and of their initial distance, and never
-/// late by more: solids that pass each other that closely may count as touching.
+/// At the time found the solids are at the target distance, up to the rounding of their sizes and of
+/// their initial distance, and before that time they were not nearer by more: it is never late, and
+/// solids that pass each other that closely may count as touching.
+///
+/// The impact of composites is the first impact of two of their parts, of several at one time that of the
+/// first by number; each pair of parts has the policy below for itself. So a shape that slides along
+/// some parts still meets others, and a surface is met from both sides.
 ///
 /// # Starts in contact
 ///
@@ -166,7 +186,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// A few computations of the distance, at most 128. Each step goes as far as the solids certainly
 /// stay apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996): Newton's
 /// method on a convex function, which squares the error where they meet head on and halves it where
-/// they graze.
+/// they graze. A composite is searched for the parts on the way; of two composites each part of the one
+/// with fewer searches the other.
 ///
 /// ```
 /// use impinge::dim2::na::{Isometry2, Point2, Vector2};
@@ -221,7 +242,12 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
-    let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
+    let (between, swapped) = Between::canonical(placed1, placed2);
+    let mirrored = indistinguishable(placed1, placed2);
+    if mirrored && is_later(moving1, moving2) {
+        return impact_of_pair(moving2, moving1, options).map(|found| found.flipped());
+    }
+    let pair = &between.pair;
     let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
     let velocity = second.velocity - first.velocity;
     let finite = pair.pose12.is_finite() && velocity.iter().all(|x| x.is_finite_number());
@@ -233,12 +259,26 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
         velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
         end: options.max_time * scale,
         target: max(options.target_distance, N::ZERO),
-        mirrored: indistinguishable(placed1, placed2),
+        mirrored,
     };
-    let arrival = advance(&pair, &path)?;
+    let (arrival, parts) = match between.composites() {
+        [None, None] => (advance(pair, &path)?, [0, 0]),
+        _ => first_arrival(&between, &path).map(|found| (found.arrival, found.parts))?,
+    };
     let toi = arrival.along / scale;
     let found = toi.is_finite_number().then(|| first.impact(&arrival, toi))?;
+    let found = Impact { part1: parts[0], part2: parts[1], ..found };
     Some(if swapped { found.flipped() } else { found })
+}
+
+/// Of two that nothing else tells apart: the first comes after the second by its velocity.
+fn is_later<N: Real, const D: usize>(
+    moving1: &Moving<'_, N, D>,
+    moving2: &Moving<'_, N, D>,
+) -> bool {
+    let components = moving1.velocity.iter().zip(moving2.velocity.iter());
+    let different = components.filter(|(x1, x2)| x1 != x2);
+    different.map(|(x1, x2)| x1 > x2).next().unwrap_or(false)
 }
 
 impl<N: Real, const D: usize> Moving<'_, N, D> {
@@ -253,6 +293,8 @@ impl<N: Real, const D: usize> Moving<'_, N, D> {
             normal: Unit::new_unchecked(pose.vector(&found.normal)),
             part1: 0,
             part2: 0,
+            feature1: arrival.features[0],
+            feature2: arrival.features[1],
             status: arrival.status,
         }
     }

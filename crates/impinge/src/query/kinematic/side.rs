@@ -39,6 +39,10 @@ impl<N: Real, const D: usize> Side<N, D> {
             Kind::Cylinder(cylinder, _) if is_lying(cylinder, &outward) => {
                 (Facing::Axis, cylinder.radius())
             }
+            Kind::Rounded(solid) => {
+                let inner = Self::new(solid.inner().0, outward);
+                return Self { rounding: inner.rounding + solid.swelling(), ..inner };
+            }
             Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
                 Some(part) => (Facing::Part(part), N::ZERO),
                 None => return Self::of_core(kind, outward),

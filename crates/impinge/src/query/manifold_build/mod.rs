@@ -11,6 +11,7 @@
 //! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
 //! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
+mod along;
 mod box_faces;
 mod box_sides;
 mod facet;
@@ -18,14 +19,17 @@ mod frame;
 mod half_space;
 mod names;
 mod overlap;
+mod patch;
 mod reduce;
 #[cfg(test)]
 pub(super) mod tests;
 mod witness;
 
+pub(super) use self::along::{Along, build_along, build_between};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
+pub(super) use self::patch::{Merging, Patch, PatchPoint, merge};
 pub(crate) use self::witness::{features2 as witness_features2, features3 as witness_features3};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
@@ -44,8 +48,7 @@ pub(crate) fn build2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    let tangents = [-perp(&separation.normal), Vector::<N, 2>::zeros()];
-    let frame = Frame::new(pair, separation, request, tangents);
+    let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
     build(pair, &frame, (request, request.max_points.min(2)), out);
 }
 
@@ -58,9 +61,19 @@ pub(crate) fn build3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    let (u, v) = orthonormal_basis(&separation.normal);
-    let frame = Frame::new(pair, separation, request, [u, v]);
+    let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
     build(pair, &frame, (request, request.max_points), out);
+}
+
+/// Two directions that complete a normal of space to a right-handed basis.
+pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
+    let (u, v) = orthonormal_basis(normal);
+    [u, v]
+}
+
+/// The direction along the line of contact in the plane, and zero for the second that there is not.
+pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
+    [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
 /// The manifold of a pair in space, from nothing: by the fused algorithm of its kinds where there is

@@ -37,6 +37,30 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         self.crossings(&insides, out);
     }
 
+    /// Adds what [`Self::candidates`] leaves to the witness: of a facet that is a point, the point, if
+    /// it is seen inside the other facet.
+    pub(super) fn candidates_of_points(&self, out: &mut Candidates<N, D>) {
+        let tolerance = self.frame.tolerance;
+        match (self.first.corners.as_slice(), self.second.corners.as_slice()) {
+            ([corner1], [corner2]) => {
+                if (corner1.flat - corner2.flat).norm() <= N::TWO * tolerance {
+                    self.push(&corner1.point, &corner2.point, [corner1.id, corner2.id], out);
+                }
+            }
+            ([corner], _) => {
+                if let Some(id) = self.second.locate(&corner.flat, tolerance) {
+                    self.push_corner_of_first(corner, id, out);
+                }
+            }
+            (_, [corner]) => {
+                if let Some(id) = self.first.locate(&corner.flat, tolerance) {
+                    self.push_corner_of_second(corner, id, out);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// Corners of either facet within the other.
     fn corners_inside(&self, insides: &[Insides<N>; 2], out: &mut Candidates<N, D>) {
         let tolerance = self.frame.tolerance;

@@ -2,9 +2,9 @@
 
 use super::facet::{Facet, Which};
 use super::frame::Frame;
-use super::{ManifoldRequest, Pair, at_witness, face};
+use super::{ManifoldRequest, Pair, at_witness, face, tangents2, tangents3};
 use crate::convex::Separation;
-use crate::math::{Real, Vector, orthonormal_basis, perp};
+use crate::math::{Real, Vector};
 use crate::shape::{FeatureId, Kind};
 
 /// The features of two solids of the plane that the points of their separation lie on.
@@ -12,7 +12,7 @@ pub(crate) fn features2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, [-perp(&separation.normal), Vector::<N, 2>::zeros()])
+    features(pair, separation, tangents2(&separation.normal))
 }
 
 /// The features of two solids of space that the points of their separation lie on.
@@ -20,8 +20,7 @@ pub(crate) fn features3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
 ) -> [FeatureId; 2] {
-    let (u, v) = orthonormal_basis(&separation.normal);
-    features(pair, separation, [u, v])
+    features(pair, separation, tangents3(&separation.normal))
 }
 
 /// As a manifold would name them: each is the smallest part of what a core shows along the normal that

@@ -178,18 +178,23 @@ fn placed<N: Real, const D: usize>(
 }
 
 /// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
-/// it is: the size of what [`PointQuery::distance_to_point`] gives.
+/// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
 pub(crate) fn project<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
     point: &Point<N, D>,
     solid: bool,
-) -> (PointProjection<N, D>, N) {
+) -> Option<(PointProjection<N, D>, N)> {
     let local = pose.inverse_point(point);
-    let (nearest, _) = shape.project_local_point(&local);
-    let distance = length(&(local - nearest.point));
+    let (nearest, distance) = if let Some(parts) = shape.geometry().as_composite() {
+        let found = (N::tables().nearest_part)(parts, &local, false)?;
+        (found.projection(), found.distance.abs())
+    } else {
+        let (nearest, _) = shape.project_local_point(&local);
+        (nearest, length(&(local - nearest.point)))
+    };
     let is_own = solid && nearest.is_inside;
-    (placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance })
+    Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {

@@ -32,7 +32,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
 }
 
 /// The part of what is rounded that lies below a point of the surface.
-pub(in crate::query) fn feature_below<N: Space<D>, const D: usize>(
+fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
     place: &Point<N, D>,
 ) -> FeatureId {

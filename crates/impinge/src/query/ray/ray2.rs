@@ -1,7 +1,10 @@
 //! The plane: which file answers for which solid.
 
 use super::span::Span;
-use super::{ball, capsule, cuboid, plane, polytope, segment, support_map, triangle2};
+use super::{
+    ball, capsule, cuboid, ellipsoid, plane, polytope, rounded, segment, support_map,
+    tapered_capsule, triangle2,
+};
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real};
 use crate::shape::Kind;
@@ -21,9 +24,9 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Spa
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => {
             support_map::span(map, ray)
         }
-        Kind::Ellipsoid(solid) => support_map::span(solid, ray),
-        Kind::TaperedCapsule(solid) => support_map::span(solid, ray),
-        Kind::Rounded(solid) => support_map::span(solid, ray),
+        Kind::Ellipsoid(solid) => ellipsoid::span(solid, ray),
+        Kind::TaperedCapsule(solid) => tapered_capsule::span(solid, ray),
+        Kind::Rounded(solid) => rounded::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
         // Its parts are asked instead.
         Kind::Composite(_) => None,

@@ -2,7 +2,8 @@
 
 use super::span::Span;
 use super::{
-    ball, capsule, cone, cuboid, cylinder, plane, polytope, segment, support_map, triangle3,
+    ball, capsule, cone, cuboid, cylinder, ellipsoid, plane, polytope, rounded, segment,
+    support_map, tapered_capsule, triangle3,
 };
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real};
@@ -23,9 +24,9 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
         Kind::Cylinder(solid, _) => cylinder::span(solid, ray),
         Kind::Cone(solid, _) => cone::span(solid, ray),
         Kind::SupportMap(map) => support_map::span(map, ray),
-        Kind::Ellipsoid(solid) => support_map::span(solid, ray),
-        Kind::TaperedCapsule(solid) => support_map::span(solid, ray),
-        Kind::Rounded(solid) => support_map::span(solid, ray),
+        Kind::Ellipsoid(solid) => ellipsoid::span(solid, ray),
+        Kind::TaperedCapsule(solid) => tapered_capsule::span(solid, ray),
+        Kind::Rounded(solid) => rounded::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
         // Its parts are asked instead.
         Kind::Composite(_) => None,

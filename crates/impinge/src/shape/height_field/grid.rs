@@ -1,8 +1,11 @@
 //! Heights over a grid: where its points lie, and the search that serves the plane and space.
 
+use core::ops::Range;
+
 use smallvec::SmallVec;
 
 use super::pyramid::{Block, Pyramid, Span};
+use super::question::Probe;
 use crate::math::{Point, Real, max, min};
 
 /// Heights in rows and columns, and where the rows and columns lie. In the plane there is one row.
@@ -54,9 +57,9 @@ impl<N: Real> Extent<N> {
     pub(super) fn around(points: &[[N; 3]]) -> Self {
         let mut extent = Self { low: points[0], high: points[0] };
         for point in &points[1..] {
-            for axis in 0..3 {
-                extent.low[axis] = min(extent.low[axis], point[axis]);
-                extent.high[axis] = max(extent.high[axis], point[axis]);
+            for (axis, &x) in point.iter().enumerate() {
+                extent.low[axis] = min(extent.low[axis], x);
+                extent.high[axis] = max(extent.high[axis], x);
             }
         }
         extent
@@ -136,7 +139,8 @@ pub(super) fn search<N: Real>(
     let mut stack: SmallVec<[(N, Block); 40]> = SmallVec::new();
     stack.extend(key_of(pyramid.top()).map(|key| (key, pyramid.top())));
     while let Some((bound, block)) = stack.pop() {
-        if !(bound <= lowest) {
+        let is_within = bound <= lowest;
+        if !is_within {
             continue;
         }
         if block.level == 0 {
@@ -154,6 +158,50 @@ pub(super) fn search<N: Real>(
             }
         }
     }
+}
+
+/// Calls `visit` with the parts whose box meets the probe, each once.
+///
+/// The lines of the grid tell which cells lie under the probe. Few are looked at one by one; many are
+/// found by going down the pyramid, which passes over what lies higher or lower.
+pub(super) fn overlapping<N: Real>(
+    field: &impl Cells<N>,
+    probe: &Probe<N>,
+    mut visit: impl FnMut(u32),
+) {
+    let ([low_x, _, low_z], [high_x, _, high_z]) = probe.corners();
+    let columns = cells_between(&field.grid().xs, low_x, high_x);
+    let rows = cells_between(&field.grid().zs, low_z, high_z);
+    if rows.len().saturating_mul(columns.len()) > FEW_CELLS {
+        let found = |part, _| {
+            visit(part);
+            N::ZERO
+        };
+        return search(field, N::ZERO, |extent| probe.overlap(extent), found);
+    }
+    for (row, column) in rows.flat_map(|row| columns.clone().map(move |column| (row, column))) {
+        for (part, extent) in field.parts(row, column) {
+            if probe.overlap(&extent).is_some() {
+                visit(part);
+            }
+        }
+    }
+}
+
+/// Up to this many cells are looked at one by one.
+const FEW_CELLS: usize = 32;
+
+/// The cells between lines that have a point in common with `low..=high`. A single line has a cell on
+/// it.
+fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
+    let last = lines.len() - 1;
+    let (before, until) = if lines[last] < lines[0] {
+        (lines.partition_point(|&x| x > high), lines.partition_point(|&x| x >= low))
+    } else {
+        (lines.partition_point(|&x| x < low), lines.partition_point(|&x| x <= high))
+    };
+    // A cell lies between its line and the next.
+    before.saturating_sub(1)..min_index(until, if last == 0 { 1 } else { last })
 }
 
 /// Adds a block to those from `base` on, which are sorted so that the least key comes last.

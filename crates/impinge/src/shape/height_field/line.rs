@@ -2,9 +2,9 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::grid::{Cells, Extent, Grid, search, whole};
+use super::grid::{Cells, Extent, Grid, whole};
 use super::pyramid::{Pyramid, Span, merged, no_span};
-use super::question::{Probe, lifted};
+use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
@@ -35,8 +35,10 @@ impl<N: Real> HeightField<N, 2> {
         check_count(heights.len())?;
         check_parts(heights.len() as u64 - 1)?;
         let grid = grid([1, heights.len()], heights, &scale, N::ZERO)?;
-        let pyramid = Pyramid::new([1, grid.columns - 1], |_, cell| step_span(&grid, cell));
-        Ok(Self::around(grid, pyramid, scale))
+        let pyramid = Pyramid::unbuilt([1, grid.columns - 1]);
+        let mut field = Self::around(grid, pyramid, scale);
+        field.rebuild();
+        Ok(field)
     }
 
     /// The same field with a hole in each cell for which `is_hole(cell)`, and only there.
@@ -159,14 +161,13 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     fn refresh(&mut self, cell: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }
 
     fn rebuild(&mut self) {
-        let cells = self.pyramid.cells();
-        self.pyramid = Pyramid::new(cells, |row, column| self.cell_span(row, column));
+        self.pyramid = (table::<N, 2>().pyramid)(self);
     }
 
     #[track_caller]
@@ -205,22 +206,16 @@ impl<N: Real> Cells<N> for HeightField<N, 2> {
 }
 
 impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
+    fn bounds(&self) -> Aabb<N, 2> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 2>, visit: &mut dyn FnMut(u32)) {
-        let Some(probe) = Probe::new(aabb) else { return };
-        search(
-            self,
-            N::ZERO,
-            |extent| probe.overlap(extent),
-            |part, _| {
-                visit(part);
-                N::ZERO
-            },
-        );
+        (table::<N, 2>().overlapping)(self, aabb, visit);
     }
 
     fn nearest(&self, aabb: &Aabb<N, 2>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        let Some(probe) = Probe::new(aabb) else { return };
-        search(self, limit, |extent| probe.distance(extent), visit);
+        (table::<N, 2>().nearest)(self, aabb, limit, visit);
     }
 
     fn cast(
@@ -230,8 +225,7 @@ impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
         limit: N,
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
-        let (Some(probe), Some(velocity)) = (Probe::new(aabb), lifted(velocity)) else { return };
-        search(self, limit, |extent| probe.time(&velocity, extent), visit);
+        (table::<N, 2>().cast)(self, &(*aabb, *velocity), limit, visit);
     }
 }
 

@@ -11,10 +11,10 @@ mod pyramid;
 mod question;
 mod sheet;
 mod surface;
-#[cfg(test)]
-mod tests;
+mod table;
 
 pub use marks::{Diagonal, Diagonals};
+pub(crate) use table::FieldTable;
 
 use self::grid::{Grid, lines};
 use self::marks::Marks;

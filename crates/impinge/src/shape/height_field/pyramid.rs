@@ -18,7 +18,7 @@ pub(super) fn merged<N: Real>(a: Span<N>, b: Span<N>) -> Span<N> {
 /// have fewer. The spans of the cells themselves are cheap to find and not kept.
 ///
 /// About two thirds of a number per cell.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Pyramid<N: Real> {
     /// How many rows and columns of cells there are: one at least.
     cells: [usize; 2],
@@ -70,6 +70,16 @@ impl<N: Real> Pyramid<N> {
             pyramid.levels.push(Level { columns, spans });
         }
         pyramid
+    }
+
+    /// Over rows and columns of cells that are still to be looked at.
+    pub(super) const fn unbuilt(cells: [usize; 2]) -> Self {
+        Self { cells, levels: Vec::new() }
+    }
+
+    /// Its levels, with none left behind: for a field that brings them up to date by its own cells.
+    pub(super) fn take(&mut self) -> Self {
+        Self { cells: self.cells, levels: std::mem::take(&mut self.levels) }
     }
 
     /// The block of all cells.

@@ -30,6 +30,11 @@ impl<N: Real> Probe<N> {
         is_reachable.then_some(Self { own })
     }
 
+    /// The corners of least and greatest coordinates.
+    pub(super) const fn corners(&self) -> ([N; 3], [N; 3]) {
+        (self.own.low, self.own.high)
+    }
+
     /// Zero if the boxes meet.
     pub(super) fn overlap(&self, other: &Extent<N>) -> Option<N> {
         let meets = (0..3).all(|axis| {

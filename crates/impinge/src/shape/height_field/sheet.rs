@@ -2,10 +2,10 @@
 
 use smallvec::SmallVec;
 
-use super::grid::{Cells, Extent, Grid, search, whole};
+use super::grid::{Cells, Extent, Grid, whole};
 use super::marks::{Diagonal, Diagonals, Marks};
 use super::pyramid::{Pyramid, Span, merged, no_span};
-use super::question::{Probe, lifted};
+use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min};
@@ -47,9 +47,9 @@ impl<N: Real> HeightField<N, 3> {
         check_count(columns)?;
         let grid = grid([rows, columns], heights, &scale, scale.z)?;
         check_parts(((rows - 1) * (columns - 1)) as u64 * 2)?;
-        let pyramid =
-            Pyramid::new([rows - 1, columns - 1], |row, column| square_span(&grid, row, column));
-        Ok(Self::around(grid, pyramid, scale))
+        let mut field = Self::around(grid, Pyramid::unbuilt([rows - 1, columns - 1]), scale);
+        field.rebuild();
+        Ok(field)
     }
 
     /// The same field with the diagonals of all cells set anew; holes stay.
@@ -259,14 +259,13 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     fn refresh(&mut self, row: usize, column: usize) {
-        let mut pyramid = std::mem::take(&mut self.pyramid);
+        let mut pyramid = self.pyramid.take();
         pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
         self.pyramid = pyramid;
     }
 
     fn rebuild(&mut self) {
-        let cells = self.pyramid.cells();
-        self.pyramid = Pyramid::new(cells, |row, column| self.cell_span(row, column));
+        self.pyramid = (table::<N, 3>().pyramid)(self);
     }
 }
 
@@ -388,22 +387,16 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
 }
 
 impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
+    fn bounds(&self) -> Aabb<N, 3> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 3>, visit: &mut dyn FnMut(u32)) {
-        let Some(probe) = Probe::new(aabb) else { return };
-        search(
-            self,
-            N::ZERO,
-            |extent| probe.overlap(extent),
-            |part, _| {
-                visit(part);
-                N::ZERO
-            },
-        );
+        (table::<N, 3>().overlapping)(self, aabb, visit);
     }
 
     fn nearest(&self, aabb: &Aabb<N, 3>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        let Some(probe) = Probe::new(aabb) else { return };
-        search(self, limit, |extent| probe.distance(extent), visit);
+        (table::<N, 3>().nearest)(self, aabb, limit, visit);
     }
 
     fn cast(
@@ -413,8 +406,7 @@ impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
         limit: N,
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
-        let (Some(probe), Some(velocity)) = (Probe::new(aabb), lifted(velocity)) else { return };
-        search(self, limit, |extent| probe.time(&velocity, extent), visit);
+        (table::<N, 3>().cast)(self, &(*aabb, *velocity), limit, visit);
     }
 }
 

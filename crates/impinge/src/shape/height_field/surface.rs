@@ -3,7 +3,7 @@
 use super::HeightField;
 use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
-use crate::shape::seam::{Seam, is_flat, is_level, slack};
+use crate::shape::seam::{Seam, is_across, slack};
 use crate::shape::tri_mesh::{inward_of, normal_of};
 use crate::shape::{FeatureId, Surface};
 
@@ -61,13 +61,11 @@ impl<N: Real> HeightField<N, 3> {
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
         let own = self.corners(part);
         let (a, b, c) = (own[side % 3], own[(side + 1) % 3], own[(side + 2) % 3]);
-        let mut seam = Seam::new();
-        let mut add = |corners: &[GridPoint; 3], opposite: GridPoint| {
-            let [a, b, opposite] =
-                [a, b, opposite].map(|[row, column]| self.grid.point(row, column));
-            if let Some(inward) = inward_of(&a, &b, &opposite) {
-                let cosine = self.front_of(corners).dot(normal);
-                seam.add(inward.dot(normal), cosine, is_level(cosine));
+        let [start, end] = [a, b].map(|[row, column]| self.grid.point(row, column));
+        let mut seam = Seam::of_faces(self.front_of(&own), normal);
+        let mut add = |corners: &[GridPoint; 3], [row, column]: GridPoint| {
+            if let Some(inward) = inward_of(&[start, end, self.grid.point(row, column)]) {
+                seam.add_face(inward.dot(normal), &self.front_of(corners));
             }
         };
         add(&own, c);
@@ -76,20 +74,15 @@ impl<N: Real> HeightField<N, 3> {
                 add(&other, opposite);
             }
         }
-        seam.admits(self.is_one_sided)
+        is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
-        let at = self.corners(part)[corner % 3];
-        let mut seam = Seam::new();
+        let own = self.corners(part);
+        let at = own[corner % 3];
+        let mut seam = Seam::of_faces(self.front_of(&own), normal);
         for corners in self.around_point(at) {
-            let rise = self.rise_from(at, &corners, normal);
-            let front = self.front_of(&corners);
-            if front == Vector::<N, 3>::zeros() {
-                seam.add_rise(rise);
-            } else {
-                seam.add(rise, front.dot(normal), is_level(front.dot(normal)));
-            }
+            seam.add_face(self.rise_from(at, &corners, normal), &self.front_of(&corners));
         }
         seam.admits(self.is_one_sided)
     }
@@ -113,7 +106,7 @@ impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
         let is_own = own.is_none_or(|own| own) && self.height_over(part, normal) >= N::ZERO;
         match feature {
             FeatureId::Vertex(end) if own != Some(true) => {
-                self.point_admits(part as usize + end as usize, normal)
+                self.point_admits(part, part as usize + end as usize, normal)
             }
             _ => is_own,
         }
@@ -150,15 +143,15 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     /// No segment that leaves the point rises along the normal, and they are not straight.
-    fn point_admits(&self, index: usize, normal: &Vector<N, 2>) -> bool {
-        let mut seam = Seam::new();
+    fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
+        let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
         let before = index.checked_sub(1).map(|cell| (cell, -N::ONE));
         for (cell, sign) in before.into_iter().chain([(index, N::ONE)]) {
             let is_there = cell < self.num_cells() && !self.marks.is_hole(cell, 0);
             let part = u32::try_from(cell).expect("32 bits number the segments");
             let Some(along) = is_there.then(|| self.along(part)).flatten() else { continue };
-            let rise = (along * sign).dot(normal);
-            seam.add(rise, self.height_over(part, normal), is_flat(rise));
+            seam.add_segment(&(along * sign), self.height_over(part, normal));
         }
         seam.admits(self.is_one_sided)
     }

@@ -54,18 +54,17 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
+        let mut next = 0..;
         for (vertex, point) in (0..).zip(&self.vertices) {
             let first = self.topology.joints.of(vertex);
             if first == vertex {
-                number.push(kept.len());
+                number.extend(next.next());
                 kept.push(*point);
             } else {
                 number.push(number[first as usize]);
             }
         }
-        let renumbered = |vertex: u32| {
-            u32::try_from(number[vertex as usize]).expect("there are no more than before")
-        };
+        let renumbered = |vertex: u32| number[vertex as usize];
         let triangles = self.triangles.iter().map(|corners| corners.map(renumbered)).collect();
         self.with(kept, triangles)
     }

@@ -4,6 +4,7 @@ use super::super::segment::length_of;
 use super::{TriMesh, table};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::partitioning::BoxTree;
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
     ShapeHandle, Surface,
@@ -61,14 +62,54 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
+    /// The smallest, up to rounding. O(log n) for a mesh that bulges, up to O(n) for one whose parts
+    /// reach almost equally far.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, &self.triangles, &self.vertices, &self.tree)
+    }
+
     /// The sphere around the middle of the box, through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        sphere_around(&self.local_aabb(), self.triangles.iter().flatten(), &self.vertices)
+        sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         Ok(ShapeHandle::new(self.try_scaled(scale)?))
     }
+}
+
+/// So many corners are placed one by one to find the box around them.
+const MOST_PLACED: usize = 192;
+
+/// The box around the vertices of parts placed at `pose`: of each where they are few, else of those
+/// that the tree finds to reach farthest.
+pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
+    pose: &Pose<N, D>,
+    parts: &[[u32; K]],
+    vertices: &[Point<N, D>],
+    tree: &BoxTree<N, D>,
+) -> Aabb<N, D> {
+    let corner = |&vertex: &u32| vertices[vertex as usize];
+    if parts.len() * K <= MOST_PLACED {
+        let used = parts.as_flattened().iter().map(corner);
+        let placed: Vec<_> = used.map(|point| pose.point(&point)).collect();
+        // A pose that is not finite gives no box; then everything is in it.
+        return Aabb::from_points(&placed).unwrap_or_else(Aabb::unbounded);
+    }
+    let reach = |direction: Vector<N, D>| {
+        tree.reach_along(direction, |part| {
+            let along =
+                parts[part as usize].iter().map(|vertex| corner(vertex).coords.dot(&direction));
+            along.fold(-N::INFINITY, max)
+        })
+    };
+    let (mut mins, mut maxs) = (pose.translation, pose.translation);
+    for axis in 0..D {
+        let direction = pose.rotation.row(axis).transpose();
+        mins[axis] -= reach(-direction);
+        maxs[axis] += reach(direction);
+    }
+    Aabb::try_new(Point::from(mins), Point::from(maxs)).unwrap_or_else(|_| Aabb::unbounded())
 }
 
 /// The sphere around the middle of a box that reaches the farthest of some vertices; a little

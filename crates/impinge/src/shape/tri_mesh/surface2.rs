@@ -2,7 +2,7 @@
 
 use super::super::seam::{is_flat, slack};
 use super::TriMesh;
-use crate::math::{Real, Vector, cross2, max_component, unit};
+use crate::math::{Real, Vector, cross2, max_component};
 use crate::shape::FeatureId;
 
 impl<N: Real> TriMesh<N, 2> {
@@ -49,10 +49,7 @@ impl<N: Real> TriMesh<N, 2> {
     /// No other triangle at a side lies on the side of it that a direction points to.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
-        self.each_across(part, side, |other, side| {
-            let rises = |inward: Vector<N, 2>| inward.dot(direction) > slack();
-            is_open &= !self.inward(other, side).is_some_and(rises);
-        });
+        self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
         is_open
     }
 
@@ -64,28 +61,22 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// No side that leaves the corner rises along the normal, and they do not form a straight
-    /// border.
+    /// No side that leaves the corner rises along the normal, and the two highest do not form a
+    /// straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        let (mut is_highest, mut has_left, mut has_right) = (true, false, false);
+        // The highest side on the left of the normal and on its right; straight down is both.
+        let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {
-                let rise = along.dot(normal);
-                is_highest &= rise <= slack();
-                let is_left = cross2(normal, &along) > N::ZERO;
-                has_left |= is_flat(rise) && is_left;
-                has_right |= is_flat(rise) && !is_left;
+                is_highest &= along.dot(normal) <= slack();
+                let best = &mut highest[usize::from(cross2(normal, &along) < N::ZERO)];
+                *best = if along.dot(normal) > best.dot(normal) { along } else { *best };
             }
         }
-        is_highest && !(has_left && has_right)
-    }
-
-    /// Unit, along the sides of a triangle that leave a joint.
-    fn leaving(&self, triangle: u32, joint: u32) -> impl Iterator<Item = Vector<N, 2>> + use<N> {
-        let corners = self.corners(triangle);
-        let at = (0..3).find(|&at| self.joint_ends(triangle, at)[0] == joint).unwrap_or(0);
-        let side = move |turn: usize| unit(&(corners[(at + turn) % 3] - corners[at]));
-        [1, 2].into_iter().filter_map(side).map(|(along, _)| along)
+        self.each_beyond_joint(joint, |_, inward| is_highest &= inward.dot(normal) <= slack());
+        let [left, right] = highest;
+        let is_straight = left.dot(&right) < N::ZERO && is_flat(cross2(&left, &right));
+        is_highest && !is_straight
     }
 }

@@ -1,29 +1,27 @@
 //! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
 
-use super::super::seam::{Seam, is_level, slack};
+use super::super::seam::{Seam, is_across, slack};
+use super::super::segment::length_of;
 use super::TriMesh;
-use crate::math::{Point, Real, Vector, cross, max, max_component, unit, unit_or};
+use super::around::noise;
+use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::FeatureId;
 
-/// The unit normal on the side that sees the corners counter-clockwise; zero if they lie on a line.
+/// The unit normal on the side that sees the corners counter-clockwise; zero without area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
-    let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
-    let longer = |best: usize, at: usize| if squared(at) > squared(best) { at } else { best };
+    let [a, b, c] = corners;
+    let lengths = [b - a, c - b, a - c].map(|side| length_of(&side));
+    let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
     let longest = longer(longer(0, 1), 2);
     // The two shorter sides lose least when multiplied.
     let tip = corners[(longest + 2) % 3];
     let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
-    let scale = max(max_component(&sides[0]), max_component(&sides[1])).power_of_two_below();
+    let scale = lengths[longest].power_of_two_below();
     let [first, second] = sides.map(|side| side / scale);
-    let (Some((normal, area)), Some((_, length))) =
-        (unit(&cross(&first, &second)), unit(&(second - first)))
-    else {
-        return Vector::<N, 3>::zeros();
-    };
-    // Below this height the difference of coordinates may be all rounding.
-    let noise = N::lit(16.0) * N::EPSILON * length;
-    let is_flat = area <= noise * length;
-    if is_flat { Vector::<N, 3>::zeros() } else { normal }
+    let found = unit(&cross(&first, &second));
+    let height = |area: N| area * scale / (lengths[longest] / scale);
+    let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
+    found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)
 }
 
 impl<N: Real> TriMesh<N, 3> {
@@ -64,41 +62,34 @@ impl<N: Real> TriMesh<N, 3> {
             .is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
 
+    /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
+    /// are not flat there.
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        let mut seam = Seam::new();
-        let mut add = |triangle: u32, side: usize| {
-            if let Some(inward) = self.inward(triangle, side) {
-                let cosine = self.cosine(triangle, normal);
-                seam.add(inward.dot(normal), cosine, is_level(cosine));
-            }
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        let mut add = |triangle: u32, inward: Vector<N, 3>| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
         };
-        add(part, side);
-        self.each_across(part, side, add);
-        seam.admits(self.is_one_sided)
+        if let Some(inward) = self.inward(part, side) {
+            add(part, inward);
+        }
+        self.each_beyond(part, side, add);
+        let corners = self.corners(part);
+        let edge = corners[(side + 1) % 3] - corners[side];
+        is_across(&edge, normal) && seam.admits(self.is_one_sided)
     }
 
+    /// No side that leaves the corner rises along the normal, and the faces are not flat there.
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        let mut seam = Seam::new();
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         for &triangle in self.topology.joints.parts(joint) {
-            let rise = self.rise_from(triangle, joint, normal);
-            match self.normal(triangle) {
-                Some(own) => seam.add(rise, own.dot(normal), is_level(own.dot(normal))),
-                None => seam.add_rise(rise),
-            }
+            let leaving = self.leaving(triangle, joint);
+            let rise = leaving.iter().map(|side| side.dot(normal)).fold(-N::ONE, max);
+            seam.add_face(rise, &self.normals[triangle as usize]);
         }
+        self.each_beyond_joint(joint, |triangle, inward| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+        });
         seam.admits(self.is_one_sided)
-    }
-
-    /// How much the steeper of the two sides of a triangle that leave a joint rises along a unit
-    /// vector.
-    fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
-        let corners = self.corners(triangle);
-        let at = (0..3).find(|&at| self.joint_ends(triangle, at)[0] == joint).unwrap_or(0);
-        let rise = |turn: usize| {
-            let side = corners[(at + turn) % 3] - corners[at];
-            unit_or(&side, -normal).dot(normal)
-        };
-        max(rise(1), rise(2))
     }
 }

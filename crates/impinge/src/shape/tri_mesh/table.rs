@@ -11,10 +11,14 @@ use crate::shape::FeatureId;
 pub(crate) struct MeshTable<N: Real, const D: usize> {
     /// The unit normal on the front of a triangle, zero without area; `None` where triangles have
     /// no front.
-    pub(super) normal: Option<fn(&[Point<N, D>; 3]) -> Vector<N, D>>,
-    pub(super) admits: fn(&TriMesh<N, D>, u32, FeatureId, &Vector<N, D>) -> bool,
-    pub(super) snapped: fn(&TriMesh<N, D>, u32, &Vector<N, D>) -> Option<Vector<N, D>>,
+    pub(super) normal: Option<NormalFn<N, D>>,
+    pub(super) admits: AdmitsFn<N, D>,
+    pub(super) snapped: SnappedFn<N, D>,
 }
+
+type NormalFn<N, const D: usize> = fn(&[Point<N, D>; 3]) -> Vector<N, D>;
+type AdmitsFn<N, const D: usize> = fn(&TriMesh<N, D>, u32, FeatureId, &Vector<N, D>) -> bool;
+type SnappedFn<N, const D: usize> = fn(&TriMesh<N, D>, u32, &Vector<N, D>) -> Option<Vector<N, D>>;
 
 impl<N: Real> MeshTable<N, 2> {
     pub(crate) const IN_PLANE: Self = Self {

@@ -114,7 +114,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let usable = point.iter().all(|x| x.is_finite_number());
         let ranking = ranking.filter(|_| usable);
         self.rank(&Probe::Near(Aabb::at(*point)), ranking, filter, &|body, farthest| {
-            let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid);
+            let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid)?;
             (distance <= farthest).then_some((distance, found))
         })
     }
@@ -123,5 +123,5 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 /// An object holds a point.
 fn holds<N: Space<D>, const D: usize>(body: &Body<N, D>, point: &Point<N, D>) -> bool {
     let pose = N::pose(&body.isometry);
-    body.shape.project_local_point(&pose.inverse_point(point)).0.is_inside
+    body.shape.contains_local_point(&pose.inverse_point(point))
 }

@@ -38,10 +38,12 @@ impl<N: Real, A> Ranking<N, A> {
 
     /// The largest key that a box may have whose object has a key that still counts.
     ///
-    /// Keys are quotients and square roots of sums, wrong by a few units in the last place.
+    /// Keys are quotients and square roots of sums, wrong by a few units in the last place; by more
+    /// where squares are hardly numbers of the type any more.
     pub(super) fn limit_of_boxes(&self) -> N {
         let limit = self.limit();
-        max(limit + limit * N::lit(8.0) * N::EPSILON, N::MIN_POSITIVE)
+        let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
+        max(limit + limit * N::lit(8.0) * N::EPSILON, least)
     }
 
     /// Keeps the answer if it is among the best. A key that is NaN never is.

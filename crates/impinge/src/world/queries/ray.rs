@@ -27,8 +27,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (ray, mut found) = (*ray, Vec::new());
         self.broad_phase.interferences_with_ray(&ray, &mut found);
         let probe = Probe::Ray(ray);
-        self.candidates(found, &|body| probe.meets(&body.volume()), &groups.into())
-            .filter_map(move |object| Some((object, cast(self.body(object.handle), &ray, true)?)))
+        self.candidates(found, &|body| probe.meets(&body.volume()), &groups.into()).filter_map(
+            move |object| Some((object, cast(self.body(object.handle), &ray, N::INFINITY, true)?)),
+        )
     }
 
     /// The object that a ray meets first, among those able to interact with `groups`, and where; of
@@ -112,20 +113,22 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
         let found = self.rank(&Probe::Ray(*ray), ranking, filter, &|body, latest| {
-            let hit = cast(body, ray, solid).filter(|hit| hit.toi <= latest)?;
+            let hit = cast(body, ray, latest, solid)?;
             Some((hit.toi, hit))
         });
         found.into_iter().map(|(object, _, hit)| (object, hit)).collect()
     }
 }
 
-/// Where a ray meets an object, with the normal in the world frame.
+/// Where a ray meets an object, at `latest` at the latest, with the normal in the world frame.
 fn cast<N: Space<D>, const D: usize>(
     body: &Body<N, D>,
     ray: &Ray<N, D>,
+    latest: N,
     solid: bool,
 ) -> Option<RayIntersection<N, D>> {
     let pose = N::pose(&body.isometry);
-    let local = body.shape.cast_local_ray(&ray.inverse_transformed_by(&pose), solid)?;
+    let local = ray.inverse_transformed_by(&pose);
+    let local = body.shape.cast_local_ray_until(&local, latest, solid)?;
     Some(RayIntersection { normal: pose.vector(&local.normal), ..local })
 }

@@ -52,17 +52,18 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
 /// An object and what was found about it, with the key that it was ranked by.
 pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
 
+/// Gets an object and the largest key that still counts, and returns the key of the object and the
+/// answer; `None` if the object has no key or a larger one.
+pub(super) type Measure<'a, N, const D: usize, A> = dyn Fn(&Body<N, D>, N) -> Option<(N, A)> + 'a;
+
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The best answers, in order, that `measure` gives about objects that the filter allows.
-    ///
-    /// `measure` gets an object and the largest key that still counts and returns the key of the object
-    /// and the answer, or `None` if the key is larger.
     pub(super) fn rank<A>(
         &self,
         probe: &Probe<N, D>,
         ranking: Option<Ranking<N, A>>,
         filter: &QueryFilter<'_, N, D, T>,
-        measure: &dyn Fn(&Body<N, D>, N) -> Option<(N, A)>,
+        measure: &Measure<'_, N, D, A>,
     ) -> Vec<Answer<'_, N, D, T, A>> {
         let Some(mut ranking) = ranking else { return Vec::new() };
         let mut limit = ranking.limit_of_boxes();

@@ -115,8 +115,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Objects that touch or overlap the solid are at distance zero and
     /// [`ClosestPoints::Intersecting`]; of the [`ClosestPoints::WithinMargin`] of others the first lies
     /// on the solid, the second on the object. There is nothing if `count` is zero or `max_distance`
-    /// negative or NaN. Boxes farther apart than the square root of the largest number count as
-    /// infinitely far.
+    /// negative or NaN.
     ///
     /// Costs the search of a tree, and a computation of the distance for each object found and for a
     /// few whose boxes are as near as the last of them.

@@ -1,0 +1,79 @@
+//! How far the objects of a tree reach along a direction.
+
+use super::{Bounds, LANES, Tree};
+use crate::math::{Real, Vector, max};
+
+/// What is sought, and what was found so far.
+struct Reach<'a, N: Real, const D: usize> {
+    direction: Vector<N, D>,
+    /// Boxes that reach at most so much farther than what was found are not opened.
+    tolerance: N,
+    best: N,
+    reach_of: &'a mut dyn FnMut(u32) -> N,
+}
+
+impl<const D: usize> Tree<D> {
+    /// How far the objects reach along a direction: not less, and more by at most a few rounding
+    /// units of `f32` of their coordinates. `reach_of` tells it of one object, and what its box
+    /// reaches is never less. Minus infinity of an empty tree.
+    ///
+    /// Branch and bound, the farthest box of each block first. Free of stale bounds after a refit only.
+    pub(crate) fn reach_along<N: Real>(
+        &self,
+        direction: Vector<N, D>,
+        reach_of: &mut dyn FnMut(u32) -> N,
+    ) -> N {
+        let top = self.layers.len() - 1;
+        let farthest = self.layers[top].bounds.iter().filter(|bounds| bounds.is_finite());
+        let size = farthest.map(|bounds| size_along(bounds, &direction)).fold(N::ZERO, max);
+        // Without it all boxes of a flat floor would be opened, as they reach equally far.
+        let tolerance = N::lit(4.0 * f64::from(f32::EPSILON)) * size;
+        let mut reach = Reach { direction, tolerance, best: -N::INFINITY, reach_of };
+        for block in 0..self.layers[top].blocks.len() {
+            self.open(top, block, &mut reach);
+        }
+        reach.best + tolerance
+    }
+
+    /// Goes down at most as many layers as there are, which is at most eight.
+    fn open<N: Real>(&self, layer: usize, block: usize, reach: &mut Reach<'_, N, D>) {
+        let lanes = &self.layers[layer].blocks[block];
+        let mut farthest: [(N, usize); LANES] = core::array::from_fn(|lane| {
+            let bounds = lanes.lane(lane);
+            let far = box_reach(&bounds, &reach.direction);
+            let far = if far.partial_cmp(&far).is_some() { far } else { -N::INFINITY };
+            (if bounds.is_finite() { far } else { -N::INFINITY }, lane)
+        });
+        farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
+        for (far, lane) in farthest {
+            // False of NaN: what is not finite ends the search.
+            let is_farther = far > reach.best + reach.tolerance;
+            if !is_farther {
+                break;
+            }
+            let below = block * LANES + lane;
+            if layer > 0 {
+                self.open(layer - 1, below, reach);
+            } else {
+                reach.best = max((reach.reach_of)(self.ids[below]), reach.best);
+            }
+        }
+    }
+}
+
+fn box_reach<N: Real, const D: usize>(bounds: &Bounds<D>, direction: &Vector<N, D>) -> N {
+    let along = |axis: usize| {
+        let corner = if direction[axis] < N::ZERO { bounds.lo[axis] } else { bounds.hi[axis] };
+        direction[axis] * N::lit(f64::from(corner))
+    };
+    (0..D).fold(N::ZERO, |sum, axis| sum + along(axis))
+}
+
+/// What coordinates in the box may lose by rounding is a share of this.
+fn size_along<N: Real, const D: usize>(bounds: &Bounds<D>, direction: &Vector<N, D>) -> N {
+    let along = |axis: usize| {
+        let largest = bounds.lo[axis].abs().max(bounds.hi[axis].abs());
+        direction[axis].abs() * N::lit(f64::from(largest))
+    };
+    (0..D).fold(N::ZERO, |sum, axis| sum + along(axis))
+}

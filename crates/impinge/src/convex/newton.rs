@@ -1,0 +1,101 @@
+//! From a good normal to one that is right to the last bits, where surfaces are curved.
+
+use super::candidate::Candidate;
+use super::climb::climb;
+use super::difference::{Difference, noise};
+use super::simplex::Simplicial;
+use crate::math::{Vector, unit};
+
+/// Cap on the number of steps; from where iterations stop, one or two are enough.
+const STEPS: usize = 6;
+
+/// Raises the height of `best`, which is known to the tolerance of the iterations, as far as the
+/// arithmetic goes: by Newton's method where both surfaces are smooth, else by a search.
+pub(super) fn sharpen<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+) {
+    if !settles(difference, best) {
+        climb(difference, best);
+    }
+}
+
+/// Newton's method on the sphere of normals; whether it has ended at a normal across which the two
+/// support points lie.
+///
+/// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is what is
+/// left of `w` across `n`, and zero at the answer. Each step is judged by what it proves and by that
+/// slope: at kinks of the height, the flat faces and sharp edges, steps fail and nothing is lost.
+pub(super) fn settles<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+) -> bool {
+    let mut slope = across(&best.vertex.point, &best.normal);
+    for _ in 0..STEPS {
+        if slope.norm() <= noise() {
+            return true;
+        }
+        let Some(step) = step(difference, best, &slope) else { return false };
+        let Some((normal, _)) = unit(&(best.normal + step)) else { return false };
+        let next = Candidate::along(difference, normal);
+        let left = across(&next.vertex.point, &normal);
+        let helps = next.height >= best.height - noise::<N>() * N::HALF
+            && left.norm() < slope.norm() * N::HALF;
+        if !helps {
+            return slope.norm() <= noise::<N>() * N::lit(64.0);
+        }
+        (*best, slope) = (next, left);
+    }
+    slope.norm() <= noise::<N>() * N::lit(64.0)
+}
+
+/// What is left of a vector across a unit vector.
+fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) -> Vector<N, D> {
+    v - n * n.dot(v)
+}
+
+/// The step that takes the slope to zero, by conjugate gradients (M. Hestenes and E. Stiefel, 1952):
+/// across a normal there are `D − 1` directions, and as many rounds are exact. `None` where the height
+/// is not curved downwards.
+fn step<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    slope: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let (mut step, mut residual, mut along) = (Vector::<N, D>::zeros(), *slope, *slope);
+    for _ in 1..D {
+        let squared = residual.norm_squared();
+        if squared == N::ZERO {
+            break;
+        }
+        let bent = bend(difference, best, &along)?;
+        let curvature = along.dot(&bent);
+        if !(curvature < N::ZERO) {
+            return None;
+        }
+        let share = squared / curvature;
+        step -= along * share;
+        let next = residual - bent * share;
+        along = next + along * (next.norm_squared() / squared);
+        residual = next;
+    }
+    Some(step)
+}
+
+/// How the slope changes along a direction across the normal, for one unit of turning: by a difference
+/// to both sides.
+fn bend<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &Candidate<N, D>,
+    along: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let (direction, length) = unit(along)?;
+    let turn = N::EPSILON.sqrt() * N::lit(256.0);
+    let at = |sign: N| {
+        let (normal, _) = unit(&(best.normal + direction * (turn * sign)))?;
+        Some(difference.lowest(&normal).point)
+    };
+    let change = (at(N::ONE)? - at(-N::ONE)?) / (turn * N::TWO);
+    let bend = across(&change, &best.normal) - direction * best.height;
+    Some(bend * length)
+}

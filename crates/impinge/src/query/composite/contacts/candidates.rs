@@ -1,0 +1,80 @@
+//! Which parts may touch.
+
+use super::super::between::Between;
+use super::super::bounds::{aabb_of, enclosing};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Pose, Space};
+use crate::shape::CompositeShape;
+
+/// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape
+/// that is not a composite.
+///
+/// Of a shape with itself: the pairs of parts that do not hang together, each once.
+pub(super) fn candidates<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    is_self: bool,
+    reach: N,
+) -> Vec<[u32; 2]> {
+    let mut found = Vec::new();
+    match between.composites() {
+        [Some(parts), Some(_)] if is_self => of_one(parts, reach, &mut found),
+        [Some(parts1), Some(parts2)] => of_two(between, (parts1, parts2), reach, &mut found),
+        [None, Some(parts2)] => {
+            let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
+            let aabb = enclosing(&aabb, &between.pose21);
+            parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
+        }
+        // Composites come last among the kinds.
+        [_, None] => {}
+    }
+    found.sort_unstable();
+    found
+}
+
+/// The parts of one of two composites, each looked up in the other: of the one with fewer parts those
+/// that are near the other.
+fn of_two<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    (parts1, parts2): (&dyn CompositeShape<N, D>, &dyn CompositeShape<N, D>),
+    reach: N,
+    found: &mut Vec<[u32; 2]>,
+) {
+    let poses = [&between.pose21, &between.pair.pose12];
+    let is_first = parts1.num_parts() <= parts2.num_parts();
+    let (fewer, more) = if is_first { (parts1, parts2) } else { (parts2, parts1) };
+    let (to_more, to_fewer) = if is_first { (poses[0], poses[1]) } else { (poses[1], poses[0]) };
+    let whole = more.search().bounds().transformed_by(to_fewer).loosened(reach);
+    fewer.search().overlapping(&enclosing(&whole, to_fewer), &mut |part| {
+        let aabb = box_of_part(fewer, part, to_more, reach);
+        more.search().overlapping(&aabb, &mut |other| {
+            found.push(if is_first { [part, other] } else { [other, part] });
+        });
+    });
+}
+
+/// The parts of one composite, each with those of larger numbers.
+fn of_one<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    reach: N,
+    found: &mut Vec<[u32; 2]>,
+) {
+    for part1 in 0..parts.num_parts() {
+        let aabb = box_of_part(parts, part1, &Pose::identity(), reach);
+        parts.search().overlapping(&aabb, &mut |part2| {
+            if part1 < part2 && !parts.are_adjacent(part1, part2) {
+                found.push([part1, part2]);
+            }
+        });
+    }
+}
+
+/// The box of a part and of what is within `reach` of it, seen from the frame that `pose` leads to.
+fn box_of_part<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    index: u32,
+    pose: &Pose<N, D>,
+    reach: N,
+) -> Aabb<N, D> {
+    let part = parts.part(index);
+    enclosing(&part.solid.as_shape().aabb(&pose.compose(&part.pose)).loosened(reach), pose)
+}

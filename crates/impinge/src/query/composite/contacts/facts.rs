@@ -1,0 +1,194 @@
+//! What is to be said of each pair of parts.
+
+use super::judge::{Case, Verdict, faces, judge};
+use super::scene::{PartPair, Scene};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Space, Vector};
+use crate::query::manifold_build::{Along, Patch, build_along, build_between};
+use crate::query::{ManifoldRequest, RawManifold};
+
+/// How a contact of two parts stands as one of the two shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// It is one.
+    Own,
+    /// It is one with the face of a part, whose seams the parts alone would touch at.
+    Snapped,
+    /// The same, beyond a ridge: it is one if nothing else explains that the parts overlap.
+    Beyond,
+    /// It is none, as long as there is another.
+    Left,
+}
+
+/// Two parts that are within reach of each other.
+#[derive(Clone, Debug)]
+pub(super) struct Finding<N: Real, const D: usize> {
+    pub(super) parts: [u32; 2],
+    /// How far the two are apart, each taken alone.
+    pub(super) distance: N,
+    /// What they say of the contact of the shapes, in the frame of the first.
+    pub(super) patch: Patch<N, D>,
+    pub(super) standing: Standing,
+    /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
+    /// if it touches otherwise.
+    pub(super) face: Option<Vector<N, D>>,
+    /// Lengths below this are rounding errors.
+    pub(super) tolerance: N,
+}
+
+impl<N: Real, const D: usize> Finding<N, D> {
+    /// The least distance of its points.
+    pub(super) fn lowest(&self) -> N {
+        let distances = self.patch.points.iter().map(|point| point.raw.distance);
+        distances.fold(N::INFINITY, crate::math::min)
+    }
+}
+
+/// Where the solid that meets a surface comes from, where it is not just its middle.
+pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
+
+/// What is to be said of two parts; `None` if they are beyond reach or cannot touch.
+pub(super) fn finding<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    parts: [u32; 2],
+    reference: &Reference<N, D>,
+    request: &ManifoldRequest<N>,
+) -> Option<Finding<N, D>> {
+    let placed = scene.pair(parts);
+    let has_surface = scene.surfaces.iter().any(Option::is_some);
+    match placed.centers() {
+        Some(centers) if has_surface => {
+            of_surfaces(scene, &Meeting { placed, parts, centers, reference }, request)
+        }
+        // A half-space has the same normal everywhere: there are no seams to slide over.
+        _ => plain(&placed, parts, request),
+    }
+}
+
+/// Solids side by side: their contacts are those of the whole.
+fn plain<N: Space<D>, const D: usize>(
+    placed: &PartPair<'_, N, D>,
+    parts: [u32; 2],
+    request: &ManifoldRequest<N>,
+) -> Option<Finding<N, D>> {
+    let mut raw = RawManifold::default();
+    (N::tables().contacts)(&placed.pair(), request, &mut raw);
+    let patch = placed.patch(&raw, parts);
+    let (standing, tolerance) = (Standing::Own, placed.tolerance());
+    let (distance, face) = (N::INFINITY, None);
+    let mut finding = Finding { parts, distance, patch, standing, face, tolerance };
+    finding.distance = finding.lowest();
+    (!finding.patch.points.is_empty()).then_some(finding)
+}
+
+/// Two parts, of which one at least belongs to a surface.
+struct Meeting<'a, N: Real, const D: usize> {
+    placed: PartPair<'a, N, D>,
+    parts: [u32; 2],
+    /// Of the part of the first shape and of that of the second, as seen by both shapes.
+    centers: [[Point<N, D>; 2]; 2],
+    /// Of the first shape, as seen by the second.
+    reference: &'a Reference<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
+    /// What the two surfaces say of a separation of the two parts.
+    fn verdicts(&self, scene: &Scene<'_, N, D>, found: &Separation<N, D>) -> [Verdict<N, D>; 2] {
+        // Where the other solid comes from, and the part itself, as the shape of the part sees it.
+        let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
+        let other2 = self.reference.unwrap_or(other2);
+        let [surface1, surface2] = scene.surfaces;
+        let can_touch =
+            faces(surface1, self.parts[0], &other1) && faces(surface2, self.parts[1], &other2);
+        if !can_touch {
+            return [Verdict::Nothing; 2];
+        }
+        let features = (N::tables().witness_features)(&self.placed.pair(), found);
+        let [feature1, feature2] = self.placed.turned(features);
+        let normal = self.placed.outward(&found.normal);
+        let (part, feature, toward) = (self.parts[0], feature1, other1 - own1);
+        let case1 = Case { part, feature, outward: normal, toward };
+        let (part, feature, toward) = (self.parts[1], feature2, other2 - own2);
+        let outward = -self.placed.seen_by_second(&normal);
+        let case2 = Case { part, feature, outward, toward };
+        [judge(surface1, &case1), judge(surface2, &case2)]
+    }
+}
+
+fn of_surfaces<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    meeting: &Meeting<'_, N, D>,
+    request: &ManifoldRequest<N>,
+) -> Option<Finding<N, D>> {
+    let (placed, parts) = (&meeting.placed, meeting.parts);
+    let pair = placed.pair();
+    let found = (N::tables().separation)(&pair, request.prediction)?;
+    if !found.distance.is_finite_number() {
+        return None;
+    }
+    let verdicts = meeting.verdicts(scene, &found);
+    let normal = placed.outward(&found.normal);
+    let mut raw = RawManifold::default();
+    let mut standing = match settled(placed, &verdicts, &normal) {
+        Settled::Nothing => return None,
+        Settled::Refused => Standing::Left,
+        Settled::Found(normal) => {
+            let witness = Separation { normal: placed.inward(&normal), ..found };
+            build_between(&pair, &witness, request, &mut raw);
+            Standing::Own
+        }
+        Settled::Forced(normal, standing) => {
+            let least = if found.distance > N::ZERO { found.distance } else { -N::INFINITY };
+            let along = Along { normal: placed.inward(&normal), least };
+            build_along(&pair, &along, request, &mut raw);
+            standing
+        }
+    };
+    if raw.points.is_empty() {
+        standing = Standing::Left;
+        build_between(&pair, &found, request, &mut raw);
+    }
+    let (patch, tolerance) = (placed.patch(&raw, parts), placed.tolerance());
+    let face = verdicts[1].face().filter(|_| standing != Standing::Left);
+    Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
+}
+
+/// What both surfaces together say.
+enum Settled<N: Real, const D: usize> {
+    Nothing,
+    Refused,
+    /// A contact with this normal at the witness.
+    Found(Vector<N, D>),
+    /// Contacts with a face along this normal, where there are some.
+    Forced(Vector<N, D>, Standing),
+}
+
+/// Takes the verdicts together; `normal` is the one that both are about. All in the frame of
+/// the first shape.
+fn settled<N: Space<D>, const D: usize>(
+    placed: &PartPair<'_, N, D>,
+    verdicts: &[Verdict<N, D>; 2],
+    normal: &Vector<N, D>,
+) -> Settled<N, D> {
+    use Verdict::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
+    let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
+    let standing = if verdicts.iter().any(|verdict| matches!(verdict, Beyond(_))) {
+        Standing::Beyond
+    } else {
+        Standing::Snapped
+    };
+    match verdicts {
+        [Nothing, _] | [_, Nothing] => Settled::Nothing,
+        [Snapped(face1) | Beyond(face1), Snapped(face2) | Beyond(face2)] => {
+            let face2 = of_second(face2);
+            let is_first_nearer = face1.dot(normal) > face2.dot(normal);
+            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, standing)
+        }
+        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), standing),
+        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, standing),
+        [Refused, _] | [_, Refused] => Settled::Refused,
+        [_, Face(face)] => Settled::Found(of_second(face)),
+        [Face(face), _] => Settled::Found(*face),
+        [Admitted, Admitted] => Settled::Found(*normal),
+    }
+}

@@ -1,0 +1,230 @@
+//! Contacts of composites: those of the parts, as the whole has them.
+//!
+//! For every two parts within reach [`facts`] finds their separation and asks the surfaces, if there
+//! are any, whether the normal is one that the whole has there ([`judge`]): if it is that of a seam,
+//! only contacts with the face of the part count. [`hidden`] drops contacts from behind a face that is
+//! touched from its front, [`resolve`] those that another contact
+//! explains, and makes sure that solids that overlap have a contact. What is left is merged into flat
+//! patches.
+//!
+//! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
+//! their neighbours.
+
+mod candidates;
+mod facts;
+mod hidden;
+mod judge;
+mod resolve;
+mod scene;
+mod view;
+
+use self::facts::{Finding, Reference, Standing};
+use self::scene::Scene;
+use super::between::Between;
+use super::bounds::aabb_of;
+use super::ray::RayQuestion;
+use crate::bounding_volume::Ray;
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Space, Vector, max, min};
+use crate::query::manifold_build::{Merging, Patch, merge};
+use crate::query::pair::Placed;
+use crate::query::separation::placed;
+use crate::query::{ManifoldRequest, Pair, PairIds};
+use crate::shape::{Geometry, Kind};
+
+/// So many points of two parts are kept before they are merged with those of others: all that two
+/// facets of usual solids have.
+const PART_POINTS: usize = 16;
+
+/// Parts that are farther than the nearest by no more than this part of its distance are looked at
+/// too.
+const NEARLY: f64 = 1.0 / 64.0;
+
+/// The contacts of two shapes of which one at least is a composite, kept from update to update; in
+/// the frame of the first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompositeContacts<N: Real, const D: usize> {
+    patches: Vec<Patch<N, D>>,
+    ids: PairIds,
+    /// In the frame of the second shape, where the middle of the first was when it was last seen on
+    /// the side of the surface that it came from: a solid that was pushed halfway through a surface
+    /// with two sides, or jumped there, is still on its old side.
+    reference: Reference<N, D>,
+}
+
+impl<N: Real, const D: usize> CompositeContacts<N, D> {
+    /// How many contact points there are.
+    pub(crate) fn len(&self) -> usize {
+        self.patches.iter().map(|patch| patch.points.len()).sum()
+    }
+
+    /// The two shapes change places.
+    pub(crate) fn flip_names(&mut self) {
+        self.reference = None;
+        for point in self.patches.iter_mut().flat_map(|patch| &mut patch.points) {
+            point.parts.reverse();
+            core::mem::swap(&mut point.raw.feature1, &mut point.raw.feature2);
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
+    /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
+    /// and features stay keep their numbers.
+    pub(crate) fn update(
+        &mut self,
+        between: &Between<'_, N, D>,
+        is_self: bool,
+        request: &ManifoldRequest<N>,
+    ) {
+        let center = middle_of_first(between);
+        let reference = center.map(|center| advanced(between, self.reference, center));
+        let query = Query { between, is_self, reference: &reference, request };
+        let findings = query.findings();
+        let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
+        self.reference = if overlaps { reference } else { center };
+        let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
+        let pieces = findings.into_iter().filter(|found| found.standing != Standing::Left);
+        let pieces = pieces.map(|finding| finding.patch).collect();
+        let merging = Merging { request, tolerance, old: &self.patches };
+        self.patches = merge(pieces, &merging, &mut self.ids);
+    }
+}
+
+/// The middle of a convex first shape, in the frame of the second.
+fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
+    let map = Geometry(between.pair.first).as_support_map()?;
+    Some(between.pose21.point(&map.center()))
+}
+
+/// Where the middle of the first shape counts as being: where it is, unless the straight way there
+/// from where it was leads through the surface and is no longer than the shape is.
+fn advanced<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    old: Reference<N, D>,
+    center: Point<N, D>,
+) -> Point<N, D> {
+    let [_, composite] = between.composites();
+    let composite = composite.filter(|composite| composite.surface().is_some());
+    let map = Geometry(between.pair.first).as_support_map();
+    let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
+    let way = center - old;
+    if way == Vector::<N, D>::zeros() || way.norm() > N::TWO * (map.reach() + map.rounding()) {
+        return center;
+    }
+    let ray = Ray::new(old, way);
+    let (question, mut is_hit) = (RayQuestion { ray, max_time: N::ONE, solid: false }, false);
+    (N::tables().each_hit)(composite, &question, &mut |_| {
+        is_hit = true;
+        -N::ONE
+    });
+    if is_hit { old } else { center }
+}
+
+/// What is asked of a pair.
+struct Query<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    is_self: bool,
+    reference: &'a Reference<N, D>,
+    request: &'a ManifoldRequest<N>,
+}
+
+impl<N: Space<D>, const D: usize> Query<'_, N, D> {
+    /// What the parts say; which of it holds is settled.
+    fn findings(&self) -> Vec<Finding<N, D>> {
+        let request = self.of_parts();
+        let reach = request.prediction;
+        let candidates = candidates::candidates(self.between, self.is_self, reach);
+        let scene = Scene::new(self.between);
+        let one = |&parts| facts::finding(&scene, parts, self.reference, &request);
+        let mut findings: Vec<_> = candidates.iter().filter_map(one).collect();
+        resolve::resolve(&scene, &mut findings);
+        findings
+    }
+
+    /// What is asked of two parts: of points that turning brings near, the nearest point may lie on
+    /// another part, so that is looked at when all are known.
+    fn of_parts(&self) -> ManifoldRequest<N> {
+        let map = Geometry(self.between.pair.first).as_support_map();
+        let size = map.map_or(N::ZERO, |map| N::TWO * (map.reach() + map.rounding()));
+        let ManifoldRequest { prediction, sine, .. } = *self.request;
+        let prediction = prediction + sine * size;
+        ManifoldRequest { prediction, sine: N::ZERO, max_points: PART_POINTS }
+    }
+}
+
+/// The contact of two placed shapes in the world frame, `None` beyond `limit`: of composites the
+/// deepest of what their manifolds are made of.
+pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let nearest = (N::tables().separation_in_world)(placed1, placed2, limit)?;
+    let (between, is_swapped) = Between::canonical(placed1, placed2);
+    if let [None, None] = between.composites() {
+        return Some(nearest);
+    }
+    let first = if is_swapped { &placed2.pose } else { &placed1.pose };
+    let found = deepest(&between, nearest.distance, limit)?;
+    Some(placed(&found, first, is_swapped))
+}
+
+/// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
+/// near as the nearest are looked at, unless that is one that cannot be touched.
+fn deepest<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    distance: N,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    // Along the normal of its face a part may be a little farther than it is.
+    let near = max(distance, N::ZERO);
+    let reach = near + near * N::lit(NEARLY) + rounding(between);
+    let found =
+        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)));
+    found.filter(|found| found.distance <= limit)
+}
+
+/// Lengths below this are rounding errors of the pair.
+fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
+    let size = |kind: Kind<'_, N, D>| {
+        let aabb = aabb_of(kind, &Pose::identity());
+        if aabb.is_bounded() { aabb.half_extents().norm() } else { N::ZERO }
+    };
+    let sizes = size(between.pair.first) + size(between.pair.second);
+    N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
+}
+
+fn deepest_within<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    reach: N,
+) -> Option<Separation<N, D>> {
+    let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
+    let reference = middle_of_first(between);
+    let query = Query { between, is_self: false, reference: &reference, request: &request };
+    let findings = query.findings();
+    let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
+    let points = kept.flat_map(|finding| {
+        let normal = finding.patch.normal;
+        finding.patch.points.iter().map(move |point| (normal, point.raw))
+    });
+    let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+    deepest.map(|(normal, point)| {
+        let (distance, point1) = (point.distance, point.point1);
+        Separation { distance, normal, point1, point2: point1 + normal * distance }
+    })
+}
+
+/// How far those parts of one composite are apart that do not hang together; negative where they
+/// overlap, `None` beyond `limit`. The pair is that of the shape with itself.
+pub(crate) fn own_distance<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<N> {
+    let between = Between::of_pair(pair);
+    let candidates = candidates::candidates(&between, true, max(limit, N::ZERO));
+    let scene = Scene::new(&between);
+    let one = |&parts| (N::tables().separation)(&scene.pair(parts).pair(), limit);
+    let distances = candidates.iter().filter_map(one).map(|found| found.distance);
+    distances.reduce(min)
+}

@@ -1,0 +1,239 @@
+//! The parts of two shapes, placed for computing with them.
+
+use smallvec::SmallVec;
+
+use super::super::between::{Between, anchor, recentred};
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::query::manifold_build::{Patch, PatchPoint};
+use crate::query::{Pair, RawManifold};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
+
+/// Two shapes, one of them a composite at least.
+pub(super) struct Scene<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    /// What holds the parts of each together.
+    pub(super) surfaces: [Option<&'a dyn Surface<N, D>>; 2],
+}
+
+/// A part of one of the shapes; a convex shape is its own part.
+struct Body<'a, N: Real, const D: usize> {
+    /// Where it lies to the axes of its shape put through the point that it is seen from.
+    pose: Pose<N, D>,
+    solid: Solid<'a, N, D>,
+}
+
+enum Solid<'a, N: Real, const D: usize> {
+    Whole(Kind<'a, N, D>),
+    Part(PartSolid<'a, N, D>),
+}
+
+/// A part of the first shape and one of the second, in the order of their kinds.
+///
+/// Both are seen from one point close to them, as [`Between::parts`] does; so this is the same
+/// pair, up to the order.
+pub(super) struct PartPair<'a, N: Real, const D: usize> {
+    /// In the order of kinds.
+    bodies: [Body<'a, N, D>; 2],
+    pose12: Pose<N, D>,
+    /// The first of the bodies is the part of the second shape.
+    is_turned: bool,
+    /// The frame of the first of the bodies, in that of the first shape put through the point.
+    frame: Pose<N, D>,
+    /// The rotation of the second shape's frame in that of the first.
+    turn: Pose<N, D>,
+    /// The point in the frames of the two shapes.
+    origins: [Point<N, D>; 2],
+}
+
+/// A part seen from another origin. Corners are moved rather than the pose, so that solids that share
+/// corners still do.
+fn moved<'a, N: Real, const D: usize>(
+    part: &Part<'a, N, D>,
+    origin: &Point<N, D>,
+) -> Body<'a, N, D> {
+    let local = part.pose.inverse_point(origin).coords;
+    let Pose { rotation, translation } = part.pose;
+    match recentred(&part.solid, &local) {
+        Some(solid) => {
+            let translation = Vector::<N, D>::zeros();
+            Body { pose: Pose { rotation, translation }, solid: Solid::Part(solid) }
+        }
+        None => {
+            let translation = translation - origin.coords;
+            Body { pose: Pose { rotation, translation }, solid: Solid::Part(part.solid) }
+        }
+    }
+}
+
+impl<N: Real, const D: usize> Body<'_, N, D> {
+    fn kind(&self) -> Kind<'_, N, D> {
+        match &self.solid {
+            Solid::Whole(kind) => *kind,
+            Solid::Part(solid) => solid.geometry().0,
+        }
+    }
+
+    /// A point well inside; `None` of a half-space.
+    fn center(&self) -> Option<Point<N, D>> {
+        let map = Geometry(self.kind()).as_support_map()?;
+        Some(self.pose.point(&map.center()))
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
+    pub(super) fn new(between: &'a Between<'a, N, D>) -> Self {
+        let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
+        Self { between, surfaces: between.composites().map(surface) }
+    }
+
+    /// The first shape is one solid.
+    pub(super) fn first_is_convex(&self) -> bool {
+        self.between.composites()[0].is_none()
+    }
+
+    /// Two parts of the second shape hang together.
+    pub(super) fn are_adjacent(&self, part: u32, other: u32) -> bool {
+        let [_, composite] = self.between.composites();
+        composite.is_some_and(|composite| composite.are_adjacent(part, other))
+    }
+
+    /// How low and how high a part of the second shape lies over the plane of another with a given
+    /// normal, and what counts as rounding. `None` of half-spaces.
+    pub(super) fn heights(
+        &self,
+        part: u32,
+        plane: u32,
+        normal: &Vector<N, D>,
+    ) -> Option<(N, N, N)> {
+        let composite = self.between.composites()[1]?;
+        let origin = anchor(&composite.part(plane));
+        let (part, plane) =
+            (moved(&composite.part(part), &origin), moved(&composite.part(plane), &origin));
+        let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
+            let map = Geometry(body.kind()).as_support_map()?;
+            let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));
+            Some((along.dot(&point.coords), map.reach()))
+        };
+        let (level, reach1) = top(&plane, normal)?;
+        let ((high, reach2), (low, _)) = (top(&part, normal)?, top(&part, &-normal)?);
+        Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
+    }
+
+    /// Two parts.
+    pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
+        let [composite1, composite2] = self.between.composites();
+        let piece1 = composite1.map(|composite| composite.part(part1));
+        let piece2 = composite2.map(|composite| composite.part(part2));
+        let pose21 = &self.between.pose21;
+        let origins = match &piece1 {
+            None => [Point::origin(), Point::from(pose21.translation)],
+            Some(piece1) => {
+                let origin1 = anchor(piece1);
+                [origin1, pose21.point(&origin1)]
+            }
+        };
+        let body = |kind, piece: Option<Part<'a, N, D>>, origin| match piece {
+            None => Body { pose: Pose::identity(), solid: Solid::Whole(kind) },
+            Some(piece) => moved(&piece, origin),
+        };
+        let whole = &self.between.pair;
+        let bodies =
+            [body(whole.first, piece1, &origins[0]), body(whole.second, piece2, &origins[1])];
+        PartPair::new(bodies, Pose { rotation: whole.pose12.rotation, ..Pose::identity() }, origins)
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
+    fn new(
+        [body1, body2]: [Body<'a, N, D>; 2],
+        turn: Pose<N, D>,
+        origins: [Point<N, D>; 2],
+    ) -> Self {
+        let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();
+        let is_turned = kind(&body1) > kind(&body2);
+        let (frame1, frame2) = (body1.pose, turn.compose(&body2.pose));
+        let (bodies, frame, other) = if is_turned {
+            ([body2, body1], frame2, frame1)
+        } else {
+            ([body1, body2], frame1, frame2)
+        };
+        let pose12 = Pose::relative(&frame, &other);
+        Self { bodies, pose12, is_turned, frame, turn, origins }
+    }
+}
+
+impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
+    /// The two parts in the order of their kinds.
+    pub(super) fn pair(&self) -> Pair<'_, N, D> {
+        let [first, second] = &self.bodies;
+        Pair { first: first.kind(), second: second.kind(), pose12: self.pose12 }
+    }
+
+    /// Points well inside the part of the first shape and that of the second, each as seen by the
+    /// first shape and by the second; `None` if one is a half-space.
+    pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
+        let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
+        let [origin1, origin2] = self.origins.map(|origin| origin.coords);
+        let [in1, in2] = [self.turn.inverse_point(&center1), self.turn.point(&center2)];
+        Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
+    }
+
+    /// Lengths below this are rounding errors of the pair.
+    pub(super) fn tolerance(&self) -> N {
+        let size = |body: &Body<'_, N, D>| {
+            let map = Geometry(body.kind()).as_support_map();
+            map.map_or(N::ZERO, |map| map.reach() + map.rounding())
+        };
+        let lengths = size(&self.bodies[0]) + size(&self.bodies[1]);
+        N::lit(16.0) * N::EPSILON * (lengths + self.pose12.translation.norm())
+    }
+
+    /// Something given for the first shape and the second, in the order of the kinds, or back.
+    pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
+        if self.is_turned { [b, a] } else { [a, b] }
+    }
+
+    /// A direction in the second shape's frame, in the first's.
+    pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.turn.vector(direction)
+    }
+
+    /// A direction in the first shape's frame, in the second's.
+    pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.turn.inverse_vector(direction)
+    }
+
+    /// A direction from the first body to the second, as one from the first shape to the second.
+    pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
+        let normal = self.frame.vector(normal);
+        if self.is_turned { -normal } else { normal }
+    }
+
+    /// The opposite of [`Self::outward`].
+    pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
+        let normal = self.frame.inverse_vector(normal);
+        if self.is_turned { -normal } else { normal }
+    }
+
+    /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
+    pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+        let mut pair = self.pair();
+        pair.pose12.translation += self.inward(way);
+        let found = (N::tables().separation)(&pair, -tolerance);
+        found.is_none_or(|found| found.distance > -tolerance)
+    }
+
+    /// A manifold of the bodies as one of the shapes, in the frame of the first.
+    pub(super) fn patch(&self, raw: &RawManifold<N, D>, parts: [u32; 2]) -> Patch<N, D> {
+        let mut points = SmallVec::new();
+        for point in &raw.points {
+            let mut placed = *point;
+            let across = if self.is_turned { point.distance } else { N::ZERO };
+            let foot = self.frame.point(&(point.point1 + raw.normal * across));
+            placed.point1 = self.origins[0] + foot.coords;
+            [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
+            points.push(PatchPoint { raw: placed, parts });
+        }
+        Patch { normal: self.outward(&raw.normal), points }
+    }
+}

@@ -1,0 +1,105 @@
+//! When a moving composite first touches another shape: when the first of its parts does.
+
+use super::between::{Between, by_number};
+use super::bounds::loosened;
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Real, Space, Vector};
+use crate::query::impact::{Arrival, Path, advance};
+use crate::shape::CompositeShape;
+
+/// The arrival of one part at another, in the frame of the first shape, and which parts they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartArrival<N: Real, const D: usize> {
+    pub(crate) arrival: Arrival<N, D>,
+    pub(crate) parts: [u32; 2],
+}
+
+/// The first arrival of two parts; of several at one time that of the first parts by number. A contact
+/// at the start counts, or does not, for each pair of parts by itself.
+///
+/// Cost: each part of the first shape, or of the second if that has fewer, searches the other on its
+/// way; ways end at the first arrival found so far.
+pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    path: &Path<N, D>,
+) -> Option<PartArrival<N, D>> {
+    let mut search = Search { between, path, first: None };
+    match between.composites() {
+        [None, None] => search.hold([0, 0]),
+        [Some(parts1), None] => search.each_on_way(1, 0, parts1),
+        [None, Some(parts2)] => search.each_on_way(0, 0, parts2),
+        [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
+    }
+    search.first
+}
+
+struct Search<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    path: &'a Path<N, D>,
+    first: Option<PartArrival<N, D>>,
+}
+
+impl<N: Space<D>, const D: usize> Search<'_, N, D> {
+    fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
+        let (which, fewer, more) = by_number(parts1, parts2);
+        let aabb = self.grown(&self.between.whole_in_other(1 - which));
+        let (velocity, end) = (self.velocity(1 - which), self.end());
+        fewer.search().cast(&aabb, &velocity, end, &mut |part, _| {
+            self.each_on_way(which, part, more);
+            self.end()
+        });
+    }
+
+    /// One part of one shape and those of the other that its box meets.
+    fn each_on_way(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+        let aabb = self.grown(&self.between.aabb_in_other(which, part));
+        let (velocity, end) = (self.velocity(which), self.end());
+        others.search().cast(&aabb, &velocity, end, &mut |other, _| {
+            self.hold(if which == 0 { [part, other] } else { [other, part] });
+            self.end()
+        });
+    }
+
+    /// The convex algorithm for two parts. Parts of indistinguishable shapes are so themselves if their
+    /// numbers agree.
+    fn hold(&mut self, parts: [u32; 2]) {
+        let placed = self.between.parts(parts);
+        let path = Path {
+            velocity: placed.to_first_part(&self.path.velocity),
+            end: self.first.map_or(self.path.end, |first| first.arrival.along),
+            mirrored: self.path.mirrored && parts[0] == parts[1],
+            ..*self.path
+        };
+        let Some(found) = advance(&placed.pair(), &path) else { return };
+        let arrival = Arrival { separation: placed.in_first(&found.separation), ..found };
+        let found = PartArrival { arrival, parts };
+        if self.first.is_none_or(|first| found.is_before(&first)) {
+            self.first = Some(found);
+        }
+    }
+
+    /// How a shape moves in the frame of the other.
+    fn velocity(&self, which: usize) -> Vector<N, D> {
+        let velocity = &self.path.velocity;
+        if which == 1 { *velocity } else { -self.between.pose21.vector(velocity) }
+    }
+
+    /// A box that meets another when the solids in them are as near as they shall come.
+    fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        let grown = aabb.loosened(self.path.target);
+        Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
+    }
+
+    fn end(&self) -> N {
+        let end = self.first.map_or(self.path.end, |first| first.arrival.along);
+        if end >= N::ZERO { loosened(end) } else { -N::ONE }
+    }
+}
+
+impl<N: Real, const D: usize> PartArrival<N, D> {
+    /// Earlier, or at the same time and earlier by number.
+    fn is_before(&self, other: &Self) -> bool {
+        let (along, others) = (self.arrival.along, other.arrival.along);
+        along < others || (along == others && self.parts < other.parts)
+    }
+}

@@ -1,0 +1,313 @@
+//! How long two bodies that move and turn certainly stay apart.
+//!
+//! Everything is seen along one direction, the normal: it separates the bodies by some gap, and goes
+//! on to separate them for as long as their points have not moved towards each other along it by as
+//! much. The direction is fixed in the world, or, where one of the bodies is a half-space that turns,
+//! in that body.
+
+use super::motion::{ConstantVelocities, RigidMotion};
+use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
+use crate::shape::{Geometry, Shape};
+
+/// At most so many spans are tried to find how far a bound carries.
+const MAX_SPANS: usize = 64;
+
+/// A body and how large it is, seen from the centre of its motion.
+#[derive(Clone, Copy)]
+pub(super) struct Body<'a, N: Space<D>, const D: usize> {
+    pub(super) motion: &'a dyn RigidMotion<N, D>,
+    pub(super) shape: Geometry<'a, N, D>,
+    center: Point<N, D>,
+    /// No point of the core is farther from the centre; infinite for half-spaces and what is made of
+    /// them.
+    reach: N,
+    /// No point of the body is.
+    radius: N,
+}
+
+impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
+    pub(super) fn new(motion: &'a dyn RigidMotion<N, D>, shape: &'a dyn Shape<N, D>) -> Self {
+        let (center, sphere, geometry) =
+            (motion.local_center(), shape.local_bounding_sphere(), shape.geometry());
+        let outer = length(&(sphere.center() - center)) + sphere.radius();
+        let (reach, rounding) = geometry.as_support_map().map_or((outer, N::ZERO), |map| {
+            (min(length(&center.coords) + map.reach(), outer), map.rounding())
+        });
+        let slack = N::ONE + N::lit(8.0) * N::EPSILON;
+        let radius = min(outer, reach + rounding) * slack;
+        Self { motion, shape: geometry, center, reach: reach * slack, radius }
+    }
+
+    /// A length of the body for tolerances; zero for what is unbounded.
+    pub(super) fn size(&self) -> N {
+        if self.radius.is_finite_number() { self.radius } else { N::ZERO }
+    }
+
+    /// No point of the body is farther from the centre of its motion.
+    pub(super) fn radius(&self) -> N {
+        self.radius
+    }
+
+    pub(super) fn center_at(&self, pose: &Pose<N, D>) -> Vector<N, D> {
+        pose.point(&self.center).coords
+    }
+
+    fn constant(&self) -> Option<&ConstantVelocities<N, D>> {
+        self.motion.constant_velocities()
+    }
+
+    fn is_half_space(&self) -> bool {
+        self.shape.as_support_map().is_none() && self.shape.as_composite().is_none()
+    }
+
+    fn speed_bound(&self, from: N, to: N) -> N {
+        usable(self.motion.speed_bound(from, to))
+    }
+
+    fn turn_bound(&self, from: N, to: N) -> N {
+        usable(self.motion.turn_bound(from, to))
+    }
+}
+
+/// Two bodies at one time.
+pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
+    pub(super) bodies: [&'b Body<'a, N, D>; 2],
+    /// The point of the world that all places are seen from.
+    pub(super) origin: Vector<N, D>,
+    pub(super) poses: [Pose<N, D>; 2],
+    /// The centres of their motions.
+    pub(super) centers: [Vector<N, D>; 2],
+    pub(super) time: N,
+    /// From the first to the second, in the world.
+    pub(super) normal: Vector<N, D>,
+}
+
+/// An upper bound of the way made in a time `h`: `speed · h + bend · h²`.
+#[derive(Clone, Copy, Debug)]
+struct Rate<N> {
+    speed: N,
+    /// Not negative.
+    bend: N,
+}
+
+impl<N: Real> Rate<N> {
+    /// How long it takes to use up a gap; infinite if that never happens.
+    fn time_for(&self, gap: N) -> N {
+        if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
+            return N::ZERO;
+        }
+        // The product may overflow where its factors do not.
+        let reach = N::TWO * self.bend.sqrt() * gap.sqrt();
+        let root = length(&Vector::<N, 2>::new(self.speed, reach));
+        if self.speed > N::ZERO {
+            // The usual formula would cancel.
+            N::TWO * gap / (self.speed + root)
+        } else if self.bend > N::ZERO {
+            (root - self.speed) / (N::TWO * self.bend)
+        } else {
+            N::INFINITY
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
+    /// For how long the bodies certainly do not come nearer than by `gap` from where they are, at
+    /// most `remaining`, or longer if nothing ever brings them nearer. `apart` is how far they have to
+    /// come to be as near as counts, by the spheres around them; negative where that says nothing.
+    pub(super) fn safe_time(&self, gap: N, apart: N, remaining: N) -> N {
+        let safe = |span: N| self.safe_within(gap, apart, self.time + span);
+        let all = safe(remaining);
+        if all >= remaining || self.bodies.iter().all(|body| body.constant().is_some()) {
+            return all;
+        }
+        let mut span = if all > N::ZERO { all } else { self.first_span(remaining, &safe) };
+        for _ in 0..MAX_SPANS {
+            let wider = min(span * N::TWO, remaining);
+            let found = min(safe(wider), wider);
+            if found > span * N::lit(1.125) {
+                span = found;
+            } else {
+                break;
+            }
+        }
+        span
+    }
+
+    /// A span that a bound over it carries through, of any order of magnitude, for bounds that are
+    /// infinite over all that remains; zero if there is none.
+    fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
+        let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
+        // The exponents of numbers are an interval of at most 2^11.
+        for _ in 0..12 {
+            let middle = low.sqrt() * high.sqrt();
+            if safe(middle) >= middle { low = middle } else { high = middle }
+        }
+        if safe(low) >= low { low } else { N::ZERO }
+    }
+
+    /// As [`Self::safe_time`], by the bounds from now to the time `to`, and valid up to then.
+    fn safe_within(&self, gap: N, apart: N, to: N) -> N {
+        let first = self.first_order(to).time_for(gap);
+        let second = self.second_order(to).map_or(N::ZERO, |rate| rate.time_for(gap));
+        let around = self.spheres(apart, to);
+        let longest = max(max(first, second), around);
+        if longest >= N::ZERO { longest } else { N::ZERO }
+    }
+
+    /// The time in which the spheres around the bodies use up what they are apart.
+    fn spheres(&self, apart: N, to: N) -> N {
+        let between = unit(&(self.centers[1] - self.centers[0])).filter(|_| apart > N::ZERO);
+        between.map_or(N::ZERO, |(direction, _)| {
+            Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
+        })
+    }
+
+    /// By the largest speed that a point of either body can have at any time.
+    fn first_order(&self, to: N) -> Rate<N> {
+        for (index, body) in self.bodies.iter().enumerate() {
+            if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
+                return self.about_unbounded(index, to);
+            }
+        }
+        let swings = [0, 1].map(|index| self.swing(index, self.bodies[index].reach, to));
+        let speed = self.drift(self.direction(), to) + swings[0] + swings[1];
+        Rate { speed, bend: N::ZERO }
+    }
+
+    /// The direction that separates the bodies; `None` if another one separates other parts of them.
+    fn direction(&self) -> Option<&Vector<N, D>> {
+        let flat = self.bodies.iter().any(|body| body.is_half_space());
+        let whole = self.bodies.iter().all(|body| body.shape.as_composite().is_none());
+        (flat || whole).then_some(&self.normal)
+    }
+
+    /// By the speeds that points have now, and how fast these can change; for constant velocities.
+    ///
+    /// The farther a point is from the centre, the faster it moves and the more its path bends: of
+    /// all points of a convex core, the fastest along the normal is a support point.
+    fn second_order(&self, to: N) -> Option<Rate<N>> {
+        let (mut speed, mut bend) = (self.drift(Some(self.direction()?), to), N::ZERO);
+        for (index, body) in self.bodies.iter().enumerate() {
+            let slope = self.slope(index)?;
+            if slope == Vector::<N, D>::zeros() {
+                continue;
+            }
+            let pose = &self.poses[index];
+            let fastest = body.shape.as_support_map()?.core_support(&pose.inverse_vector(&slope));
+            speed += slope.dot(&(pose.point(&fastest).coords - self.centers[index]));
+            let spin = &body.constant()?.spin;
+            bend += N::HALF * length(&spin.tr_mul(&slope)) * body.reach;
+        }
+        Some(Rate { speed, bend })
+    }
+
+    /// By the turning of an unbounded body, in whose frame the normal is fixed.
+    ///
+    /// The other body is met the sooner the farther it is from the centre of the turn; that distance
+    /// may grow on the way, and the normal may turn towards where the other body goes.
+    fn about_unbounded(&self, index: usize, to: N) -> Rate<N> {
+        let other = self.bodies[1 - index];
+        let turn = self.swing(index, N::ONE, to);
+        let distance = length(&(self.centers[1] - self.centers[0])) + other.reach;
+        let (along, all) = (self.drift(self.direction(), to), self.drift(None, to));
+        let swing = product(other.turn_bound(self.time, to), other.reach);
+        Rate { speed: along + swing + product(turn, distance), bend: product(turn, all) }
+    }
+
+    /// At least how fast the centres approach along a unit vector from the first to the second; with
+    /// none, in any direction. Rounding is taken for nothing.
+    fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
+        if let [Some(motion1), Some(motion2)] = self.bodies.map(Body::constant) {
+            let relative = motion1.linear - motion2.linear;
+            let noise = N::lit(8.0) * N::EPSILON * max_component(&relative);
+            let speed = direction.map_or_else(|| length(&relative), |n| n.dot(&relative));
+            return if speed.abs() <= noise { N::ZERO } else { speed };
+        }
+        let speed = |index: usize, side: N| {
+            let body = self.bodies[index];
+            match (body.constant(), direction) {
+                (Some(motion), Some(direction)) => side * direction.dot(&motion.linear),
+                _ => body.speed_bound(self.time, to),
+            }
+        };
+        speed(0, N::ONE) + speed(1, -N::ONE)
+    }
+
+    /// At least the speed along the normal that turning gives a point at a distance from the centre.
+    fn swing(&self, index: usize, distance: N, to: N) -> N {
+        let turn = match (self.slope(index), self.direction()) {
+            (Some(slope), Some(_)) => length(&slope),
+            _ => self.bodies[index].turn_bound(self.time, to),
+        };
+        product(turn, distance)
+    }
+
+    /// How the speed of a body's points towards the other depends on where they are: along this
+    /// vector it grows, by its length per length. For constant velocities; rounding is taken for
+    /// nothing, so that what spins about the normal stays as far as it is.
+    fn slope(&self, index: usize) -> Option<Vector<N, D>> {
+        let motion = self.bodies[index].constant()?;
+        let toward = if index == 0 { self.normal } else { -self.normal };
+        let slope = motion.spin.tr_mul(&toward);
+        let noise = N::lit(8.0) * N::EPSILON * self.bodies[index].turn_bound(self.time, self.time);
+        Some(if max_component(&slope) <= noise { Vector::<N, D>::zeros() } else { slope })
+    }
+
+    /// How fast a point of the first body and one of the second approach along the normal, and how
+    /// much of that rounding can make.
+    pub(super) fn closing(&self, points: &[Vector<N, D>; 2], size: N) -> (N, N) {
+        let arms = [0, 1].map(|index| points[index] - self.centers[index]);
+        if let [Some(motion1), Some(motion2)] = self.bodies.map(Body::constant) {
+            let terms =
+                [motion1.linear - motion2.linear, motion1.spin * arms[0], motion2.spin * arms[1]];
+            let noise = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
+            let closing = self.normal.dot(&(terms[0] + terms[1] - terms[2]));
+            return (closing, N::lit(8.0) * N::EPSILON * noise);
+        }
+        self.closing_observed(points, &arms, size)
+    }
+
+    /// The same from where the points are a short time later.
+    fn closing_observed(
+        &self,
+        points: &[Vector<N, D>; 2],
+        arms: &[Vector<N, D>; 2],
+        size: N,
+    ) -> (N, N) {
+        let speed = [0, 1].iter().fold(N::ZERO, |sum, &index| {
+            let (body, now) = (self.bodies[index], self.time);
+            let turning = product(body.turn_bound(now, now), length(&arms[index]));
+            sum + body.speed_bound(now, now) + turning
+        });
+        let root = N::EPSILON.sqrt();
+        let span = root * size / speed;
+        if !(span > N::ZERO && span.is_finite_number()) {
+            return (N::ZERO, N::ZERO);
+        }
+        let moved = [0, 1].map(|index| self.moved(index, &points[index], span));
+        (self.normal.dot(&(moved[0] - moved[1])) / span, N::lit(8.0) * root * speed)
+    }
+
+    /// By how much a point of a body moves in a time.
+    fn moved(&self, index: usize, point: &Vector<N, D>, span: N) -> Vector<N, D> {
+        let (body, pose) = (self.bodies[index], &self.poses[index]);
+        let local = pose.inverse_point(&Point::from(*point));
+        let later = body.motion.pose_about(&self.origin, self.time + span);
+        later.point(&local).coords - point
+    }
+}
+
+/// A product in which nothing times infinity is nothing.
+fn product<N: Real>(a: N, b: N) -> N {
+    if a == N::ZERO || b == N::ZERO { N::ZERO } else { a * b }
+}
+
+/// A bound; infinite if it is none.
+fn usable<N: Real>(bound: N) -> N {
+    if bound >= N::ZERO { bound } else { N::INFINITY }
+}
+
+/// The length of a vector, without overflow on the way.
+pub(super) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+    unit(v).map_or_else(|| max_component(v), |(_, length)| length)
+}

@@ -1,0 +1,44 @@
+//! A line and a rounded solid.
+
+use super::Span;
+use super::support_map::Seen;
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::query::{Pair, separation::separation};
+use crate::shape::{Ball, Geometry, Kind, RoundedSolid, ShapeKind};
+
+/// Searched by the distances of what is rounded; without a radius the line and that.
+pub(super) fn span<N: Space<D>, const D: usize>(
+    solid: &dyn RoundedSolid<N, D>,
+    ray: &Ray<N, D>,
+) -> Option<Span<N, D>> {
+    let inner = solid.inner();
+    if solid.swelling() == N::ZERO {
+        return (N::tables().ray_span)(inner.0, ray);
+    }
+    let point = Ball::new(N::ZERO);
+    let see = |place: &Vector<N, D>| {
+        let pose12 = Pose::from_translation(-place);
+        let pair = Pair { first: Kind::Ball(&point), second: Kind::Rounded(solid), pose12 };
+        let found = separation(&pair, N::INFINITY)?;
+        Some((found.distance, -found.normal))
+    };
+    let name = |place: &Vector<N, D>, _: &Vector<N, D>| {
+        (N::tables().surface_point)(inner.0, &Point::from(*place)).feature
+    };
+    let radius = solid.reach() + solid.rounding();
+    Seen { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
+}
+
+/// How accurate the distances of points are, in parts of the size: closed forms are exact but for
+/// rounding.
+fn precision<N: Real, const D: usize>(inner: Geometry<'_, N, D>) -> N {
+    let rounding = N::lit(16.0) * N::EPSILON;
+    match inner.0 {
+        Kind::Rounded(solid) => precision(solid.inner()),
+        _ if inner.kind() == ShapeKind::SupportMap => {
+            max(rounding, N::lit(1.0 / 549_755_813_888.0))
+        }
+        _ => rounding,
+    }
+}

@@ -1,0 +1,167 @@
+//! A line and a tapered capsule, in any dimension.
+
+use super::ball::around;
+use super::clip::in_order;
+use super::segment::{Names, span as segment_span};
+use super::span::{Crossing, Span};
+use crate::bounding_volume::Ray;
+use crate::math::{Real, Vector, max, min, unit_or};
+use crate::shape::{FeatureId, Taper, TaperedCapsule};
+
+/// The two balls, and the piece of a cone between the circles in which it touches them. Without any
+/// radius it is a segment.
+pub(super) fn span<N: Real, const D: usize>(
+    capsule: &TaperedCapsule<N, D>,
+    ray: &Ray<N, D>,
+) -> Option<Span<N, D>> {
+    if capsule.radii() == [N::ZERO; 2] {
+        let segment = capsule.segment();
+        return segment_span([segment.a(), segment.b()], Names::SEGMENT, ray);
+    }
+    let ball = |end: usize, name| {
+        around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(name), ray)
+    };
+    let Some(taper) = capsule.taper() else {
+        return if capsule.larger_end() == 0 { ball(0, 0) } else { ball(1, 1) };
+    };
+    let side = Side::new(capsule, &taper, ray).span();
+    Span::union_of(side, Span::union_of(ball(0, 0), ball(1, 1)))
+}
+
+/// The solid between the two circles, and a line.
+///
+/// A point at height `y` over the first end and `x` away from the axis is inside where
+/// `cosine · x ≤ radius1 − sine · y`, of which the right side is positive between the circles.
+struct Side<'a, N: Real, const D: usize> {
+    taper: &'a Taper<N, D>,
+    /// The heights of the two circles.
+    heights: [N; 2],
+    /// The time of the point of the line nearest to the middle: from there all else is measured, so
+    /// that the origin of the ray may be far away.
+    start: N,
+    against: Vector<N, D>,
+    /// That point across the axis, and its height.
+    flat: Vector<N, D>,
+    height: N,
+    /// The direction, split the same way.
+    flat_dir: Vector<N, D>,
+    climb: N,
+    /// The right side there, and how it grows.
+    room: N,
+    widening: N,
+}
+
+impl<'a, N: Real, const D: usize> Side<'a, N, D> {
+    fn new(capsule: &TaperedCapsule<N, D>, taper: &'a Taper<N, D>, ray: &Ray<N, D>) -> Self {
+        let [radius1, radius2] = capsule.radii();
+        let to_middle = capsule.segment().a() + taper.along * (taper.length * N::HALF) - ray.origin;
+        let start = to_middle.dot(&ray.dir) / ray.dir.norm_squared();
+        let place = ray.origin + ray.dir * start - capsule.segment().a();
+        let (height, climb) = (place.dot(&taper.along), ray.dir.dot(&taper.along));
+        Self {
+            taper,
+            heights: [radius1 * taper.sine, taper.length + radius2 * taper.sine],
+            start,
+            against: unit_or(&-ray.dir, Vector::<N, D>::zeros()),
+            flat: place - taper.along * height,
+            height,
+            flat_dir: ray.dir - taper.along * climb,
+            climb,
+            room: radius1 - taper.sine * height,
+            widening: -taper.sine * climb,
+        }
+    }
+
+    fn span(&self) -> Option<Span<N, D>> {
+        let (low, high) = self.between_circles()?;
+        let (enter, leave) = self.in_cone()?;
+        let (enter, leave) = (max(enter, low), min(leave, high));
+        let [enter, leave] =
+            [(enter, self.against), (leave, -self.against)].map(|(t, fallback)| {
+                let away = unit_or(&(self.flat + self.flat_dir * t), fallback);
+                let normal = away * self.taper.cosine + self.taper.along * self.taper.sine;
+                Crossing::new(self.start + t, unit_or(&normal, fallback), FeatureId::Edge(0))
+            });
+        let span = Span { enter, leave, thin: false };
+        in_order(&span).then_some(span)
+    }
+
+    /// When the line is between the planes of the circles.
+    fn between_circles(&self) -> Option<(N, N)> {
+        let [low, high] = self.heights.map(|height| height - self.height);
+        if self.climb == N::ZERO {
+            let is_between = low <= N::ZERO && high >= N::ZERO;
+            return is_between.then_some((-N::INFINITY, N::INFINITY));
+        }
+        let (first, second) = (low / self.climb, high / self.climb);
+        Some((min(first, second), max(first, second)))
+    }
+
+    /// When the line is in the cone: in that half of it where there is room.
+    ///
+    /// The roots of `quadratic · t² + 2 · linear · t + constant`, each factor a difference of squares
+    /// that is not expanded.
+    fn in_cone(&self) -> Option<(N, N)> {
+        let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
+        let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);
+        let quadratic = form(self.flat_dir.norm(), self.widening.abs());
+        let constant = form(self.flat.norm(), self.room.abs());
+        let along = self.flat.dot(&self.flat_dir);
+        let linear = cosine * cosine * along - self.room * self.widening;
+        let moment = (self.flat_dir * self.room - self.flat * self.widening).norm();
+        let discriminant = (moment - cosine * self.twist()) * (moment + cosine * self.twist());
+        if discriminant < N::ZERO && quadratic > N::ZERO && constant > N::ZERO {
+            return None;
+        }
+        let root = cosine * max(discriminant, N::ZERO).sqrt();
+        let larger = if linear < N::ZERO { root - linear } else { -(linear + root) };
+        if larger == N::ZERO {
+            return (constant <= N::ZERO).then_some(always);
+        }
+        if quadratic == N::ZERO {
+            let t = constant / larger;
+            return Some(if larger < N::ZERO { (-N::INFINITY, t) } else { (t, N::INFINITY) });
+        }
+        let (first, second) = (larger / quadratic, constant / larger);
+        let (low, high) = (min(first, second), max(first, second));
+        Some(if quadratic > N::ZERO {
+            (low, high)
+        } else if self.widening > N::ZERO {
+            (high, N::INFINITY)
+        } else {
+            (-N::INFINITY, low)
+        })
+    }
+
+    /// The area of the parallelogram of the point and the direction across the axis.
+    fn twist(&self) -> N {
+        let speed = self.flat_dir.norm();
+        let along = unit_or(&self.flat_dir, Vector::<N, D>::zeros());
+        (self.flat - along * along.dot(&self.flat)).norm() * speed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+
+    type P = Point<f64, 3>;
+    type V = Vector<f64, 3>;
+
+    #[test]
+    fn across_the_side_and_along_the_axis() {
+        // The side rises by 3 on 4; at height y over the small end its radius is (1 + 0.6 y) / 0.8.
+        let club = TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
+            .expect("finite");
+        let across = Ray::new(P::new(-10.0, 1.0, 0.0), V::x());
+        let found = span(&club, &across).expect("through the side");
+        assert!((found.enter.t - 8.0).abs() < 1e-14 && (found.leave.t - 12.0).abs() < 1e-14);
+        assert_eq!(found.enter.feature, FeatureId::Edge(0), "the side");
+        assert!((found.enter.normal - V::new(-0.8, -0.6, 0.0)).norm() < 1e-15, "{found:?}");
+        let along = span(&club, &Ray::new(P::new(0.0, -10.0, 0.0), V::y())).expect("the axis");
+        assert_eq!((along.enter.t, along.leave.t), (9.0, 19.0), "from end to end");
+        assert_eq!(along.leave.feature, FeatureId::Vertex(1), "the large ball");
+        assert_eq!(span(&club, &Ray::new(P::new(-10.0, 0.0, 1.5), V::x())), None, "beside it");
+    }
+}

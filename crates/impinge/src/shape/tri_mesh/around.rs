@@ -1,0 +1,128 @@
+//! Going around the sides and corners of a mesh.
+//!
+//! Triangles without area lie in meshes as fillers: where a corner touches the middle of a longer
+//! side, a thin triangle joins the three. Seams are looked at through them, as if they were not there.
+
+use core::array;
+
+use smallvec::SmallVec;
+
+use super::super::segment::length_of;
+use super::TriMesh;
+use crate::math::{Point, Real, Vector, max, max_component, unit, unit_or};
+
+/// So many sides of triangles without area are crossed in search of what lies beyond.
+const MOST_CROSSED: usize = 32;
+
+impl<N: Real, const D: usize> TriMesh<N, D> {
+    /// Calls `visit` with each other triangle at a side, and the side it is to that one.
+    fn each_across(&self, triangle: u32, side: usize, mut visit: impl FnMut(u32, usize)) {
+        let ends = self.joint_ends(triangle, side);
+        let mut found = |other: u32| {
+            if let Some(side) = self.side_between(other, ends) {
+                visit(other, side);
+            }
+        };
+        if let Some(other) = self.topology.single_across(triangle, side) {
+            found(other);
+        } else if self.topology.has_several_across(triangle, side) {
+            // All are at both ends: the end with fewer triangles is looked through.
+            let [from, to] = ends.map(|joint| self.topology.joints.parts(joint));
+            let fewer = if from.len() < to.len() { from } else { to };
+            fewer.iter().filter(|&&other| other != triangle).for_each(|&other| found(other));
+        }
+    }
+
+    /// Calls `visit` with each other triangle with an area at a side, and the direction from the
+    /// side into it; through triangles without area. All sides of one without area are one side.
+    pub(super) fn each_beyond(
+        &self,
+        triangle: u32,
+        side: usize,
+        mut visit: impl FnMut(u32, Vector<N, D>),
+    ) {
+        let is_thin = self.inward(triangle, side).is_none();
+        let own = (0..3).filter(|&other| is_thin || other == side);
+        let mut crossed: SmallVec<[_; 4]> = own.map(|side| (triangle, side)).collect();
+        let mut at = 0;
+        while let Some(&(from, side)) = crossed.get(at) {
+            at += 1;
+            self.each_across(from, side, |other, entered| match self.inward(other, entered) {
+                Some(inward) if other != triangle => visit(other, inward),
+                Some(_) => (),
+                None => {
+                    let exits = [1, 2].map(|turn| (other, (entered + turn) % 3));
+                    let is_new = |exit: &(u32, usize)| !crossed_before(&crossed, exit);
+                    let new: SmallVec<[_; 2]> = exits.into_iter().filter(is_new).collect();
+                    crossed.extend(new);
+                }
+            });
+        }
+    }
+
+    /// Calls `visit` with each triangle on whose side a joint lies though it is none of its
+    /// corners, and the direction from the side into it: those beyond a triangle without area whose
+    /// middle corner is at the joint.
+    pub(super) fn each_beyond_joint(&self, joint: u32, mut visit: impl FnMut(u32, Vector<N, D>)) {
+        for &triangle in self.topology.joints.parts(joint) {
+            let at = self.corner_at(triangle, joint);
+            let opposite = (at + 1) % 3;
+            if self.inward(triangle, opposite).is_some() {
+                continue;
+            }
+            let leaving = self.leaving(triangle, joint);
+            let is_middle = leaving.len() == 2 && leaving[0].dot(&leaving[1]) < N::ZERO;
+            if is_middle {
+                self.each_beyond(triangle, opposite, &mut visit);
+            }
+        }
+    }
+
+    /// Unit, along the sides of a triangle that leave a joint.
+    pub(super) fn leaving(&self, triangle: u32, joint: u32) -> SmallVec<[Vector<N, D>; 2]> {
+        let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
+        let side = |turn: usize| unit(&(corners[(at + turn) % 3] - corners[at]));
+        [1, 2].into_iter().filter_map(side).map(|(along, _)| along).collect()
+    }
+
+    /// The first corner of a triangle that is at a joint.
+    fn corner_at(&self, triangle: u32, joint: u32) -> usize {
+        (0..3).find(|&at| self.joint_ends(triangle, at)[0] == joint).unwrap_or(0)
+    }
+
+    /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.
+    pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
+        let corners = self.corners(triangle);
+        inward_of(&array::from_fn(|turn| corners[(side + turn) % 3]))
+    }
+}
+
+/// Unit, in the plane of a triangle, from the side between its first two corners towards the third;
+/// `None` without area.
+pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
+    corners: &[Point<N, D>; 3],
+) -> Option<Vector<N, D>> {
+    let [a, b, c] = corners;
+    let (along, length) = unit(&(b - a))?;
+    let (from_a, from_b) = (length_of(&(c - a)), length_of(&(c - b)));
+    let rest = if from_a < from_b { c - a } else { c - b };
+    let without = |v: &Vector<N, D>| v - along * along.dot(v);
+    let (inward, height) = unit(&without(&rest))?;
+    // That of the longest side is the least, and says whether there is an area.
+    let longest = max(length, max(from_a, from_b));
+    let least = height * (length / longest);
+    let has_area = least > noise(corners, longest);
+    has_area.then(|| unit_or(&without(&inward), inward))
+}
+
+/// Whether a side is in the list, or the list is full.
+fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
+    crossed.len() >= MOST_CROSSED || crossed.contains(side)
+}
+
+/// Below this height over its longest side a triangle has no area: the difference of coordinates,
+/// or the rounding of the coordinates themselves, may be all there is.
+pub(super) fn noise<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
+    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
+    N::EPSILON * max(N::lit(16.0) * longest, N::TWO * farthest)
+}

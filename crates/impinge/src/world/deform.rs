@@ -1,0 +1,66 @@
+//! Changing the shape of an object in place.
+
+use super::error::or_panic;
+use super::{CollisionWorld, WorldError};
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+use crate::shape::{Shape, ShapeHandle};
+
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Changes the shape of an object, of which the type is given, and answers what `change` does.
+    ///
+    /// The object gets a shape of its own: other objects that share the shape keep it as it is, and
+    /// so does the last update, whose contacts can be read until the next. Queries see the new shape
+    /// at once, pairs at the next update, as with [`Self::set_shape`]; contacts on features that
+    /// stay keep their names. Costs a copy of the shape besides what `change` costs.
+    ///
+    /// # Panics
+    /// If the handle is stale or the shape of another type; [`Self::try_deform`] returns these.
+    ///
+    /// ```
+    /// use impinge::dim2::na::{Isometry2, Point2, Vector2};
+    /// use impinge::dim2::shape::{Ball, Polyline, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+    /// let rope = [-1.0, 0.0, 1.0].map(|x| Point2::new(x, 0.0)).to_vec();
+    /// let rope = ShapeHandle::new(Polyline::<f32>::open(rope));
+    /// let rope = world.add(Isometry2::identity(), rope, everybody, contacts, ());
+    /// let ball = ShapeHandle::new(Ball::new(0.5));
+    /// world.add(Isometry2::translation(0.0, 1.0), ball, everybody, contacts, ());
+    /// world.update();
+    /// assert!(world.contact_events().is_empty());
+    ///
+    /// let raised = [Point2::new(-1.0, 0.0), Point2::new(0.0, 0.75), Point2::new(1.0, 0.0)];
+    /// world.deform(rope, |rope: &mut Polyline<f32>| rope.set_vertices(&raised));
+    /// world.update();
+    /// assert_eq!(world.contact_events().len(), 1);
+    /// ```
+    #[track_caller]
+    pub fn deform<S: Shape<N, D> + Clone, R>(
+        &mut self,
+        handle: CollisionObjectHandle,
+        change: impl FnOnce(&mut S) -> R,
+    ) -> R {
+        or_panic(self.try_deform(handle, change))
+    }
+
+    /// Changes the shape of an object; see [`Self::deform`].
+    ///
+    /// # Errors
+    /// If the handle is stale or the shape of another type. `change` is not called and the world
+    /// unchanged then.
+    pub fn try_deform<S: Shape<N, D> + Clone, R>(
+        &mut self,
+        handle: CollisionObjectHandle,
+        change: impl FnOnce(&mut S) -> R,
+    ) -> Result<R, WorldError> {
+        let object = self.objects.fresh(handle)?;
+        let shape = object.shape.as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
+        let mut shape = shape.clone();
+        let result = change(&mut shape);
+        self.try_set_shape(handle, ShapeHandle::new(shape))?;
+        Ok(result)
+    }
+}
