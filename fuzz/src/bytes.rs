@@ -1,0 +1,111 @@
+//! Numbers from the fuzzer's bytes.
+
+use impinge::math::{Point, Real, Vector};
+
+/// What is left of the input; zeros when it is used up, so that every input means something.
+#[derive(Debug)]
+pub struct Bytes<'a> {
+    rest: &'a [u8],
+    /// Numbers may be tiny, huge or none at all; otherwise they are moderate, and so must answers be.
+    is_wild: bool,
+}
+
+impl<'a> Bytes<'a> {
+    /// All of the input.
+    pub const fn new(rest: &'a [u8]) -> Self {
+        Self { rest, is_wild: false }
+    }
+
+    /// The same with numbers of any size.
+    pub const fn go_wild(&mut self) {
+        self.is_wild = true;
+    }
+
+    /// All numbers are moderate: at most 32, and a multiple of 1/1024.
+    pub const fn is_moderate(&self) -> bool {
+        !self.is_wild
+    }
+
+    /// The input is used up.
+    pub const fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// The next byte.
+    pub fn byte(&mut self) -> u8 {
+        let Some((&first, rest)) = self.rest.split_first() else { return 0 };
+        self.rest = rest;
+        first
+    }
+
+    fn bytes<const COUNT: usize>(&mut self) -> [u8; COUNT] {
+        std::array::from_fn(|_| self.byte())
+    }
+
+    /// One of `count` choices, 256 at most.
+    pub fn choice(&mut self, count: usize) -> usize {
+        usize::from(self.byte()) % count
+    }
+
+    /// Heads or tails.
+    pub fn coin(&mut self) -> bool {
+        self.byte() % 2 == 1
+    }
+
+    /// A number: small and round ones, which make solids touch exactly, more often than others.
+    pub fn number<N: Real>(&mut self) -> N {
+        let kinds = if self.is_wild { 16 } else { 11 };
+        N::lit(match self.choice(kinds) {
+            0..4 => f64::from(i8::from_le_bytes(self.bytes())) / 16.0,
+            4..8 => f64::from(i8::from_le_bytes(self.bytes()) / 16),
+            8..11 => f64::from(i16::from_le_bytes(self.bytes())) / 1024.0,
+            11 | 12 => f64::from(f32::from_le_bytes(self.bytes())),
+            13 => f64::from(i32::from_le_bytes(self.bytes())),
+            14 => f64::from(i8::from_le_bytes(self.bytes())) * 1e-23,
+            _ => f64::from_le_bytes(self.bytes()),
+        })
+    }
+
+    /// A finite number.
+    pub fn finite<N: Real>(&mut self) -> N {
+        let number = self.number::<N>();
+        if number.is_finite_number() { number } else { N::ONE }
+    }
+
+    /// A finite number, zero or more.
+    pub fn size<N: Real>(&mut self) -> N {
+        self.finite::<N>().abs()
+    }
+
+    /// A vector of any numbers.
+    pub fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
+        Vector::<N, D>::from_fn(|_, _| self.number())
+    }
+
+    /// A vector of sizes.
+    pub fn sizes<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
+        Vector::<N, D>::from_fn(|_, _| self.size())
+    }
+
+    /// A point of finite numbers.
+    pub fn point<N: Real, const D: usize>(&mut self) -> Point<N, D> {
+        Point::from(Vector::<N, D>::from_fn(|_, _| self.finite()))
+    }
+
+    /// Up to 15 points.
+    pub fn points<N: Real, const D: usize>(&mut self) -> Vec<Point<N, D>> {
+        let count = self.choice(16);
+        (0..count).map(|_| self.point()).collect()
+    }
+
+    /// Up to 12 tuples of indices, of `count` vertices or (seldom) one more than there are.
+    pub fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
+        let parts = self.choice(13);
+        let mut index = || self.choice(count.max(1)) as u32;
+        let mut parts: Vec<_> = (0..parts).map(|_| std::array::from_fn(|_| index())).collect();
+        if self.byte() == 255 {
+            parts.push([count as u32; ENDS]);
+        }
+        parts
+    }
+}

@@ -1,0 +1,61 @@
+//! Shapes, poses and questions made from the fuzzer's bytes: whatever the bytes, no call may panic
+//! or hang, and answers must not contradict each other.
+
+mod bytes;
+mod construct;
+mod impact;
+mod manifolds;
+mod pair;
+mod place;
+mod shapes;
+mod single;
+mod world;
+mod world_queries;
+
+pub use bytes::Bytes;
+pub use construct::construct;
+pub use impact::{nonlinear_time_of_impact, time_of_impact};
+pub use manifolds::manifolds;
+pub use pair::{closest_points, contact, distance, proximity, witness};
+pub use single::{point, ray};
+pub use world::world;
+
+use impinge::math::Space;
+use place::{Dimension, Plane, Room};
+
+/// The targets with their names.
+pub const TARGETS: [(&str, fn(&[u8])); 12] = [
+    ("distance", distance),
+    ("closest_points", closest_points),
+    ("proximity", proximity),
+    ("contact", contact),
+    ("witness", witness),
+    ("manifolds", manifolds),
+    ("time_of_impact", time_of_impact),
+    ("nonlinear_time_of_impact", nonlinear_time_of_impact),
+    ("ray", ray),
+    ("point", point),
+    ("construct", construct),
+    ("world", world),
+];
+
+/// Something to do with bytes, in any dimension and scalar.
+trait Task {
+    /// Does it.
+    fn run<N: Space<D>, M: Dimension<N, D>, const D: usize>(self, bytes: &mut Bytes<'_>);
+}
+
+/// Does a task in the dimension, with the scalar and with numbers as wild as the first byte says.
+fn dispatch(task: impl Task, data: &[u8]) {
+    let bytes = &mut Bytes::new(data);
+    let choice = bytes.choice(8);
+    if choice >= 4 {
+        bytes.go_wild();
+    }
+    match choice % 4 {
+        0 => task.run::<f32, Plane, 2>(bytes),
+        1 => task.run::<f64, Plane, 2>(bytes),
+        2 => task.run::<f32, Room, 3>(bytes),
+        _ => task.run::<f64, Room, 3>(bytes),
+    }
+}

@@ -1,0 +1,243 @@
+//! Questions about two shapes, in both orders.
+
+use std::fmt::Debug;
+
+use impinge::math::{AbstractRotation, Isometry, Pose, Space, max};
+use impinge::query::{self, ClosestPoints, Proximity};
+use impinge::shape::{Shape, ShapeHandle};
+
+use crate::place::Dimension;
+use crate::shapes::{anatomy, is_unbounded, parts_of, reach, shape};
+use crate::{Bytes, Task, dispatch};
+
+/// Two placed shapes.
+pub struct Pair<N: Space<D>, R, const D: usize> {
+    pub m1: Isometry<N, R, D>,
+    pub g1: ShapeHandle<N, D>,
+    pub m2: Isometry<N, R, D>,
+    pub g2: ShapeHandle<N, D>,
+    /// All numbers are moderate, so answers must be finite.
+    pub is_moderate: bool,
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D> {
+    pub fn from_bytes<M: Dimension<N, D, Turn = R>>(bytes: &mut Bytes<'_>) -> Self {
+        let (g1, m1) = (shape::<N, M, D>(bytes), M::position(bytes));
+        // The same shape and place more often than chance has it.
+        let g2 = if bytes.choice(8) == 0 { g1.clone() } else { shape::<N, M, D>(bytes) };
+        let m2 = if bytes.choice(8) == 0 { m1 } else { M::position(bytes) };
+        Self { m1, g1, m2, g2, is_moderate: bytes.is_moderate() }
+    }
+
+    pub fn swapped(&self) -> Self {
+        Self {
+            m1: self.m2,
+            g1: self.g2.clone(),
+            m2: self.m1,
+            g2: self.g1.clone(),
+            is_moderate: self.is_moderate,
+        }
+    }
+
+    /// The two are the same thing at the same place: then their order says nothing.
+    pub fn are_same(&self) -> bool {
+        let poses = [&self.m1, &self.m2].map(|m| format!("{:?}", Pose::from_isometry(m)));
+        poses[0] == poses[1] && anatomy(&*self.g1) == anatomy(&*self.g2)
+    }
+
+    /// Both poses are finite.
+    pub fn is_placed(&self) -> bool {
+        [&self.m1, &self.m2].iter().all(|m| Pose::from_isometry(*m).is_finite())
+    }
+
+    /// Swapped arguments give the flipped answer, to the bit.
+    pub fn check_flip<A: PartialEq + Debug>(&self, own: &A, other: &A, flip: impl Fn(&A) -> A) {
+        if same(own, &flip(other)) || (self.are_same() && same(own, other)) {
+            return;
+        }
+        panic!("\n{own:?}\nis not\n{other:?}\nswapped, of\n{self:?}");
+    }
+
+    /// What rounding may make of a length.
+    pub fn tolerance(&self) -> N {
+        let places = [&self.m1, &self.m2]
+            .iter()
+            .fold(N::ZERO, |sum, m| m.translation.vector.iter().fold(sum, |sum, x| sum + x.abs()));
+        N::EPSILON * N::lit(256.0) * (places + reach(&*self.g1) + reach(&*self.g2))
+    }
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Debug for Pair<N, R, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (m, g) in [(&self.m1, &self.g1), (&self.m2, &self.g2)] {
+            writeln!(f, "{} at {:?}", anatomy(&**g), Pose::from_isometry(m))?;
+        }
+        Ok(())
+    }
+}
+
+/// Equal, or not told apart when written.
+pub fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
+    one == other || format!("{one:?}") == format!("{other:?}")
+}
+
+#[derive(Clone, Copy)]
+enum Question {
+    Distance,
+    ClosestPoints,
+    Proximity,
+    Contact,
+    Witness,
+}
+
+impl Task for Question {
+    fn run<N: Space<D>, M: Dimension<N, D>, const D: usize>(self, bytes: &mut Bytes<'_>) {
+        let pair = Pair::<N, M::Turn, D>::from_bytes::<M>(bytes);
+        match self {
+            Self::Distance => pair.check_distance(),
+            Self::ClosestPoints => pair.check_closest_points(bytes.number()),
+            Self::Proximity => pair.check_proximity(bytes.number()),
+            Self::Contact => pair.check_contact(bytes.number()),
+            Self::Witness => pair.check_witness(bytes.number()),
+        }
+    }
+}
+
+/// [`query::distance`].
+pub fn distance(data: &[u8]) {
+    dispatch(Question::Distance, data);
+}
+
+/// [`query::closest_points`].
+pub fn closest_points(data: &[u8]) {
+    dispatch(Question::ClosestPoints, data);
+}
+
+/// [`query::proximity`].
+pub fn proximity(data: &[u8]) {
+    dispatch(Question::Proximity, data);
+}
+
+/// [`query::contact`].
+pub fn contact(data: &[u8]) {
+    dispatch(Question::Contact, data);
+}
+
+/// [`query::witness`].
+pub fn witness(data: &[u8]) {
+    dispatch(Question::Witness, data);
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D> {
+    fn shapes(&self) -> [&dyn Shape<N, D>; 2] {
+        [&*self.g1, &*self.g2]
+    }
+
+    pub fn distance(&self) -> N {
+        query::distance(&self.m1, &*self.g1, &self.m2, &*self.g2)
+    }
+
+    pub fn closest_points(&self, limit: N) -> ClosestPoints<N, D> {
+        query::closest_points(&self.m1, &*self.g1, &self.m2, &*self.g2, limit)
+    }
+
+    pub fn proximity(&self, margin: N) -> Proximity {
+        query::proximity(&self.m1, &*self.g1, &self.m2, &*self.g2, margin)
+    }
+
+    pub fn contact(&self, prediction: N) -> Option<query::Contact<N, D>> {
+        query::contact(&self.m1, &*self.g1, &self.m2, &*self.g2, prediction)
+    }
+
+    pub fn witness(&self, limit: N) -> Option<query::Witness<N, D>> {
+        query::witness(&self.m1, &*self.g1, &self.m2, &*self.g2, limit)
+    }
+
+    fn check_distance(&self) {
+        let distance = self.distance();
+        self.check_flip(&distance, &self.swapped().distance(), |other| *other);
+        assert!(distance >= N::ZERO, "{distance} of\n{self:?}");
+        if !self.is_placed() {
+            assert_eq!(distance, N::INFINITY, "nothing is there:\n{self:?}");
+        }
+        if !self.is_moderate {
+            return;
+        }
+        let is_convex = self.shapes().iter().all(|shape| parts_of(*shape).is_none());
+        assert!(distance.is_finite_number() || !is_convex, "{self:?}");
+        let touches = distance == N::ZERO;
+        assert_eq!(self.proximity(N::ZERO) == Proximity::Intersecting, touches, "{self:?}");
+        let points = self.closest_points(N::INFINITY);
+        assert_eq!(points == ClosestPoints::Intersecting, touches, "{points:?} of\n{self:?}");
+        let has_contact = self.contact(N::ZERO).is_some();
+        let may_be_endless = self.shapes().into_iter().all(is_unbounded);
+        assert!(has_contact == touches || (touches && may_be_endless), "{distance} {self:?}");
+    }
+
+    fn check_closest_points(&self, limit: N) {
+        let (points, distance) = (self.closest_points(limit), self.distance());
+        self.check_flip(&points, &self.swapped().closest_points(limit), ClosestPoints::flipped);
+        if !self.is_moderate {
+            return;
+        }
+        let limit = max(limit, N::ZERO);
+        let is_near = distance <= limit && self.is_placed();
+        // Without parts there is no point, however far it may be.
+        let is_nothing = distance == N::INFINITY && limit == N::INFINITY;
+        let found = points != ClosestPoints::Disjoint;
+        assert!(found == is_near || is_nothing, "{points:?} at {distance}, {limit}:\n{self:?}");
+        let ClosestPoints::WithinMargin(point1, point2) = points else { return };
+        assert!(same(&points, &self.closest_points(N::INFINITY)), "a limit changes:\n{self:?}");
+        let error = ((point2 - point1).norm() - distance).abs();
+        assert!(error <= self.tolerance(), "{points:?}, but {distance}:\n{self:?}");
+    }
+
+    fn check_proximity(&self, margin: N) {
+        let (proximity, distance) = (self.proximity(margin), self.distance());
+        self.check_flip(&proximity, &self.swapped().proximity(margin), |other| *other);
+        let expected = if distance == N::ZERO {
+            Proximity::Intersecting
+        } else if distance <= margin {
+            Proximity::WithinMargin
+        } else {
+            Proximity::Disjoint
+        };
+        if self.is_moderate {
+            assert_eq!(proximity, expected, "{distance}, {margin}: {self:?}");
+        }
+    }
+
+    fn check_contact(&self, prediction: N) {
+        let contact = self.contact(prediction);
+        let flip = |other: &Option<query::Contact<N, D>>| other.map(|contact| contact.flipped());
+        self.check_flip(&contact, &self.swapped().contact(prediction), flip);
+        let Some(contact) = contact else { return };
+        assert!(self.is_placed() && contact.depth >= -prediction, "{contact:?} of\n{self:?}");
+        if !self.is_moderate {
+            return;
+        }
+        assert!(same(&Some(contact), &self.contact(N::INFINITY)), "a limit changes:\n{self:?}");
+        let (depth, distance) = (contact.depth, self.distance());
+        assert_eq!(max(-depth, N::ZERO), distance, "{contact:?} of\n{self:?}");
+        let length = contact.normal.norm();
+        assert!((length - N::ONE).abs() <= N::EPSILON * N::lit(16.0), "{contact:?} of\n{self:?}");
+        let error = contact.world2 - (contact.world1 - *contact.normal * depth);
+        assert!(error.norm() <= self.tolerance(), "{contact:?} of\n{self:?}");
+    }
+
+    fn check_witness(&self, limit: N) {
+        let witness = self.witness(limit);
+        let flip = |other: &Option<query::Witness<N, D>>| other.map(|witness| witness.flipped());
+        self.check_flip(&witness, &self.swapped().witness(limit), flip);
+        let Some(witness) = witness else { return };
+        assert!(self.is_placed() && witness.distance <= limit, "{witness:?} of\n{self:?}");
+        for (part, shape) in [witness.part1, witness.part2].into_iter().zip(self.shapes()) {
+            assert!(part < parts_of(shape).unwrap_or(1), "{witness:?} of\n{self:?}");
+        }
+        if self.is_moderate {
+            assert_eq!(max(witness.distance, N::ZERO), self.distance(), "{witness:?} of\n{self:?}");
+            let error = witness.point2 - (witness.point1 + *witness.normal * witness.distance);
+            assert!(error.norm() <= self.tolerance(), "{witness:?} of\n{self:?}");
+        }
+    }
+}

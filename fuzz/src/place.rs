@@ -1,0 +1,250 @@
+//! What the dimensions do not share: rotations, and the shapes of one dimension only.
+
+use std::fmt::Debug;
+
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{AbstractRotation, Isometry, Point, Real, Space, Vector};
+use impinge::query::RigidMotion;
+use impinge::shape::{Diagonals, ShapeHandle};
+use impinge::world::{CollisionObject, CollisionWorld};
+use impinge::{dim2, dim3};
+
+use crate::Bytes;
+use crate::shapes::made;
+
+/// One dimension's ways to make things from bytes.
+pub trait Dimension<N: Space<D>, const D: usize> {
+    /// How many kinds of shape the dimension has to itself.
+    const OWN_KINDS: usize;
+
+    /// Rotations.
+    type Turn: AbstractRotation<N, D> + Copy + Debug;
+
+    /// A position, of any numbers.
+    fn position(bytes: &mut Bytes<'_>) -> Isometry<N, Self::Turn, D>;
+    /// The same as worlds want it.
+    fn stored(position: Isometry<N, Self::Turn, D>) -> N::Isometry;
+    /// And back.
+    fn loose(position: N::Isometry) -> Isometry<N, Self::Turn, D>;
+    /// A shape that only this dimension has; `None` if a constructor refuses the numbers.
+    fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
+    /// A body that moves and turns at constant rates.
+    fn motion(
+        position: Isometry<N, Self::Turn, D>,
+        bytes: &mut Bytes<'_>,
+    ) -> Box<dyn RigidMotion<N, D>>;
+    /// Gives a height field other heights or holes, if the shape is one.
+    fn dig(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
+    /// Lets only objects meet that [`may_meet`].
+    fn filter(world: &mut CollisionWorld<N, D, u8>);
+    /// Hulls and surfaces of points and of shapes.
+    fn transform(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>);
+}
+
+/// Whether objects with these data may meet: unless the data differ in the lowest bit.
+pub const fn may_meet(one: u8, two: u8) -> bool {
+    (one ^ two) & 1 == 0
+}
+
+/// The plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane;
+
+impl<N: Real> Dimension<N, 2> for Plane {
+    const OWN_KINDS: usize = 2;
+
+    type Turn = UnitComplex<N>;
+
+    fn position(bytes: &mut Bytes<'_>) -> dim2::math::Isometry<N> {
+        let turn = match bytes.choice(3) {
+            0 => N::ZERO,
+            1 => N::frac_pi_2(),
+            _ => bytes.number(),
+        };
+        dim2::math::Isometry::new(bytes.vector(), turn)
+    }
+
+    fn stored(position: dim2::math::Isometry<N>) -> dim2::math::Isometry<N> {
+        position
+    }
+
+    fn loose(position: dim2::math::Isometry<N>) -> dim2::math::Isometry<N> {
+        position
+    }
+
+    fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 2>> {
+        if kind == 0 {
+            let points = bytes.points();
+            return if bytes.coin() {
+                made(dim2::shape::ConvexPolygon::try_new(&points))
+            } else {
+                made(dim2::shape::ConvexPolygon::try_from_points(&points))
+            };
+        }
+        let count = bytes.choice(9);
+        let heights = (0..count).map(|_| bytes.number()).collect();
+        let holes = bytes.byte();
+        let field = dim2::shape::HeightField::try_new(heights, bytes.sizes());
+        made(field.map(|field| field.with_holes(|cell| holes >> (cell % 8) & 1 == 1)))
+    }
+
+    fn motion(
+        position: dim2::math::Isometry<N>,
+        bytes: &mut Bytes<'_>,
+    ) -> Box<dyn RigidMotion<N, 2>> {
+        let (linear, angular) = (bytes.vector(), bytes.number());
+        let motion = dim2::query::ConstantVelocities::new(position, linear, angular);
+        let center = bytes.coin().then(|| bytes.point());
+        Box::new(center.map_or(motion, |center| motion.with_local_center(center)))
+    }
+
+    fn dig(shape: &ShapeHandle<N, 2>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 2>> {
+        let mut field = shape.as_shape::<dim2::shape::HeightField<N>>()?.clone();
+        let index = bytes.choice(field.heights().len());
+        match bytes.choice(3) {
+            0 => field.set_height(index, bytes.number()).ok()?,
+            1 => field.set_hole(index.min(field.num_cells() - 1), bytes.coin()),
+            _ => {
+                let heights = field.heights().iter().map(|_| bytes.number()).collect();
+                field.set_heights(heights).ok()?;
+            }
+        }
+        assert!(field.height_at(bytes.number()).is_none_or(|y| y == y), "{field:?}");
+        Some(ShapeHandle::new(field))
+    }
+
+    fn filter(world: &mut CollisionWorld<N, 2, u8>) {
+        let both = |one: &CollisionObject<N, 2, u8>, two: &CollisionObject<N, 2, u8>| {
+            may_meet(*one.data(), *two.data())
+        };
+        world.register_broad_phase_pair_filter("data", both);
+    }
+
+    fn transform(shape: &ShapeHandle<N, 2>, bytes: &mut Bytes<'_>) {
+        use dim2::procedural;
+        let (points, subdivisions) = (bytes.points::<N, 2>(), u32::from(bytes.byte()));
+        if let Ok(ring) = dim2::transformation::convex_hull(&points) {
+            assert!(ring.len() >= 3 && ring.iter().all(|&index| index < points.len()), "{ring:?}");
+        }
+        if let Some(ball) = shape.as_shape() {
+            check_finite(&procedural::ball(ball, subdivisions).points);
+        } else if let Some(capsule) = shape.as_shape() {
+            check_finite(&procedural::capsule(capsule, subdivisions).points);
+        } else if let Some(ellipse) = shape.as_shape() {
+            check_finite(&procedural::ellipse(ellipse, subdivisions).points);
+        } else if let Some(capsule) = shape.as_shape() {
+            check_finite(&procedural::tapered_capsule(capsule, subdivisions).points);
+        } else if let Some(triangle) = shape.as_shape() {
+            check_finite(&procedural::triangle(triangle).points);
+        }
+    }
+}
+
+/// Space.
+#[derive(Clone, Copy, Debug)]
+pub struct Room;
+
+impl<N: Real> Dimension<N, 3> for Room {
+    const OWN_KINDS: usize = 5;
+
+    type Turn = UnitQuaternion<N>;
+
+    fn position(bytes: &mut Bytes<'_>) -> dim3::math::Isometry<N> {
+        let turn = match bytes.choice(4) {
+            0 => Vector::<N, 3>::zeros(),
+            1 => Vector::<N, 3>::y() * N::frac_pi_2(),
+            2 => Vector::<N, 3>::z() * N::frac_pi_2(),
+            _ => bytes.vector::<N, 3>(),
+        };
+        dim3::math::Isometry::new(bytes.vector(), turn)
+    }
+
+    fn stored(position: dim3::math::Isometry<N>) -> dim3::math::Isometry<N> {
+        position
+    }
+
+    fn loose(position: dim3::math::Isometry<N>) -> dim3::math::Isometry<N> {
+        position
+    }
+
+    fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
+        match kind {
+            0 => made(dim3::shape::ConvexHull::try_from_points(&bytes.points())),
+            1 => made(dim3::shape::Cylinder::try_new(bytes.size(), bytes.size())),
+            2 => made(dim3::shape::Cone::try_new(bytes.size(), bytes.size())),
+            3 => made(dim3::shape::Tetrahedron::try_new(std::array::from_fn(|_| bytes.point()))),
+            _ => field3(bytes),
+        }
+    }
+
+    fn motion(
+        position: dim3::math::Isometry<N>,
+        bytes: &mut Bytes<'_>,
+    ) -> Box<dyn RigidMotion<N, 3>> {
+        let (linear, angular) = (bytes.vector(), bytes.vector());
+        let motion = dim3::query::ConstantVelocities::new(position, linear, angular);
+        let center = bytes.coin().then(|| bytes.point());
+        Box::new(center.map_or(motion, |center| motion.with_local_center(center)))
+    }
+
+    fn dig(shape: &ShapeHandle<N, 3>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
+        let mut field = shape.as_shape::<dim3::shape::HeightField<N>>()?.clone();
+        let part = bytes.choice(2 * field.num_cells()) as u32;
+        match bytes.choice(4) {
+            0 => field.set_height(0, 1, bytes.number()).ok()?,
+            1 => field.set_part_hole(part, bytes.coin()),
+            2 => field.set_diagonal(0, 0, dim3::shape::Diagonal::Backward),
+            _ => {
+                let heights = field.heights().iter().map(|_| bytes.number()).collect();
+                field.set_heights(heights).ok()?;
+            }
+        }
+        let height = field.height_at(bytes.number(), bytes.number());
+        assert!(height.is_none_or(|y| y == y), "{field:?}");
+        Some(ShapeHandle::new(field))
+    }
+
+    fn filter(world: &mut CollisionWorld<N, 3, u8>) {
+        let both = |one: &CollisionObject<N, 3, u8>, two: &CollisionObject<N, 3, u8>| {
+            may_meet(*one.data(), *two.data())
+        };
+        world.register_broad_phase_pair_filter("data", both);
+    }
+
+    fn transform(shape: &ShapeHandle<N, 3>, bytes: &mut Bytes<'_>) {
+        use dim3::procedural;
+        let (points, subdivisions) = (bytes.points::<N, 3>(), u32::from(bytes.byte() % 64));
+        if let Ok(hull) = dim3::transformation::convex_hull(&points) {
+            assert!(hull.vertices.len() >= 4 && hull.faces.len() >= 4, "{hull:?}");
+        }
+        if let Some(ball) = shape.as_shape() {
+            check_finite(&procedural::ball(ball, subdivisions).vertices);
+        } else if let Some(capsule) = shape.as_shape() {
+            check_finite(&procedural::capsule(capsule, subdivisions).vertices);
+        } else if let Some(cylinder) = shape.as_shape() {
+            check_finite(&procedural::cylinder(cylinder, subdivisions).vertices);
+        } else if let Some(cone) = shape.as_shape() {
+            check_finite(&procedural::cone(cone, subdivisions).vertices);
+        } else if let Some(hull) = shape.as_shape() {
+            check_finite(&procedural::convex_hull(hull).vertices);
+        } else if let Some(triangle) = shape.as_shape() {
+            check_finite(&procedural::triangle(triangle).vertices);
+        }
+    }
+}
+
+fn field3<N: Real>(bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
+    let (rows, columns) = (bytes.choice(5), bytes.choice(5));
+    let heights = (0..rows * columns).map(|_| bytes.number()).collect();
+    let (holes, diagonals) = (bytes.byte(), bytes.choice(3));
+    let field = dim3::shape::HeightField::try_new(rows, columns, heights, bytes.sizes()).ok()?;
+    let field = field.with_holes(|row, column| holes >> ((row * 3 + column) % 8) & 1 == 1);
+    let diagonals = [Diagonals::Forward, Diagonals::Backward, Diagonals::Zigzag][diagonals];
+    Some(ShapeHandle::new(field.with_diagonals(diagonals)))
+}
+
+/// No point of a surface is NaN.
+fn check_finite<N: Real, const D: usize>(points: &[Point<N, D>]) {
+    let mut numbers = points.iter().flat_map(|point| point.iter());
+    assert!(numbers.all(|x| x == x), "{points:?}");
+}

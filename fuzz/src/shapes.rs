@@ -1,0 +1,180 @@
+//! Shapes of every kind from bytes.
+
+use impinge::bounding_volume::Aabb;
+use impinge::math::{Point, Pose, Real, Space, Unit, Vector};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cuboid, Ellipsoid, Geometry, Plane, Polyline, Rounded, Segment, Shape,
+    ShapeHandle, SupportMap, TaperedCapsule, TriMesh, Triangle,
+};
+
+use crate::Bytes;
+use crate::place::Dimension;
+
+/// How many kinds both dimensions have.
+const COMMON_KINDS: usize = 13;
+
+/// Compounds are nested so deep at most.
+const MOST_NESTED: usize = 3;
+
+/// A shape of the kind that the next byte says; a ball where a constructor refuses the numbers.
+pub fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+    bytes: &mut Bytes<'_>,
+) -> ShapeHandle<N, D> {
+    nested::<N, M, D>(bytes, 0).unwrap_or_else(|| ShapeHandle::new(Ball::new(N::ONE)))
+}
+
+/// The shape, if the constructor took the numbers.
+pub fn made<N: Real, S: Shape<N, D>, E: std::error::Error, const D: usize>(
+    shape: Result<S, E>,
+) -> Option<ShapeHandle<N, D>> {
+    match shape {
+        Ok(shape) => Some(ShapeHandle::new(shape)),
+        Err(error) => {
+            assert!(!error.to_string().is_empty(), "an error says what is wrong");
+            None
+        }
+    }
+}
+
+fn nested<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+    bytes: &mut Bytes<'_>,
+    depth: usize,
+) -> Option<ShapeHandle<N, D>> {
+    let kind = bytes.choice(COMMON_KINDS + M::OWN_KINDS);
+    if let Some(own) = kind.checked_sub(COMMON_KINDS) {
+        return M::own_shape(own, bytes);
+    }
+    match kind {
+        0 => made(Ball::try_new(bytes.size())),
+        1 => made(Cuboid::<N, D>::try_new(bytes.sizes())),
+        2 => made(Segment::<N, D>::try_new(bytes.point(), bytes.point())),
+        3 => made(Capsule::<N, D>::try_from_ends(bytes.point(), bytes.point(), bytes.size())),
+        4 => made(Triangle::<N, D>::try_new(bytes.point(), bytes.point(), bytes.point())),
+        5 => Some(ShapeHandle::new(Plane::new(normal::<N, D>(bytes)))),
+        6 => made(Ellipsoid::<N, D>::try_new(bytes.sizes())),
+        7 => {
+            let (a, b, radii) = (bytes.point(), bytes.point(), [bytes.size(), bytes.size()]);
+            made(TaperedCapsule::<N, D>::try_from_ends(a, b, radii))
+        }
+        8 => {
+            let inner =
+                if depth < MOST_NESTED { nested::<N, M, D>(bytes, depth + 1) } else { None };
+            made(Rounded::try_from_handle(inner?, bytes.size()))
+        }
+        9 => {
+            let vertices = bytes.points::<N, D>();
+            let triangles = bytes.indices(vertices.len());
+            made(TriMesh::try_new(vertices, triangles))
+        }
+        10 => polyline::<N, D>(bytes),
+        11 => Cloud::from_bytes(bytes).map(ShapeHandle::new),
+        _ => compound::<N, M, D>(bytes, depth),
+    }
+}
+
+fn polyline<N: Space<D>, const D: usize>(bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>> {
+    let vertices = bytes.points::<N, D>();
+    match bytes.choice(3) {
+        0 => made(Polyline::try_open(vertices)),
+        1 => made(Polyline::try_closed(vertices)),
+        _ => {
+            let segments = bytes.indices(vertices.len());
+            made(Polyline::try_new(vertices, segments))
+        }
+    }
+}
+
+/// Up to seven children, which may be compounds.
+fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+    bytes: &mut Bytes<'_>,
+    depth: usize,
+) -> Option<ShapeHandle<N, D>> {
+    if depth == MOST_NESTED {
+        return None;
+    }
+    let count = bytes.choice(8);
+    let mut children = Vec::new();
+    for _ in 0..count {
+        let position = M::stored(M::position(bytes));
+        if let Some(child) = nested::<N, M, D>(bytes, depth + 1) {
+            children.push((position, child));
+        }
+    }
+    made(Compound::try_new(children))
+}
+
+/// A unit vector; along an axis half of the time.
+fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> {
+    let mut axis = Vector::<N, D>::zeros();
+    axis[bytes.choice(D)] = if bytes.coin() { N::ONE } else { -N::ONE };
+    if bytes.coin() {
+        return Unit::new_normalize(axis);
+    }
+    let any = Vector::<N, D>::from_fn(|_, _| bytes.finite::<N>());
+    let is_usable = any.norm_squared() > N::lit(1e-6) && any.norm_squared() < N::lit(1e6);
+    Unit::new_normalize(if is_usable { any } else { axis })
+}
+
+/// A support map of the user's own: the hull of points, swollen.
+#[derive(Clone, Debug)]
+pub struct Cloud<N: Real, const D: usize> {
+    points: Vec<Point<N, D>>,
+    rounding: N,
+}
+
+impl<N: Real, const D: usize> Cloud<N, D> {
+    fn from_bytes(bytes: &mut Bytes<'_>) -> Option<Self> {
+        let (points, rounding) = (bytes.points(), bytes.size());
+        (!points.is_empty()).then_some(Self { points, rounding })
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Cloud<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        let along = |point: &Point<N, D>| point.coords.dot(direction);
+        let farther = |best: Point<N, D>, point: &Point<N, D>| {
+            if along(point) > along(&best) { *point } else { best }
+        };
+        self.points.iter().fold(self.points[0], farther)
+    }
+
+    fn rounding(&self) -> N {
+        self.rounding
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Cloud<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry::support_map(self)
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        let core = Aabb::from_points(&self.points).unwrap_or_else(Aabb::unbounded);
+        let around = Vector::<N, D>::repeat(self.rounding);
+        Aabb::try_new(core.mins() - around, core.maxs() + around).unwrap_or(Aabb::unbounded())
+    }
+}
+
+/// What the library sees of a shape, as text: of a composite its parts.
+pub fn anatomy<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> String {
+    let Some(parts) = shape.geometry().as_composite() else { return format!("{shape:?}") };
+    (0..parts.num_parts()).map(|part| format!("{:?}\n", parts.part(part))).collect()
+}
+
+/// The shape or a part of it reaches to infinity.
+pub fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> bool {
+    let aabb = shape.local_aabb();
+    !(0..D).all(|axis| aabb.mins()[axis].is_finite_number() && aabb.maxs()[axis].is_finite_number())
+}
+
+/// How many parts the shape has; `None` if it is convex.
+pub fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32> {
+    shape.geometry().as_composite().map(|parts| parts.num_parts())
+}
+
+/// At least how far the shape reaches from its own origin; zero for what is unbounded.
+pub fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
+    let aabb = shape.aabb(&Pose::identity());
+    let corners = aabb.mins().iter().chain(aabb.maxs().iter());
+    corners.filter(|x| x.is_finite_number()).fold(N::ZERO, |sum, x| sum + x.abs())
+}
