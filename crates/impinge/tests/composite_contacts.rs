@@ -5,7 +5,7 @@ mod slides;
 use impinge::math::na::{Translation3, UnitQuaternion};
 use impinge::math::{Isometry3, Real, Space, Vector};
 use impinge::query::{Proximity, TrackedContact, contact, distance, proximity};
-use impinge::shape::{Compound, Cuboid, Shape, ShapeHandle, TriMesh};
+use impinge::shape::{Shape, TriMesh};
 use slides::{Pattern, Random, Sliding, grid, lowest, solids3};
 
 fn v<N: Real>(x: f64, y: f64, z: f64) -> Vector<N, 3> {
