@@ -14,8 +14,8 @@ use impinge::math::{Point, Real, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, GeometricQueryType};
 use impinge::query::{PointQuery, Proximity, Ray, RayCast};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Segment, ShapeHandle,
-    Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Rounded, Segment,
+    ShapeHandle, TaperedCapsule, Tetrahedron, Triangle,
 };
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use scene_stage::{Digest, digest_state};
@@ -61,11 +61,22 @@ fn bad_shapes_are_refused<N: Stage<D>, const D: usize>() {
             half[axis] = x;
             assert!(Cuboid::try_new(half).is_err(), "{number}");
             panics(|| Cuboid::new(half), "cuboid");
+            assert!(Ellipsoid::try_new(half).is_err(), "{number}");
+            panics(|| Ellipsoid::new(half), "ellipsoid");
         }
         assert!(Capsule::<N, D>::try_new(x, N::ONE).is_err(), "{number}");
         assert!(Capsule::<N, D>::try_new(N::ONE, x).is_err(), "{number}");
         assert!(Capsule::try_from_ends(good, good, x).is_err(), "{number}");
         panics(|| Capsule::<N, D>::new(N::ONE, x), "capsule");
+        assert!(TaperedCapsule::<N, D>::try_new(x, N::ONE, N::ONE).is_err(), "{number}");
+        assert!(TaperedCapsule::<N, D>::try_new(N::ONE, x, N::ONE).is_err(), "{number}");
+        assert!(TaperedCapsule::<N, D>::try_new(N::ONE, N::ONE, x).is_err(), "{number}");
+        panics(|| TaperedCapsule::<N, D>::new(N::ONE, N::ONE, x), "tapered capsule");
+        assert!(Rounded::<N, D>::try_new(Segment::new(good, good), x).is_err(), "{number}");
+        panics(|| Rounded::<N, D>::new(Segment::new(good, good), x), "rounded");
+        let corner = Point::<N, 3>::new(x, N::ONE, N::ZERO);
+        let bad = Tetrahedron::try_new([Point::origin(), Point::origin(), corner, corner]);
+        assert!(bad.is_err() || number == -1.0, "{number}");
         assert!(Cylinder::try_new(x, N::ONE).is_err(), "{number}");
         assert!(Cylinder::try_new(N::ONE, x).is_err(), "{number}");
         assert!(Cone::try_new(x, N::ONE).is_err(), "{number}");

@@ -123,20 +123,20 @@ fn pose3<N: Real>(rng: &mut Rng, far: f64) -> Isometry3<N> {
 
 #[test]
 fn solids_of_the_plane_agree_with_samples() {
-    run(plane_solids::<f64>, |rng| pose2(rng, 2.0), 8);
-    run(plane_solids::<f32>, |rng| pose2(rng, 2.0), 8);
+    run(plane_solids::<f64>, |rng| pose2(rng, 2.0), 11);
+    run(plane_solids::<f32>, |rng| pose2(rng, 2.0), 11);
 }
 
 #[test]
 fn solids_of_space_agree_with_samples() {
-    run(space_solids::<f64>, |rng| pose3(rng, 2.0), 9);
-    run(space_solids::<f32>, |rng| pose3(rng, 2.0), 9);
+    run(space_solids::<f64>, |rng| pose3(rng, 2.0), 13);
+    run(space_solids::<f32>, |rng| pose3(rng, 2.0), 13);
 }
 
 #[test]
 fn solids_far_from_the_world_origin_agree_with_samples() {
-    run(plane_solids::<f32>, |rng| pose2(rng, 1e3), 8);
-    run(space_solids::<f64>, |rng| pose3(rng, 1e6), 9);
+    run(plane_solids::<f32>, |rng| pose2(rng, 1e3), 11);
+    run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
 /// Sets without thickness: the answer is a mix of the corners, and no mix on a grid is nearer.

@@ -5,8 +5,8 @@ mod solids;
 use impinge::math::{Point, Real, Space, Unit, Vector};
 use impinge::query::{PointQuery, Ray, RayCast};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, FeatureId, Plane, Segment,
-    ShapeHandle, ShapeKind, Triangle,
+    self, Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, FeatureId, Plane,
+    Rounded, Segment, ShapeHandle, ShapeKind, TaperedCapsule, Triangle,
 };
 use solids::{Ellipsoid, Rng, narrow};
 
@@ -28,6 +28,9 @@ fn common<N: Real, const D: usize>(
         ShapeHandle::new(Capsule::<N, D>::new(N::HALF, N::HALF)),
         ShapeHandle::new(Cuboid::new(ones)),
         ShapeHandle::new(Ellipsoid(ones)),
+        ShapeHandle::new(shape::Ellipsoid::new(ones)),
+        ShapeHandle::new(TaperedCapsule::<N, D>::new(N::HALF, N::ONE, N::HALF)),
+        ShapeHandle::new(Rounded::<N, D>::new(Cuboid::new(ones * N::HALF), N::HALF)),
         ShapeHandle::new(Plane::new(Unit::new_unchecked(up))),
     ]
 }
@@ -105,6 +108,9 @@ fn every_kind_is_hit_from_above() {
         K::Triangle,
         K::Cuboid,
         K::Polytope,
+        K::Ellipsoid,
+        K::TaperedCapsule,
+        K::Rounded,
         K::SupportMap,
         K::Plane,
     ];
@@ -117,6 +123,9 @@ fn every_kind_is_hit_from_above() {
         K::Polytope,
         K::Cylinder,
         K::Cone,
+        K::Ellipsoid,
+        K::TaperedCapsule,
+        K::Rounded,
         K::SupportMap,
         K::Plane,
     ];

@@ -97,7 +97,8 @@ fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> 
         return clear.then_some(Expected { hit: true, solid: 0.0, hollow });
     }
     if depth > 0.0 {
-        let clear = solid.at(&shot.at(far)) > 0.0;
+        // Not so where the ray is all but parallel to a half-space.
+        let clear = solid.at(&shot.at(far)) > start + solid.size;
         return clear.then_some(Expected { hit: false, solid: f64::NAN, hollow: None });
     }
     let t = crossing(solid, shot, (0.0, time));
@@ -208,20 +209,20 @@ fn pose3<N: Real>(rng: &mut Rng, far: f64) -> Isometry3<N> {
 
 #[test]
 fn solids_of_the_plane_agree_with_the_oracle() {
-    run(plane_solids::<f64>, |rng| pose2(rng, 2.0), 8);
-    run(plane_solids::<f32>, |rng| pose2(rng, 2.0), 8);
+    run(plane_solids::<f64>, |rng| pose2(rng, 2.0), 11);
+    run(plane_solids::<f32>, |rng| pose2(rng, 2.0), 11);
 }
 
 #[test]
 fn solids_of_space_agree_with_the_oracle() {
-    run(space_solids::<f64>, |rng| pose3(rng, 2.0), 9);
-    run(space_solids::<f32>, |rng| pose3(rng, 2.0), 9);
+    run(space_solids::<f64>, |rng| pose3(rng, 2.0), 13);
+    run(space_solids::<f32>, |rng| pose3(rng, 2.0), 13);
 }
 
 #[test]
 fn solids_far_from_the_world_origin_agree_with_the_oracle() {
-    run(plane_solids::<f32>, |rng| pose2(rng, 1e3), 8);
-    run(space_solids::<f64>, |rng| pose3(rng, 1e6), 9);
+    run(plane_solids::<f32>, |rng| pose2(rng, 1e3), 11);
+    run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
 /// A ray from far away, aimed at a point of the solid or past it, still finds the boundary to the

@@ -151,6 +151,8 @@ pub mod shape {
         PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
+    /// Where a curved support point lies, and how it moves.
+    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 2>;
     /// A rectangle.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 2>;
     /// The points near a segment.
@@ -162,7 +164,7 @@ pub mod shape {
     /// A filled triangle.
     pub type Triangle<N> = crate::shape::Triangle<N, 2>;
     /// The points within a radius of a convex shape.
-    pub type Rounded<N, S> = crate::shape::Rounded<N, 2, S>;
+    pub type Rounded<N> = crate::shape::Rounded<N, 2>;
     /// The hull of two balls.
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 2>;
     /// A stretched disk.
@@ -204,7 +206,9 @@ pub mod transformation {
 /// assert_eq!(outline.points[1], [2.0, 1.0].into());
 /// ```
 pub mod procedural {
-    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::plane::{
+        ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
+    };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
 }
 

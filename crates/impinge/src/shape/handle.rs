@@ -1,6 +1,5 @@
 //! Shapes shared by many objects.
 
-use core::any::Any;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -42,12 +41,6 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     /// If a factor is zero or not finite, or the scaled solid is no shape of the library.
     pub fn scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         self.0.scaled(scale)
-    }
-
-    /// The shape, if it is of the type `S` and nobody shares it.
-    pub(super) fn into_shape<S: Shape<N, D>>(self) -> Option<S> {
-        let shape: Arc<dyn Any + Send + Sync> = self.0;
-        shape.downcast().ok().and_then(|shape| Arc::try_unwrap(shape).ok())
     }
 
     /// The two handles share one shape.

@@ -26,13 +26,13 @@ use crate::math::{Point, Pose, Real, Vector};
 /// assert_eq!(die.project_local_point(&beyond_face).0.point.y, 1.5);
 /// assert!(matches!(die.project_local_point(&beyond_edge).1, FeatureId::Edge(_)));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded<N: Real, const D: usize, S: Shape<N, D>> {
-    shape: S,
+#[derive(Clone, Debug)]
+pub struct Rounded<N: Real, const D: usize> {
+    shape: ShapeHandle<N, D>,
     radius: N,
 }
 
-impl<N: Real, const D: usize, S: Shape<N, D>> Rounded<N, D, S> {
+impl<N: Real, const D: usize> Rounded<N, D> {
     /// The points within `radius` of a convex shape.
     ///
     /// # Panics
@@ -40,7 +40,7 @@ impl<N: Real, const D: usize, S: Shape<N, D>> Rounded<N, D, S> {
     /// [`Self::try_new`] returns these.
     #[must_use]
     #[track_caller]
-    pub fn new(shape: S, radius: N) -> Self {
+    pub fn new<S: Shape<N, D>>(shape: S, radius: N) -> Self {
         or_panic(Self::try_new(shape, radius))
     }
 
@@ -48,7 +48,15 @@ impl<N: Real, const D: usize, S: Shape<N, D>> Rounded<N, D, S> {
     ///
     /// # Errors
     /// If the radius is negative or not finite, or if the shape is a half-space or a composite.
-    pub fn try_new(shape: S, radius: N) -> Result<Self, ShapeError> {
+    pub fn try_new<S: Shape<N, D>>(shape: S, radius: N) -> Result<Self, ShapeError> {
+        Self::try_from_handle(ShapeHandle::new(shape), radius)
+    }
+
+    /// The points within `radius` of a convex shape that is shared.
+    ///
+    /// # Errors
+    /// As [`Self::try_new`].
+    pub fn try_from_handle(shape: ShapeHandle<N, D>, radius: N) -> Result<Self, ShapeError> {
         let radius = size("the radius", radius)?;
         let kind = shape.geometry().kind();
         match shape.geometry().as_support_map() {
@@ -60,7 +68,7 @@ impl<N: Real, const D: usize, S: Shape<N, D>> Rounded<N, D, S> {
     /// The shape in the middle.
     #[inline]
     #[must_use]
-    pub const fn shape(&self) -> &S {
+    pub const fn shape(&self) -> &ShapeHandle<N, D> {
         &self.shape
     }
 
@@ -85,7 +93,7 @@ pub(crate) trait RoundedSolid<N: Real, const D: usize>: SupportMap<N, D> {
     fn swelling(&self) -> N;
 }
 
-impl<N: Real, const D: usize, S: Shape<N, D>> RoundedSolid<N, D> for Rounded<N, D, S> {
+impl<N: Real, const D: usize> RoundedSolid<N, D> for Rounded<N, D> {
     fn inner(&self) -> Geometry<'_, N, D> {
         self.shape.geometry()
     }
@@ -95,7 +103,7 @@ impl<N: Real, const D: usize, S: Shape<N, D>> RoundedSolid<N, D> for Rounded<N, 
     }
 }
 
-impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D, S> {
+impl<N: Real, const D: usize> SupportMap<N, D> for Rounded<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         self.map().core_support(direction)
     }
@@ -106,6 +114,10 @@ impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D,
         direction: &Vector<N, D>,
     ) -> Option<CurvedSupport<N, D>> {
         self.map().curved_support(point, direction)
+    }
+
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.map().round_face(direction)
     }
 
     fn rounding(&self) -> N {
@@ -125,7 +137,7 @@ impl<N: Real, const D: usize, S: Shape<N, D>> SupportMap<N, D> for Rounded<N, D,
     }
 }
 
-impl<N: Real, const D: usize, S: Shape<N, D>> Shape<N, D> for Rounded<N, D, S> {
+impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
     fn geometry(&self) -> Geometry<'_, N, D> {
         Geometry(Kind::Rounded(self))
     }
@@ -142,10 +154,9 @@ impl<N: Real, const D: usize, S: Shape<N, D>> Shape<N, D> for Rounded<N, D, S> {
         self.shape.local_bounding_sphere().loosened(self.radius)
     }
 
-    /// With factors of one magnitude; the shape in the middle must stay of its type.
+    /// With factors of one magnitude.
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
-        let factor = Scale::try_new(scale)?.uniform()?;
-        let shape = self.shape.scaled(scale)?.into_shape::<S>().ok_or(ScaleError::Unsupported)?;
-        Ok(ShapeHandle::new(Self::try_new(shape, self.radius * factor)?))
+        let radius = self.radius * Scale::try_new(scale)?.uniform()?;
+        Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))
     }
 }

@@ -6,8 +6,8 @@
 
 use impinge::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry, Plane, Segment,
-    Shape, ShapeHandle, SupportMap, Triangle,
+    self, Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Geometry, Plane,
+    Segment, Shape, ShapeHandle, SupportMap, Triangle,
 };
 
 /// A small deterministic generator (Steele, Lea and Flood, `SplitMix`, 2014).
@@ -211,9 +211,43 @@ pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>>
             })
         }),
     ];
+    let pebble = move |p: &Vector<f64, D>| (p.component_div(&half).norm() - 1.0) * half.min();
+    let pebble_of = shape::Ellipsoid::new(narrow(&half));
+    solids.push(Solid::new("pebble", pebble_of, half.norm(), Box::new(pebble)));
+    let swollen = shape::Rounded::<N, D>::new(Cuboid::new(narrow(&half)), N::lit(thickness));
+    let level = move |p: &Vector<f64, D>| {
+        let out = beyond(p, &half);
+        out.map(|x| x.max(0.0)).norm() + out.max().min(0.0) - thickness
+    };
+    solids.push(Solid::new("rounded box", swollen, half.norm() + thickness, Box::new(level)));
+    solids.push(club(rng));
     solids[2].center = (a + b) * 0.5;
     solids[3].center = -normal;
     solids
+}
+
+/// A tapered capsule: the union of balls whose centres and radii change evenly.
+fn club<N: Real, const D: usize>(rng: &mut Rng) -> Solid<N, D> {
+    let (a, b) = (rng.vector::<D>(2.0), rng.vector::<D>(2.0));
+    let (first, second) = (rng.between(0.25, 1.0), rng.between(0.25, 1.0));
+    let (ends, radii) = ([a, b].map(|end| Point::from(narrow(&end))), [first, second].map(N::lit));
+    let shape = shape::TaperedCapsule::try_from_ends(ends[0], ends[1], radii).expect("numbers");
+    let level = move |p: &Vector<f64, D>| {
+        let (axis, growth) = (b - a, second - first);
+        let length = axis.norm();
+        let along = (p - a).dot(&axis) / length;
+        let aside = (p - a - axis * (along / length)).norm();
+        let lean = (length * length - growth * growth).max(0.0).sqrt();
+        let ball = |share: f64| (p - a - axis * share).norm() - first - growth * share;
+        if lean == 0.0 {
+            return ball(0.0).min(ball(1.0));
+        }
+        ball(((along + aside * growth / lean) / length).clamp(0.0, 1.0))
+    };
+    let size = a.norm().max(b.norm()) + first.max(second);
+    let mut solid = Solid::new("tapered capsule", shape, size, Box::new(level));
+    solid.center = (a + b) * 0.5;
+    solid
 }
 
 pub(crate) fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
@@ -303,8 +337,21 @@ pub(crate) fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
     let points: Vec<_> = corners.iter().map(|corner| Point::from(narrow(corner))).collect();
     let size = corners.iter().map(Vector::<f64, 3>::norm).fold(0.0, f64::max);
     let level = hull_level(corners, |c, i| (c[i[1]] - c[i[0]]).cross(&(c[i[2]] - c[i[0]])));
+    solids.push(spike(rng));
     solids.push(Solid::new("hull", ConvexHull::from_points(&points), size, level));
     solids
+}
+
+/// A tetrahedron around the origin.
+fn spike<N: Real>(rng: &mut Rng) -> Solid<N, 3> {
+    let mut near = |x: f64, y: f64, z: f64| Vector::<f64, 3>::new(x, y, z) * rng.between(0.5, 2.0);
+    let corners =
+        [near(1.0, 1.0, 1.0), near(1.0, -1.0, -1.0), near(-1.0, 1.0, -1.0), near(-1.0, -1.0, 1.0)];
+    let shape = shape::Tetrahedron::new(corners.map(|corner| Point::from(narrow(&corner))));
+    let size = corners.iter().map(Vector::<f64, 3>::norm).fold(0.0, f64::max);
+    let level =
+        hull_level(corners.to_vec(), |c, i| (c[i[1]] - c[i[0]]).cross(&(c[i[2]] - c[i[0]])));
+    Solid::new("tetrahedron", shape, size, level)
 }
 
 /// Sets without thickness: their corners, of which they are the hull.

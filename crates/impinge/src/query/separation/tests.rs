@@ -43,7 +43,7 @@ struct Solids<N: Real, const D: usize> {
     polytope: Box<dyn Shape<N, D>>,
     ellipsoid: Ellipsoid<N, D>,
     tapered: TaperedCapsule<N, D>,
-    rounded: Rounded<N, D, Cuboid<N, D>>,
+    rounded: Rounded<N, D>,
     plane: Plane<N, D>,
     composite: One<N, D>,
 }

@@ -4,7 +4,10 @@ use super::scene::{Scene, fact, manifold, request};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Unit, Vector};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, FeatureId, Plane, Shape};
+use crate::shape::{
+    Ball, Capsule, ConvexHull, Cuboid, Cylinder, Ellipsoid, FeatureId, Plane, Rounded, Shape,
+    TaperedCapsule, Tetrahedron,
+};
 
 /// A solid and the ground under it, whose top is at height zero. Plane, box, turn of the solid and
 /// height of its origin.
@@ -112,6 +115,57 @@ fn round_solids_rest() {
         assert_eq!(ball3.counts(&wish), [1; 2], "a ball");
         let ball2 = Rest::<2> { solid: &ball, height: 0.5 - sunk, turn: [0.0; 3] };
         assert_eq!(ball2.counts(&wish), [1; 2], "a disk");
+    }
+}
+
+#[test]
+fn ellipsoids_tapered_capsules_and_rounded_boxes_rest() {
+    let wish = request(1e-6, 0.0);
+    let pebble = Ellipsoid::new(Vector::<f32, 3>::new(1.0, 0.25, 0.5));
+    let (die, tile) = (
+        Rounded::<f32, 3>::new(Cuboid::new(Vector::<f32, 3>::new(0.5, 0.125, 0.25)), 0.125),
+        Rounded::<f32, 2>::new(Cuboid::new(Vector::<f32, 2>::new(0.5, 0.125)), 0.125),
+    );
+    // The side leans by the sine 0.6, so on it the axis leans by as much; the small end is 0.25 high.
+    let club = TaperedCapsule::<f32, 3>::new(0.625, 0.25, 1.0);
+    let flat_club = TaperedCapsule::<f32, 2>::new(0.625, 0.25, 1.0);
+    let lying = [0.0, 0.0, -(0.8_f64.atan2(0.6))];
+    let middle = 0.25 + 0.625 * 0.6;
+    for sunk in [1e-5, 1e-3] {
+        let pebble = Rest { solid: &pebble, height: 0.25 - sunk, turn: [0.0; 3] };
+        assert_eq!(pebble.counts(&wish), [1; 2], "a pebble");
+        let die = Rest { solid: &die, height: 0.25 - sunk, turn: [0.0; 3] };
+        assert_eq!(die.counts(&wish), [4; 2], "a die");
+        let tile = Rest { solid: &tile, height: 0.25 - sunk, turn: [0.0; 3] };
+        assert_eq!(tile.counts(&wish), [2; 2], "a tile");
+        let club = Rest { solid: &club, height: middle - sunk, turn: lying };
+        assert_eq!(club.counts(&wish), [2; 2], "a club");
+        let flat = Rest { solid: &flat_club, height: middle - sunk, turn: lying };
+        assert_eq!(flat.counts(&wish), [2; 2], "a club in the plane");
+    }
+}
+
+#[test]
+fn tetrahedra_with_and_without_volume_rest() {
+    let p = |x: f32, y: f32, z: f32| Point::<f32, 3>::new(x, y, z);
+    let solid = Tetrahedron::new([
+        p(-1.0, 0.0, -1.0),
+        p(1.0, 0.0, -1.0),
+        p(0.0, 0.0, 1.0),
+        p(0.0, 1.0, 0.0),
+    ]);
+    let flat = Tetrahedron::new([
+        p(-1.0, 0.0, -1.0),
+        p(1.0, 0.0, 1.0),
+        p(1.0, 0.0, -1.0),
+        p(-1.0, 0.0, 1.0),
+    ]);
+    for sunk in [0.0, 1e-3] {
+        let wish = request(1e-6, 0.0);
+        let on_a_face = Rest { solid: &solid, height: -sunk, turn: [0.0; 3] };
+        assert_eq!(on_a_face.counts(&wish), [3; 2], "on its face");
+        let on_a_side = Rest { solid: &flat, height: -sunk, turn: [0.0; 3] };
+        assert_eq!(on_a_side.counts(&wish), [4; 2], "a flat one");
     }
 }
 
