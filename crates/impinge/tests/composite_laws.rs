@@ -204,7 +204,6 @@ fn few_parts_are_looked_at() {
     let count = |what: &str, most: usize, run: &dyn Fn()| {
         run();
         let looked = one.take() + two.take();
-        eprintln!("{what} looks at {looked} of {parts} parts");
         assert!(looked <= most, "{what} looks at {looked} of {parts} parts");
     };
     let here = Isometry3::identity();

@@ -151,6 +151,8 @@ pub mod shape {
         PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
+    /// Where a curved support point lies, and how it moves.
+    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 2>;
     /// A rectangle.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 2>;
     /// The points near a segment.

@@ -152,6 +152,8 @@ pub mod shape {
         ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
+    /// Where a curved support point lies, and how it moves.
+    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 3>;
     /// A box.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
     /// The points near a segment.
