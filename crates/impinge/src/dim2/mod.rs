@@ -175,8 +175,6 @@ pub mod shape {
     pub type Polyline<N> = crate::shape::Polyline<N, 2>;
     /// A vertex or a side, as points.
     pub type Feature<N> = crate::shape::Feature<N, 2>;
-    /// Where the support point of a curved part lies, and how it moves.
-    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 2>;
     /// How queries see a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 2>;
     /// One of the solids that a composite is made of.

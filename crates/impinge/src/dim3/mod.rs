@@ -176,8 +176,6 @@ pub mod shape {
     pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
-    /// Where the support point of a curved part lies, and how it moves.
-    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 3>;
     /// How queries see a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
     /// One of the solids that a composite is made of.
