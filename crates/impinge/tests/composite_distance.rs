@@ -87,7 +87,7 @@ fn against_convex<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     seed: u64,
     scale: N,
 ) -> bool {
-    let random = &mut Random(seed, seed % 5 == 0);
+    let random = &mut Random(seed, seed.is_multiple_of(5));
     let scene = maker.scene(random, 1 + usize::try_from(seed % 23).expect("few"), scale);
     let solid = maker.solid(random, scale * N::lit([1.0, 0.01, 5.0][(seed % 3) as usize]));
     let m1 = maker.place(random, scale * N::lit(4.0));

@@ -66,10 +66,11 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
             }
             let point = m.transform_point(&local);
             let signed = scene.fast.distance_to_point(&m, &point, false);
-            let one = |(place, (_, piece)): (&Isometry<N, R, D>, &(Pose<N, D>, Piece<N, D>))| {
+            let one = |part: usize| {
+                let (place, (_, piece)) = (&scene.places[part], &scene.fast.parts[part]);
                 piece.as_shape().distance_to_point(&(&m * place), &point, false)
             };
-            let each = scene.places.iter().zip(&scene.fast.parts).map(one);
+            let each = (0..scene.places.len()).map(one);
             let brute = each.fold(N::INFINITY, |a, b| if b < a { b } else { a });
             assert!((signed - brute).abs() <= noise, "{seed} {signed:?} {brute:?}");
             let slow = scene.slow.distance_to_point(&m, &point, false);

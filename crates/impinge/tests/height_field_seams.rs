@@ -167,6 +167,22 @@ fn compare<N: Real, const D: usize>(
     admits
 }
 
+/// A part, by its number, of a surface.
+type PartOf<'a, N, const D: usize> = (&'a dyn Surface<N, D>, u32);
+
+/// All features of a triangle; how many admit the normal, and how many do not.
+fn compare_features<N: Real>(
+    (side1, side2): (PartOf<'_, N, 3>, PartOf<'_, N, 3>),
+    normal: &Vector<N, 3>,
+) -> (usize, usize) {
+    let features =
+        (0..3).flat_map(|k| [FeatureId::Vertex(k), FeatureId::Edge(k), FeatureId::Face(0)]);
+    let answers: Vec<_> =
+        features.map(|feature| compare(side1, side2, (feature, feature), normal)).collect();
+    let yes = answers.iter().filter(|admits| **admits).count();
+    (yes, answers.len() - yes)
+}
+
 fn check_against_meshes<N: Real>() {
     let mut random = Random::new(81);
     let (mut admitted, mut refused) = (0, 0);
@@ -194,15 +210,10 @@ fn check_against_meshes<N: Real>() {
                 let other = surface1.snapped(other, &snapped).expect("an area");
                 let between = (snapped + other).try_normalize(N::lit(1e-3)).unwrap_or(normal);
                 for normal in [normal, snapped, other, between] {
-                    for k in 0..3 {
-                        for feature in
-                            [FeatureId::Vertex(k), FeatureId::Edge(k), FeatureId::Face(0)]
-                        {
-                            let sides = ((surface1, part), (surface2, index));
-                            let admits = compare(sides.0, sides.1, (feature, feature), &normal);
-                            if admits { admitted += 1 } else { refused += 1 }
-                        }
-                    }
+                    let sides = ((surface1, part), (surface2, index));
+                    let (yes, no) = compare_features(sides, &normal);
+                    admitted += yes;
+                    refused += no;
                 }
             }
         }
@@ -216,9 +227,24 @@ fn seams_are_those_of_a_mesh_of_the_same_triangles() {
     check_against_meshes::<f64>();
 }
 
+/// How many features admit the normal: the same of both.
+fn admitted_alike<N: Real>(
+    ((surface1, part1), (surface2, part2)): (PartOf<'_, N, 2>, PartOf<'_, N, 2>),
+    features: &[(FeatureId, FeatureId)],
+    normal: &Vector<N, 2>,
+) -> usize {
+    let admits = |&(own, other): &(FeatureId, FeatureId)| {
+        let admits = surface1.admits(part1, own, normal);
+        let same = surface2.admits(part2, other, normal);
+        assert_eq!(admits, same, "part {part1}, {own:?}, {normal}");
+        admits
+    };
+    features.iter().filter(|pair| admits(pair)).count()
+}
+
 fn check_against_polylines<N: Real>() {
     let mut random = Random::new(82);
-    let (mut admitted, mut refused) = (0, 0);
+    let (mut admitted, mut refused) = (0_usize, 0_usize);
     for round in 0..40 {
         let signs = [N::ONE, -N::ONE];
         let scale = Vector::<N, 2>::new(N::lit(8.0) * signs[round / 2 % 2], signs[round / 4 % 2]);
@@ -233,6 +259,12 @@ fn check_against_polylines<N: Real>() {
         // A polyline has its front on the right.
         let is_turned = scale.x * scale.y > N::ZERO;
         let ends = |&part: &u32| if is_turned { [part + 1, part] } else { [part, part + 1] };
+        let ends_turned = if is_turned { [1, 0] } else { [0, 1] };
+        let features = [
+            (FeatureId::Vertex(0), FeatureId::Vertex(ends_turned[0])),
+            (FeatureId::Vertex(1), FeatureId::Vertex(ends_turned[1])),
+            (FeatureId::Edge(0), FeatureId::Edge(0)),
+        ];
         let line = Polyline::<N, 2>::new(points, numbers.iter().map(ends).collect());
         let line = if field.is_one_sided() { line.one_sided() } else { line };
         let (surface1, surface2) = (field.surface().expect("one"), line.surface().expect("one"));
@@ -244,20 +276,10 @@ fn check_against_polylines<N: Real>() {
                 };
                 let snapped = surface1.snapped(part, &normal).expect("a length");
                 for normal in [normal, snapped] {
-                    for k in [0, 1] {
-                        let same = if is_turned { 1 - k } else { k };
-                        for features in [
-                            (FeatureId::Vertex(k), FeatureId::Vertex(same)),
-                            (FeatureId::Edge(0), FeatureId::Edge(0)),
-                        ] {
-                            let what = (
-                                surface1.admits(part, features.0, &normal),
-                                surface2.admits(index, features.1, &normal),
-                            );
-                            assert_eq!(what.0, what.1, "part {part}, {features:?}, {normal}");
-                            if what.0 { admitted += 1 } else { refused += 1 }
-                        }
-                    }
+                    let sides = ((surface1, part), (surface2, index));
+                    let yes = admitted_alike(sides, &features, &normal);
+                    admitted += yes;
+                    refused += features.len() - yes;
                     let (own, other) =
                         (surface1.snapped(part, &normal), surface2.snapped(index, &normal));
                     let rounding = N::lit(4.0) * N::EPSILON;

@@ -130,11 +130,14 @@ struct Setting {
     turned: bool,
 }
 
+/// A motion from a place, that turns as fast as the number says.
+type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
+
 /// What is particular to a dimension.
 struct Stage<N: Real, R, const D: usize> {
     shapes: fn(N) -> Shapes<N, D>,
     turn: R,
-    spin: fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>,
+    spin: Spin<N, R, D>,
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
@@ -145,13 +148,9 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         for (name1, shape1) in &shapes {
             self.guarded(&mut wrong, &format!("{name1} alone"), || self.alone(setting, &**shape1));
             for (name2, shape2) in &shapes {
-                let (m1, m2) = self.places(setting, &**shape1, &**shape2);
                 let same = name1 == name2 && setting.regime == Regime::Coincident;
                 self.guarded(&mut wrong, &format!("{name1} {name2}"), || {
-                    check(&Two { m1: &m1, g1: &**shape1, m2: &m2, g2: &**shape2, same }, setting);
-                    if setting.scale == 1.0 && setting.away == 0.0 && !setting.turned {
-                        self.turning((&m1, &**shape1), (&m2, &**shape2), same);
-                    }
+                    self.together(setting, [&**shape1, &**shape2], same);
                 });
             }
         }
@@ -160,6 +159,15 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         }
         eprintln!("{setting:?}: {wrong:#?}");
         wrong.len()
+    }
+
+    /// The queries about two shapes.
+    fn together(&self, setting: &Setting, [g1, g2]: [&dyn Shape<N, D>; 2], same: bool) {
+        let (m1, m2) = self.places(setting, g1, g2);
+        check(&Two { m1: &m1, g1, m2: &m2, g2, same }, setting);
+        if setting.scale == 1.0 && setting.away == 0.0 && !setting.turned {
+            self.turning((&m1, g1), (&m2, g2), same);
+        }
     }
 
     fn guarded(&self, wrong: &mut Vec<String>, name: &str, run: impl FnOnce()) {
@@ -311,9 +319,11 @@ fn moving<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
 fn settings(scales: &[f64]) -> Vec<Setting> {
     let regimes = [Regime::Far, Regime::Touching, Regime::Deep, Regime::Coincident];
     let mut all = Vec::new();
-    for (regime, turned) in regimes.into_iter().flat_map(|r| [(r, false), (r, true)]) {
-        all.extend(scales.iter().map(|&scale| Setting { regime, scale, away: 0.0, turned }));
-        all.push(Setting { regime, scale: 1.0, away: 1e6, turned });
+    for regime in regimes {
+        let (away, turned) = (0.0, false);
+        all.extend(scales.iter().map(|&scale| Setting { regime, scale, away, turned }));
+        all.push(Setting { regime, scale: 1.0, away, turned: true });
+        all.push(Setting { regime, scale: 1.0, away: 1e6, turned: true });
     }
     all
 }

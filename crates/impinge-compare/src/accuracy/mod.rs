@@ -129,7 +129,7 @@ fn row<const D: usize>(
             failures += 1;
             continue;
         };
-        if !known.truth.is_settled() {
+        if !known.truth.is_settled(scalar.epsilon() / 4.0) {
             row.dropped += 1;
             continue;
         }

@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::judge::{Errors, extremes};
+use super::sample::Regime;
 use super::{CONTENDERS, Row};
 
 /// One line on the screen.
@@ -112,8 +113,8 @@ fn line(rows: &[Row]) -> String {
     let both = |keep: &dyn Fn(&Row) -> bool| [0, 1].map(|contender| together(contender, keep));
     let distance = both(&|row| !row.regime.is_overlap()).map(|errors| cell(&errors.units));
     let depth = both(&|row| row.regime.is_overlap()).map(|errors| cell(&errors.units));
+    let normal = both(&|row| row.regime != Regime::Touching).map(|errors| cell(&errors.angle));
     let all = both(&|_| true);
-    let normal = [0, 1].map(|contender: usize| cell(&all[contender].angle));
     let mut remarks: Vec<String> = [0, 1].into_iter().flat_map(|n| remarks(n, &all[n])).collect();
     let dropped: usize = rows.iter().map(|row| row.dropped).sum();
     if dropped > 0 {

@@ -6,7 +6,7 @@ use super::polytope::{self, Polytope};
 use super::search::{Bracket, Task};
 use super::solid::{Kind, Placed, Pose, Solid, extent, height, placed, support64};
 use super::topology::Topology;
-use super::vector::{Vector, dot, exact, negate, norm, rounded, scale, sub, unit};
+use super::vector::{Vector, exact, negate, norm, rounded, scale, sub, unit};
 use crate::geometry::vector as plain;
 
 /// What [`signed_distance`] found.
@@ -29,15 +29,15 @@ pub struct Precise<const D: usize> {
 }
 
 impl<const D: usize> Precise<D> {
-    /// Whether the distance is right to about 1e-20 of the size.
+    /// Whether the distance is right to this share of the size, or to 1e-20 of it.
     ///
     /// Either that is proven; or all other hills are proven to be no higher than 1e-10 of the size
     /// above this one, and the top of this one was found. (Two hills that are equally high to ten
     /// digits are as unlikely as that sounds.)
     #[must_use]
-    pub fn is_settled(&self) -> bool {
+    pub fn is_settled(&self, share: f64) -> bool {
         let small = |length: f64, share: f64| length <= share * self.size;
-        small(self.gap, 1e-20) || small(self.gap, 1e-10) && small(self.miss, 1e-20)
+        small(self.gap, share) || small(self.gap, 1e-10) && small(self.miss, 1e-20)
     }
 }
 
@@ -47,8 +47,8 @@ impl<const D: usize> Precise<D> {
 /// - Polytopes, rounded or not, and a half-space against anything: every direction that can be the
 ///   answer is tried.
 /// - Where a disk or ellipsoid takes part, the sphere of directions is searched in `f64`, and the
-///   answer brought to all digits by Newton's method. Apart, a point of the difference proves it;
-///   overlapping, the search proves that no other direction is better by more than 1e-11 of the size.
+///   answer brought to all digits by Newton's method. Apart or touching, a point of the difference
+///   proves it; overlapping, the search proves that no other direction is better by more than 1e-11 of the size.
 ///
 /// Only the difference of the two translations matters. Half-spaces overlap without bound: minus
 /// 1e300.
@@ -165,8 +165,8 @@ fn curved<const D: usize>(pair: Pair<'_, D>, size: f64) -> (Polished<D>, f64) {
         }
     }
     let proven = proven_gap(&best);
-    if proven.is_some_and(|gap| gap <= 1e-22 * size) {
-        return (best, proven.unwrap_or(0.0));
+    if proven <= 1e-22 * size {
+        return (best, proven);
     }
     if best.miss() > 1e-21 * size {
         best = coaxed(pair, best, size);
@@ -177,7 +177,7 @@ fn curved<const D: usize>(pair: Pair<'_, D>, size: f64) -> (Polished<D>, f64) {
         best = if is_better(&other, &best) { other } else { best };
     }
     let searched = (Quad::new(bracket.upper) - best.height).to_f64().max(0.0);
-    (best, proven_gap(&best).map_or(searched, |gap| gap.min(searched)))
+    (best, proven_gap(&best).min(searched))
 }
 
 fn polished<const D: usize>(pair: Pair<'_, D>, start: &[f64; D]) -> Polished<D> {
@@ -213,11 +213,10 @@ fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> P
     best
 }
 
-/// Where the solids are apart: how much longer the way across is than the height.
-fn proven_gap<const D: usize>(found: &Polished<D>) -> Option<f64> {
-    let across = norm(&found.point) - found.height;
-    let apart = found.height > Quad::ZERO && dot(&found.point, &found.normal) > Quad::ZERO;
-    apart.then(|| across.to_f64().max(0.0))
+/// How much longer the way between two points of the solids is than the height: nothing much where the
+/// solids are apart or only just overlap.
+fn proven_gap<const D: usize>(found: &Polished<D>) -> f64 {
+    (norm(&found.point) - found.height).to_f64().max(0.0)
 }
 
 /// The normals of all disks.

@@ -13,7 +13,7 @@ fn apart(solid1: &Solid<3>, solid2: &Solid<3>, offset: [f64; 3]) -> Precise<3> {
 fn is<const D: usize>(found: &Precise<D>, expected: Quad) {
     let error = (found.distance - expected).abs().to_f64();
     assert!(error < 1e-28, "{found:?} is off by {error}");
-    assert!(found.is_settled(), "{found:?}");
+    assert!(found.is_settled(1e-20), "{found:?}");
 }
 
 fn ratio(above: f64, below: f64) -> Quad {
@@ -105,7 +105,7 @@ fn agrees_with_the_reference_in_f64_and_with_itself_swapped() {
         let distance = found.distance.to_f64();
         assert!(rough.error_of(distance) < 1e-14 * found.size, "{found:?} {rough:?}");
         let swapped = signed_distance(&two.0, &pose2, &one.0, &pose1);
-        if found.is_settled() && swapped.is_settled() {
+        if found.is_settled(1e-20) && swapped.is_settled(1e-20) {
             let difference = (swapped.distance - found.distance).abs().to_f64();
             assert!(difference < 1e-20 * found.size, "{found:?} {swapped:?}");
             settled += 1;

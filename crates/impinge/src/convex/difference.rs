@@ -48,6 +48,10 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// The point of the set that lies lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
 
+    /// The normals of the flat round faces of either core that a normal is nearly perpendicular to, as
+    /// normals from the first core to the second.
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
+
     /// The point of the first or second core that is lowest along the unit vector `normal`, or
     /// highest, on the part of the core that `on` lies on.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
@@ -145,6 +149,12 @@ where
         Vertex { point: on2 - on1, on1, on2 }
     }
 
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {
+        let toward1 = self.rotation.tr_mul(&-normal);
+        let face2 = self.solid2.round_face(&toward1);
+        [self.solid1.round_face(normal), face2.map(|face| -(self.rotation * face))]
+    }
+
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D> {
         let corner = Branch { is_second, on: *on, bend: None };
         if is_second {
@@ -177,6 +187,10 @@ impl<N: Real, const D: usize> Difference<N, D> for Moved<'_, N, D> {
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D> {
         let vertex = self.inner.lowest(normal);
         Vertex { point: vertex.point + self.by, ..vertex }
+    }
+
+    fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {
+        self.inner.round_faces(normal)
     }
 
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D> {

@@ -108,6 +108,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
         let candidate = Candidate::along(difference, -side.outward);
         best.improve(&candidate);
         if -candidate.height - side.offset <= tolerance() {
+            let before = best.height;
             if let Some(mix) = polish(difference, &mut best, &[side.start, next]) {
                 return placed(&best, &mix, N::HALF);
             }
@@ -115,7 +116,9 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
                 sharpen(difference, &mut best);
                 return locate(difference, &best, &vertices(ring, &best));
             }
-            best.prefer(candidate, N::TWO * tolerance());
+            if best.height <= before {
+                best.prefer(candidate, N::TWO * tolerance());
+            }
             let mix = Mix::nearest(&best, &[side.start, next]);
             return settle(difference, &best, &mix, &vertices(ring, &best));
         }

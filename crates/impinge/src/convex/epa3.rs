@@ -12,7 +12,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
-use super::newton::sharpen;
+use super::newton::{settles, sharpen};
 use super::polish::{lowest, polish};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -124,13 +124,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 break;
             }
             let corners = face.corners.map(|corner| *hull.vertex(corner));
+            let before = best.height;
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
             if -candidate.height - face.offset > noise() {
                 return sharpened(difference, hull, best);
             }
-            best.prefer(candidate, N::TWO * tolerance());
+            if best.height <= before {
+                best.prefer(candidate, N::TWO * tolerance());
+            }
             let mix = Mix::nearest(&best, &corners);
             return settle(difference, &best, &mix, hull.vertices());
         }
@@ -175,6 +178,7 @@ fn climb_on<N: Real>(
         climb(difference, &mut other);
         best.improve(&other);
     }
+    settles(difference, best);
 }
 
 /// What is left to say when no face of the hull has a normal.

@@ -199,7 +199,8 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
             return placed(&best, &polished, N::HALF);
         }
-        if !mix.meets(&best) {
+        let raised = best.height > self.best.height;
+        if !raised && !mix.meets(&best) {
             // The points of a sliver are no proof that its plane is as near as it seems.
             if settles(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);

@@ -5,7 +5,8 @@
 //! the origin ([`gjk`]) or, where it holds the origin, for its nearest supporting plane (`epa2`,
 //! `epa3`). A normal `n` is never trusted for how it was found, but for its *certificate*: the
 //! height `h(n) = min n·b − max n·a`, by two support points, up to which `n` separates the cores.
-//! The signed distance is the largest height over all unit vectors.
+//! The signed distance is the largest height over all unit vectors. Where the cores are curved and say
+//! how, Newton's method brings the last digits (`polish`).
 //!
 //! All this happens in units in which the pair is about 1 large (`difference`), reached by an exact
 //! power of two; so every tolerance is a plain multiple of the machine epsilon, and scaling both
@@ -80,7 +81,8 @@ where
 ///
 /// `distance` is the certificate of `normal`. With `s` the sum of the reaches of the cores and of
 /// the distance of their origins, it falls short of the exact signed distance by a few
-/// `N::EPSILON · s` for cores with flat faces; for curved cores by about the larger of that and
+/// `N::EPSILON · s` for cores with flat faces and for curved ones that say how they bend
+/// ([`SupportMap::curved_support`]); for others that are curved by about the larger of that and
 /// `2⁻⁴⁰ · s`; only where a whole ring of normals is nearly as good, as deep in nearly coaxial
 /// cylinders or cones, a local search ends the work, which may fall short by some `10⁻⁷ · s`. The
 /// points lie on the cores to the same accuracy, on curved ones to about its square root at worst.

@@ -70,7 +70,8 @@ fn step<N: Simplicial<D>, const D: usize>(
         }
         let bent = bend(difference, best, &along)?;
         let curvature = along.dot(&bent);
-        if !(curvature < N::ZERO) {
+        let is_peak = curvature < N::ZERO;
+        if !is_peak {
             return None;
         }
         let share = squared / curvature;

@@ -13,18 +13,19 @@
 use smallvec::SmallVec;
 
 use super::candidate::Candidate;
-use super::difference::{Branch, Difference, Vertex, noise};
+use super::difference::{Branch, Difference, Vertex, noise, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Matrix, Real, Vector, max, min, unit};
 
-/// Cap on the steps; a normal with a quarter of its digits takes two.
-const STEPS: usize = 4;
-/// Cap on the choices of active points; each drops one.
-const CHOICES: usize = 4;
-/// How much less extreme than the most extreme point others may be along a normal that is right to
-/// half of its digits, in units of the root of the noise.
-const SLACK: f64 = 16.0;
+/// Cap on the steps; a normal with a quarter of its digits takes two, and one for each point that turns
+/// out to be active or not to be.
+const STEPS: usize = 10;
+/// How much less extreme than the most extreme point others may be along a normal that has yet to be
+/// polished, in units of the root of the tolerance: that is what a normal may be off by.
+const SLACK: f64 = 8.0;
+/// The longest step: Newton's method is of no use farther away.
+const LONGEST: f64 = 0.25;
 /// The unknowns of three dimensions: `n`, `λ`, and a weight for each active point but the first of
 /// each core; and the right side.
 const COLUMNS: usize = 7;
@@ -40,26 +41,54 @@ struct Side<N: Real, const D: usize> {
 }
 
 /// Raises the height of `best`, given points of the difference that lie lowest along it or nearly so;
-/// the points across from each other, if they were found on the way.
+/// the points across from each other, if they were found on the way. These are as near to their
+/// places as the normal was to its own; without them, a normal may have been found all the same.
 ///
-/// Does nothing where nothing is curved.
+/// Does nothing where nothing is curved. A point that the next normal finds lower than the active
+/// ones becomes active; one that would have to pull instead of push is no more.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut Candidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<Mix<N, D>> {
-    let start = best.normal;
-    let mut sides = active(difference, &start, vertices)?;
-    for _ in 0..CHOICES {
-        let end = newton(difference, best, &mut sides)?;
-        if !drop_worst(&mut sides) {
-            best.prefer(end, N::EPSILON);
-            let mix = Mix::new(sides[0].mixed(), sides[1].mixed());
-            return Some(mix).filter(|mix| mix.meets(best));
+    try_round_faces(difference, best);
+    let mut current = *best;
+    let mut sides = active(difference, &current, vertices)?;
+    for _ in 0..STEPS {
+        let mut turn = step(&current, &mut sides)?;
+        let squared = turn.norm_squared();
+        if squared > N::lit(LONGEST * LONGEST) {
+            turn *= N::lit(LONGEST) / squared.sqrt();
         }
-        sides.iter_mut().for_each(|side| side.turn(difference, &start));
+        current = Candidate::along(difference, unit(&(current.normal + turn))?.0);
+        best.improve(&current);
+        sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
+        let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides);
+        if changed {
+            current = *best;
+            sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
+        } else if squared <= N::EPSILON {
+            // What is left after a step is about its square.
+            best.prefer(current, N::EPSILON);
+            let mix = Mix::new(sides[0].mixed(), sides[1].mixed());
+            return Some(mix).filter(|mix| mix.meets_within(best, N::TWO * tolerance()));
+        }
     }
     None
+}
+
+/// Tries the very normals of round faces that the normal is close to: the height has a peak there, and
+/// no derivative.
+fn try_round_faces<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    best: &mut Candidate<N, D>,
+) {
+    for face in difference.round_faces(&best.normal).into_iter().flatten() {
+        let is_close = (face - best.normal).norm_squared() < N::lit(SLACK) * tolerance();
+        if let Some((normal, _)) = unit(&face).filter(|_| is_close) {
+            best.improve(&Candidate::along(difference, normal));
+        }
+    }
 }
 
 /// The points that lie lowest along a normal, or nearly so: those that [`polish`] may need.
@@ -69,44 +98,58 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
 ) -> SmallVec<[Vertex<N, D>; 8]> {
     let height = |vertex: &Vertex<N, D>| normal.dot(&vertex.point);
     let least = vertices.iter().fold(N::MAX, |least, vertex| min(height(vertex), least));
-    let slack = N::lit(SLACK) * noise::<N>().sqrt();
+    let slack = N::lit(SLACK) * tolerance::<N>().sqrt();
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// The active points of both cores; `None` if all are corners, or there are too many for a normal
-/// that is to be found.
+/// The active points of both cores; `None` if all are corners.
 fn active<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    normal: &Vector<N, D>,
+    best: &Candidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<[Side<N, D>; 2]> {
     let mut sides = [Branches::new(), Branches::new()];
-    for vertex in vertices {
+    for vertex in vertices.iter().chain([&best.vertex]) {
         for (index, on) in [vertex.on1, vertex.on2].iter().enumerate() {
-            let branch = difference.branch(index == 1, on, normal);
+            let branch = difference.branch(index == 1, on, &best.normal);
             if !sides[index].iter().any(|known| known.on == branch.on) {
                 sides[index].push(branch);
             }
         }
     }
-    let outward = [*normal, -normal];
-    for (side, outward) in sides.iter_mut().zip(&outward) {
-        keep_extreme(side, outward);
+    if sides.iter().flatten().all(|branch| branch.bend.is_none()) {
+        return None;
     }
-    let count = sides[0].len() + sides[1].len();
-    let is_curved = sides.iter().flatten().any(|branch| branch.bend.is_some());
-    (is_curved && count <= D + 1).then(|| sides.map(Side::new))
+    keep_extreme(&mut sides, &best.normal);
+    Some(sides.map(Side::new))
 }
 
-/// Drops the points that are not extreme, even if the normal is off by the root of the noise.
+/// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
+/// the others the least extreme, until there are no more than can determine a normal.
 fn keep_extreme<N: Simplicial<D>, const D: usize>(
-    branches: &mut Branches<N, D>,
-    outward: &Vector<N, D>,
+    sides: &mut [Branches<N, D>; 2],
+    normal: &Vector<N, D>,
 ) {
-    let extent = |branch: &Branch<N, D>| outward.dot(&branch.on);
-    let most = branches.iter().fold(-N::MAX, |most, branch| max(extent(branch), most));
-    let slack = N::lit(SLACK) * noise::<N>().sqrt();
-    branches.retain(|branch| extent(branch) >= most - slack);
+    let extent = |branch: &Branch<N, D>| {
+        if branch.is_second { -normal.dot(&branch.on) } else { normal.dot(&branch.on) }
+    };
+    let most = [0, 1].map(|index: usize| {
+        sides[index].iter().fold(-N::MAX, |most, branch| max(extent(branch), most))
+    });
+    let lag = |branch: &Branch<N, D>| most[usize::from(branch.is_second)] - extent(branch);
+    let slack = N::lit(SLACK) * tolerance::<N>().sqrt();
+    sides.iter_mut().for_each(|side| side.retain(|branch| lag(branch) <= slack));
+    while sides[0].len() + sides[1].len() > D + 1 {
+        let mut worst = (0, 0, -N::ONE);
+        for (index, side) in sides.iter().enumerate() {
+            for (place, branch) in side.iter().enumerate() {
+                if side.len() > 1 && lag(branch) >= worst.2 {
+                    worst = (index, place, lag(branch));
+                }
+            }
+        }
+        sides[worst.0].remove(worst.1);
+    }
 }
 
 impl<N: Simplicial<D>, const D: usize> Side<N, D> {
@@ -156,6 +199,28 @@ impl<N: Simplicial<D>, const D: usize> Side<N, D> {
     }
 }
 
+/// Adds the points that the last normal has found beyond the active ones, by more than noise, as long
+/// as these can determine a normal; says whether there were any.
+fn add_lower<N: Simplicial<D>, const D: usize>(
+    difference: &dyn Difference<N, D>,
+    current: &Candidate<N, D>,
+    sides: &mut [Side<N, D>; 2],
+) -> bool {
+    let mut added = false;
+    for (index, on) in [current.vertex.on1, current.vertex.on2].iter().enumerate() {
+        let outward = if index == 1 { -current.normal } else { current.normal };
+        let branches = &sides[index].branches;
+        let most = branches.iter().fold(-N::MAX, |most, b| max(outward.dot(&b.on), most));
+        let is_beyond = outward.dot(on) > most + noise::<N>();
+        if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
+            sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
+            sides[index] = Side::new(std::mem::take(&mut sides[index].branches));
+            added = true;
+        }
+    }
+    added
+}
+
 /// Drops the point that would have to pull instead of push; says whether there was one.
 fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2]) -> bool {
     let place = match (sides[0].worst(), sides[1].worst()) {
@@ -166,32 +231,6 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2]) -> 
     };
     sides[place.0].drop(place.1);
     true
-}
-
-/// Newton's method from the normal of `best`, which takes over what is better; the normal at the end.
-fn newton<N: Simplicial<D>, const D: usize>(
-    difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
-    sides: &mut [Side<N, D>; 2],
-) -> Option<Candidate<N, D>> {
-    let mut current = *best;
-    for _ in 0..STEPS {
-        let turn = step(&current, sides)?;
-        let squared = turn.norm_squared();
-        let sane = squared < N::lit(1.0 / 16.0);
-        if !sane {
-            return None;
-        }
-        let (normal, _) = unit(&(current.normal + turn))?;
-        current = Candidate::along(difference, normal);
-        best.improve(&current);
-        sides.iter_mut().for_each(|side| side.turn(difference, &normal));
-        // What is left after a step is about its square.
-        if squared <= N::EPSILON {
-            break;
-        }
-    }
-    Some(current)
 }
 
 /// A step of the normal; the weights are set to those that go with it.
@@ -253,9 +292,9 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option
         }
         for row in column + 1..count {
             let factor = rows[row][column] / rows[column][column];
-            for k in column..=count {
-                let above = rows[column][k];
-                rows[row][k] -= factor * above;
+            let above = rows[column];
+            for (entry, above) in rows[row].iter_mut().zip(above).skip(column) {
+                *entry -= factor * above;
             }
         }
     }

@@ -78,11 +78,15 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     /// Whether the points lie across from each other but for rounding, and on the supporting planes
     /// but for the gap that answers may have.
     pub(super) fn meets(&self, best: &Candidate<N, D>) -> bool {
+        self.meets_within(best, N::TWO * noise())
+    }
+
+    /// As [`Self::meets`], with a length instead of rounding.
+    pub(super) fn meets_within(&self, best: &Candidate<N, D>, slack: N) -> bool {
         let away = self.on2 - self.on1;
         let along = best.normal.dot(&away);
         let aside = (away - best.normal * along).norm_squared();
-        let rounding = N::TWO * noise::<N>();
-        aside <= rounding * rounding && (along - best.height).abs() <= N::TWO * tolerance()
+        aside <= slack * slack && (along - best.height).abs() <= N::TWO * tolerance()
     }
 }
 
@@ -185,6 +189,8 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
+    // Points a little aside are the lesser evil where the normal is known better than they are.
+    let found = if found.height < best.height - noise() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }

@@ -151,6 +151,8 @@ pub mod shape {
         PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
+    /// Where a curved support point lies, and how it moves.
+    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 2>;
     /// A rectangle.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 2>;
     /// The points near a segment.
@@ -204,7 +206,9 @@ pub mod transformation {
 /// assert_eq!(outline.points[1], [2.0, 1.0].into());
 /// ```
 pub mod procedural {
-    pub use crate::procedural::plane::{ball, capsule, convex_polygon, cuboid, triangle};
+    pub use crate::procedural::plane::{
+        ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
+    };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
 }
 

@@ -152,6 +152,8 @@ pub mod shape {
         ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
+    /// Where a curved support point lies, and how it moves.
+    pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 3>;
     /// A box.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
     /// The points near a segment.
@@ -204,7 +206,8 @@ pub mod transformation {
 /// ```
 pub mod procedural {
     pub use crate::procedural::space::{
-        ball, capsule, cone, convex_hull, cuboid, cylinder, triangle,
+        ball, capsule, cone, convex_hull, cuboid, cylinder, ellipsoid, tapered_capsule,
+        tetrahedron, triangle,
     };
     pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
 }

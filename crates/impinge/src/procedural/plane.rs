@@ -3,7 +3,10 @@
 use super::Outline;
 use super::circle::{direction, parts_of_turn};
 use crate::math::{Point, Real, Vector, perp, unit_or};
-use crate::shape::{Ball, Capsule, ConvexPolygon, ConvexPolyhedron, Cuboid, FeatureId, Triangle};
+use crate::shape::{
+    Ball, Capsule, ConvexPolygon, ConvexPolyhedron, Cuboid, Ellipsoid, FeatureId, TaperedCapsule,
+    Triangle,
+};
 
 /// A regular polygon of `n = subdivisions` corners inscribed in a disk; the first lies on the x axis.
 ///
@@ -21,6 +24,17 @@ use crate::shape::{Ball, Capsule, ConvexPolygon, ConvexPolyhedron, Cuboid, Featu
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> Outline<N> {
     let count = parts_of_turn(subdivisions);
     let corner = |index| Point::from(direction::<N>(index, count) * ball.radius());
+    Outline { points: (0..count).map(corner).collect() }
+}
+
+/// The polygon of [`ball`] stretched along the axes: `n = subdivisions` corners.
+///
+/// The gap is at most `(1 − cos(π / n))` times the longer half axis.
+#[must_use]
+pub fn ellipse<N: Real>(ellipse: &Ellipsoid<N, 2>, subdivisions: u32) -> Outline<N> {
+    let count = parts_of_turn(subdivisions);
+    let corner =
+        |index| Point::from(direction::<N>(index, count).component_mul(ellipse.half_axes()));
     Outline { points: (0..count).map(corner).collect() }
 }
 
@@ -48,6 +62,43 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N
     let around_b = (0..=half_turn).map(|index| corner(b, index));
     let around_a = (half_turn..=2 * half_turn).map(|index| corner(a, index));
     Outline { points: around_b.chain(around_a).collect() }
+}
+
+/// A part of a circle around each end, joined by the two sides.
+///
+/// Of `n = subdivisions` directions, evenly spread from the right of the segment on, those that the
+/// ball around an end faces give a corner on it; with the four ends of the sides there are at most
+/// `n + 4` corners. The gap is at most `(1 − cos(π / n))` times the larger radius. Where one ball holds
+/// the other, the outline is that ball's: `n` corners.
+#[must_use]
+pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u32) -> Outline<N> {
+    let count = parts_of_turn(subdivisions);
+    let corner =
+        |end: usize, toward: Vector<N, 2>| capsule.end(end) + toward * capsule.radii()[end];
+    let Some(taper) = capsule.taper() else {
+        let around = |index| corner(capsule.larger_end(), direction::<N>(index, count));
+        return Outline { points: (0..count).map(around).collect() };
+    };
+    let right = -perp(&taper.along);
+    let placed = |v: Vector<N, 2>| right * v.x + taper.along * v.y;
+    let facing = |end: usize, range: core::ops::Range<u32>| {
+        let all = range.map(move |index| direction::<N>(index, count));
+        let is_on = move |v: &Vector<N, 2>| (v.y > taper.sine) == (end == 1) && v.y != taper.sine;
+        all.filter(is_on).map(move |v| corner(end, placed(v))).collect::<Vec<_>>()
+    };
+    let [right_side, left_side] =
+        [taper.cosine, -taper.cosine].map(|away| placed(Vector::<N, 2>::new(away, taper.sine)));
+    // Those of either end may lie on both sides of the direction that counting starts from: the second
+    // goes on from below it, the first ends above it.
+    let (highest, lowest) = (count.div_ceil(4), 3 * count / 4 + 1);
+    let mut points = vec![corner(1, right_side)];
+    points.extend(facing(1, lowest..count));
+    points.extend(facing(1, 0..lowest));
+    points.extend([corner(1, left_side), corner(0, left_side)]);
+    points.extend(facing(0, highest..count));
+    points.extend(facing(0, 0..highest));
+    points.push(corner(0, right_side));
+    Outline { points }
 }
 
 /// The corners of a triangle from `a` on, in the order that is counter-clockwise.

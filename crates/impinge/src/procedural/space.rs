@@ -3,9 +3,10 @@
 use super::TriangleSurface;
 use super::circle::{direction, parts_of_turn};
 use super::revolution::{Frame, Stop, revolve};
-use crate::math::{Point, Real, Vector, unit_or};
+use crate::math::{Point, Real, Vector, min, unit_or};
 use crate::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolyhedron, Cuboid, Cylinder, FeatureId, Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolyhedron, Cuboid, Cylinder, Ellipsoid, Feature,
+    FeatureId, TaperedCapsule, Tetrahedron, Triangle,
 };
 
 /// Meridians and parallels: `n = subdivisions` of the former, and `4 k` parts with
@@ -53,6 +54,83 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 3>, subdivisions: u32) -> TriangleS
     let near = (quarter..=2 * quarter).map(|index| sphere.stop(a, index));
     let profile: Vec<_> = far.chain(near).collect();
     revolve(&sphere.frame, count, &profile)
+}
+
+/// The surface of [`ball`] stretched along the axes, with as many vertices and triangles.
+///
+/// The gap is at most `sin²(π / n)` times the longest half axis, with `n = subdivisions`.
+#[must_use]
+pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> TriangleSurface<N> {
+    let half_axes = ellipsoid.half_axes();
+    let mut surface = ball(&Ball::new(N::ONE), subdivisions);
+    for vertex in &mut surface.vertices {
+        vertex.coords.component_mul_assign(half_axes);
+    }
+    let is_flat = half_axes.iter().any(|&half| half == N::ZERO);
+    let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
+    for normal in surface.normals.iter_mut().flatten() {
+        // Across the axes that are zero, or else divided by the half axes.
+        let steep = normal.zip_map(half_axes, |x, half| match (is_flat, half == N::ZERO) {
+            (true, false) => N::ZERO,
+            (true, true) => x,
+            (false, _) => x * (least / half),
+        });
+        *normal = unit_or(&steep, *normal);
+    }
+    surface
+}
+
+/// A part of a ball at each end, like [`ball`]'s parallels on the side that the ball faces, and
+/// `n = subdivisions` quadrilaterals between the two circles where the side begins.
+///
+/// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first is the pole beyond the
+/// second end of the segment, the last the one beyond the first end. The gap is at most `sin²(π / n)`
+/// times the larger radius. Where one ball holds the other, the surface is that ball's.
+#[must_use]
+pub fn tapered_capsule<N: Real>(
+    capsule: &TaperedCapsule<N, 3>,
+    subdivisions: u32,
+) -> TriangleSurface<N> {
+    let count = parts_of_turn(subdivisions);
+    let quarter = count.div_ceil(4);
+    let axis = capsule.taper().map_or_else(up, |taper| taper.along);
+    let frame = Frame::around(axis);
+    let sphere = |end: usize| Sphere { radius: capsule.radii()[end], frame, axis, quarter };
+    let parallels = |end: usize| {
+        let sphere = sphere(end);
+        (0..=2 * quarter).map(move |index| sphere.stop(capsule.end(end), index))
+    };
+    let Some(taper) = capsule.taper() else {
+        let profile: Vec<_> = parallels(capsule.larger_end()).collect();
+        return revolve(&frame, count, &profile);
+    };
+    let normal = Vector::<N, 2>::new(taper.cosine, taper.sine);
+    let circle = |end: usize| {
+        let radius = capsule.radii()[end];
+        let center = capsule.end(end) + axis * (taper.sine * radius);
+        Stop::smooth(center, taper.cosine * radius, normal)
+    };
+    let mut profile: Vec<_> = parallels(1).filter(|stop| stop.after.y > taper.sine).collect();
+    profile.extend([circle(1), circle(0)]);
+    profile.extend(parallels(0).filter(|stop| stop.after.y < taper.sine));
+    revolve(&frame, count, &profile)
+}
+
+/// The four faces of a tetrahedron: triangle `i` is `Face(i)`, vertex `i` is `Vertex(i)`.
+#[must_use]
+pub fn tetrahedron<N: Real>(tetrahedron: &Tetrahedron<N>) -> TriangleSurface<N> {
+    let mut surface = TriangleSurface::of_vertices(tetrahedron.corners().to_vec());
+    for index in 0..4 {
+        let (id, mut face) = (FeatureId::Face(index), Feature::default());
+        tetrahedron.face(id, &mut face);
+        let number = |id: &FeatureId| match id {
+            FeatureId::Vertex(number) => *number,
+            _ => unreachable!("the vertices of a face are vertices"),
+        };
+        let ring: Vec<u32> = face.vertex_ids.iter().map(number).collect();
+        surface.push_face(&ring, tetrahedron.feature_normal(id));
+    }
+    surface
 }
 
 /// `n = subdivisions` rectangles around, and `n` triangles in each cap that meet at its middle.
@@ -147,6 +225,7 @@ pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
 }
 
 /// The circles of a sphere across an axis, `quarter` parts to a quarter turn.
+#[derive(Clone, Copy)]
 struct Sphere<N: Real> {
     radius: N,
     frame: Frame<N>,

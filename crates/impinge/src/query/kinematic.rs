@@ -134,6 +134,14 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
+    /// The same, if the normal is that of a face of the first solid or the second, though the solid
+    /// alone does not say so: where the geometry does not give the normal, it turns with that solid.
+    pub(super) fn turning_with(self, is_second: bool) -> Self {
+        let own = if is_second { NormalRule::Second } else { NormalRule::First };
+        let rule = if self.rule == NormalRule::Geometry { NormalRule::Geometry } else { own };
+        Self { rule, ..self }
+    }
+
     /// The same, told in other frames than those of the solids: `pose1` and `pose2` are the poses of
     /// the solids in these.
     pub(super) fn seen_from(&self, pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Self {

@@ -88,7 +88,8 @@ fn within<N: Real, const D: usize>(
 ) -> Aabb<N, D> {
     let corners = [aabb.mins(), aabb.maxs(), own.mins(), own.maxs()];
     let ends = corners.iter().flat_map(|corner| corner.iter()).chain(pose.translation.iter());
-    let finite = ends.map(|x| x.abs()).filter(|x| x.is_finite_number());
-    let slack = N::lit(32.0) * N::EPSILON * finite.fold(N::ZERO, max);
+    let finite = ends.filter(|x| x.is_finite_number());
+    let largest = finite.fold(N::ZERO, |largest, x| max(largest, x.abs()));
+    let slack = N::lit(32.0) * N::EPSILON * largest;
     aabb.transformed_by(&pose.inverse()).loosened(slack)
 }

@@ -95,6 +95,10 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
         if is_apex { None } else { self.base().curved_rim(direction) }
     }
 
+    fn round_face(&self, direction: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        (direction.y < N::ZERO).then(|| -Vector::<N, 3>::y())
+    }
+
     fn reach(&self) -> N {
         length_of(&Vector::<N, 2>::new(self.half_height, self.radius))
     }

@@ -82,6 +82,11 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
         self.disk(y).curved_rim(direction)
     }
 
+    fn round_face(&self, direction: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let up = Vector::<N, 3>::y();
+        Some(if direction.y < N::ZERO { -up } else { up })
+    }
+
     fn reach(&self) -> N {
         length_of(&Vector::<N, 2>::new(self.half_height, self.radius))
     }

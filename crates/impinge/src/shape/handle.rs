@@ -1,6 +1,5 @@
 //! Shapes shared by many objects.
 
-use core::any::Any;
 use std::ops::Deref;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use crate::partitioning::BoxTree;
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
     fn bounds(&self) -> Aabb<N, D> {
-        BoxTree::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
+        Self::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
     }
 
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {

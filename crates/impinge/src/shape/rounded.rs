@@ -116,6 +116,10 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Rounded<N, D> {
         self.map().curved_support(point, direction)
     }
 
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.map().round_face(direction)
+    }
+
     fn rounding(&self) -> N {
         self.map().rounding() + self.radius
     }

@@ -82,7 +82,7 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
 
     /// The factors without their signs.
     pub(super) fn magnitudes(self) -> Vector<N, D> {
-        self.0.map(|x| x.abs())
+        self.0.abs()
     }
 
     /// The signs of the factors, 1 or −1.

@@ -48,6 +48,15 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         None
     }
 
+    /// The outward unit normal of the flat round face of the core that faces `direction`, such as the
+    /// cap of a cylinder; `None` if the side that faces `direction` has none.
+    ///
+    /// There support points say least: they run around the rim. The default is `None`.
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let _ = direction;
+        None
+    }
+
     /// A point well inside the core.
     fn center(&self) -> Point<N, D> {
         Point::origin()

@@ -2,6 +2,7 @@
 
 mod checks;
 mod corpus;
+mod large;
 mod plane;
 mod points;
 mod solids;

@@ -109,8 +109,6 @@ fn cast<N: Real, const D: usize>(
 pub struct Boxes<N: Real, const D: usize> {
     pub of_parts: Vec<(u32, Aabb<N, D>)>,
     pub around: Aabb<N, D>,
-    /// Boxes are not those of the search, which finds parts in other frames.
-    pub is_loose: bool,
 }
 
 /// How often something was found.
@@ -130,12 +128,13 @@ impl<N: Real, const D: usize> Boxes<N, D> {
             (0..shape.num_parts()).filter(|&part| is_there(part)).map(boxed).collect();
         let all = of_parts.iter().map(|(_, aabb)| *aabb);
         let around = all.reduce(|all, aabb| all.merged(&aabb)).expect("there are parts");
-        Self { of_parts, around, is_loose: false }
+        Self { of_parts, around }
     }
 
     /// Random questions, each against all boxes.
     pub fn check(&self, search: &dyn PartSearch<N, D>, random: &mut Random, count: usize) -> Found {
         let mut found = Found::default();
+        assert!(search.bounds().contains(&self.around), "{:?} leaves out parts", search.bounds());
         for _ in 0..count {
             let aabb = probe(random, &self.around);
             self.check_overlap(search, &aabb, &mut found);

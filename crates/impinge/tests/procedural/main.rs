@@ -4,10 +4,26 @@
 mod plane;
 mod space;
 
-use impinge::math::{Point, Real};
+use impinge::math::{Point, Real, Vector};
 
 fn doubles<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<[f64; D]> {
     points.iter().map(|point| core::array::from_fn(|axis| point[axis].as_f64())).collect()
+}
+
+/// How deep a point is in the hull of two balls: the union of balls whose centres and radii change
+/// evenly.
+fn depth_in_club<const D: usize>(
+    p: &Vector<f64, D>,
+    [a, b]: [Vector<f64, D>; 2],
+    [first, second]: [f64; 2],
+) -> f64 {
+    let (axis, growth) = (b - a, second - first);
+    let length = axis.norm();
+    let along = (p - a).dot(&axis) / length;
+    let aside = (p - a - axis * (along / length)).norm();
+    let lean = (length * length - growth * growth).sqrt();
+    let share = ((along + aside * growth / lean) / length).clamp(0.0, 1.0);
+    first + growth * share - (p - a - axis * share).norm()
 }
 
 fn epsilon<N: Real>() -> f64 {

@@ -4,12 +4,12 @@ use core::f64::consts::PI;
 
 use impinge::math::{Point, Real, Vector};
 use impinge::procedural::plane;
-use impinge::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Triangle};
+use impinge::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Ellipsoid, TaperedCapsule, Triangle};
 use impinge_reference::geometry::{Solid, point_signed_distance};
 use impinge_reference::random::Random;
 use impinge_reference::topology::{check_polygon, farthest_outside, polygon_area};
 
-use super::{COUNTS, POWERS, assert_second_order, doubles, epsilon};
+use super::{COUNTS, POWERS, assert_second_order, depth_in_club, doubles, epsilon};
 
 fn point<N: Real>(p: [f64; 2]) -> Point<N, 2> {
     Point::from(Vector::<f64, 2>::from(p).map(N::lit))
@@ -83,6 +83,50 @@ fn capsules<N: Real>() {
     });
 }
 
+fn ellipses<N: Real>() {
+    let solid = Ellipsoid::new(Vector::<N, 2>::new(N::lit(2.0), N::lit(0.5)));
+    for count in COUNTS {
+        let points = doubles(&plane::ellipse(&solid, count).points);
+        assert_eq!((points.len(), check_polygon(&points)), (count.max(3) as usize, Ok(())));
+        for [x, y] in points {
+            let level = (x / 2.0).hypot(y / 0.5);
+            assert!((level - 1.0).abs() <= 8.0 * epsilon::<N>(), "({x}, {y}) is at {level}");
+        }
+    }
+    assert_second_order("an ellipse", PI, |count| {
+        polygon_area(&doubles(&plane::ellipse(&solid, count).points))
+    });
+}
+
+fn tapered_capsules<N: Real>() {
+    let mut random = Random::new(17);
+    for count in COUNTS.iter().cycle().take(80).copied() {
+        let ends = [0, 1].map(|_| [0, 1].map(|_| random.range(-2.0, 2.0)));
+        let radii = [random.range(0.1, 0.9), random.range(0.1, 0.9)];
+        let [a, b] = ends.map(point::<N>);
+        let solid = TaperedCapsule::try_from_ends(a, b, radii.map(N::lit)).expect("good numbers");
+        let [a, b] = [a, b].map(|end| end.coords.map(N::as_f64));
+        let radii = solid.radii().map(N::as_f64);
+        let points = doubles(&plane::tapered_capsule(&solid, count).points);
+        assert_eq!(check_polygon(&points), Ok(()), "a polygon: {solid:?}");
+        if (b - a).norm() <= (radii[1] - radii[0]).abs() {
+            continue;
+        }
+        let gap = gap_of(radii[0].max(radii[1]), count.max(3)) + 32.0 * epsilon::<N>();
+        assert!(points.len() <= count.max(3) as usize + 4, "at most");
+        for (index, from) in points.iter().enumerate() {
+            let to = points[(index + 1) % points.len()];
+            for part in 0..8 {
+                let share = f64::from(part) / 8.0;
+                let place = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+                let depth = depth_in_club(&Vector::<f64, 2>::from(place), [a, b], radii);
+                let most = if part == 0 { 32.0 * epsilon::<N>() } else { gap };
+                assert!((-32.0 * epsilon::<N>()..=most).contains(&depth), "{depth}: {solid:?}");
+            }
+        }
+    }
+}
+
 fn flat_sides<N: Real>() {
     let cuboid = Cuboid::new(Vector::<N, 2>::new(N::lit(2.0), N::lit(3.0)));
     let corners = doubles(&plane::cuboid(&cuboid).points);
@@ -147,6 +191,8 @@ fn all<N: Real>() {
     balls::<N>();
     capsules::<N>();
     flat_sides::<N>();
+    ellipses::<N>();
+    tapered_capsules::<N>();
     triangles_turn_the_right_way::<N>();
     powers_of_two_scale::<N>();
     nothing_is_no_trouble::<N>();

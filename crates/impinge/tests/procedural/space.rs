@@ -4,11 +4,14 @@ use core::f64::consts::PI;
 
 use impinge::math::{Point, Real, Vector};
 use impinge::procedural::{TriangleSurface, space};
-use impinge::shape::{Ball, Capsule, Cone, ConvexHull, Cuboid, Cylinder, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Cone, ConvexHull, Cuboid, Cylinder, Ellipsoid, TaperedCapsule, Tetrahedron,
+    Triangle,
+};
 use impinge_reference::random::Random;
 use impinge_reference::topology::{check_surface, highest_above, volume};
 
-use super::{COUNTS, POWERS, assert_second_order, doubles, epsilon};
+use super::{COUNTS, POWERS, assert_second_order, depth_in_club, doubles, epsilon};
 
 type Vec3 = [f64; 3];
 
@@ -198,6 +201,67 @@ fn flat_faces<N: Real>() {
     }
 }
 
+fn ellipsoids<N: Real>() {
+    let half_axes = Vector::<f64, 3>::new(0.8, 1.25, 1.0);
+    let solid = Ellipsoid::new(half_axes.map(N::lit));
+    for count in COUNTS {
+        let surface = space::ellipsoid(&solid, count);
+        check_convex(&surface, 2.0);
+        for corner in surface.corners().flatten() {
+            let level = corner.coords.map(N::as_f64).component_div(&half_axes).norm();
+            assert!((level - 1.0).abs() <= 8.0 * epsilon::<N>(), "{corner} is at {level}");
+        }
+        for (corners, normals) in surface.corners().zip(&surface.normals) {
+            for (corner, normal) in corners.iter().zip(normals) {
+                let place = corner.coords.map(N::as_f64);
+                let slope = place.component_div(&half_axes.component_mul(&half_axes)).normalize();
+                let off = (slope - normal.map(N::as_f64)).norm();
+                assert!(off <= 16.0 * epsilon::<N>(), "{normal} at {corner}");
+            }
+        }
+    }
+    assert_second_order("volume of an ellipsoid", 4.0 / 3.0 * PI, |count| {
+        volume_of(&space::ellipsoid(&solid, count))
+    });
+}
+
+fn tapered_capsules<N: Real>() {
+    let mut random = Random::new(13);
+    for count in COUNTS {
+        let ends = [0, 1].map(|_| [0, 1, 2].map(|_| random.range(-3.0, 3.0)));
+        let radii = [random.range(0.2, 0.8), random.range(0.2, 0.8)];
+        let [a, b] = ends.map(point::<N>);
+        let solid = TaperedCapsule::try_from_ends(a, b, radii.map(N::lit)).expect("good numbers");
+        let surface = space::tapered_capsule(&solid, count);
+        let (n, k) = (count.max(3), count.max(3).div_ceil(4));
+        assert!(surface.vertices.len() <= (2 + n * (2 * k + 1)) as usize, "at most");
+        check_convex(&surface, 6.0);
+        let ends = [a, b].map(|end| end.coords.map(N::as_f64));
+        let radii = solid.radii().map(N::as_f64);
+        let gap = widest_gap(&surface, 6.0, |p| depth_in_club(p, ends, radii));
+        let stated = radii[0].max(radii[1]) * (PI / f64::from(n)).sin().powi(2);
+        assert!(gap <= stated + 48.0 * epsilon::<N>(), "{gap} of {stated}");
+    }
+    let ball = TaperedCapsule::<N, 3>::new(N::HALF, N::TWO, N::ONE);
+    let surface = space::tapered_capsule(&ball, 12);
+    let away = |p: &Point<N, 3>| (p.coords.map(N::as_f64) + Vector::<f64, 3>::y() * 0.5).norm();
+    assert!(
+        surface.vertices.iter().all(|p| (away(p) - 2.0).abs() < 8.0 * epsilon::<N>()),
+        "a ball"
+    );
+}
+
+fn tetrahedra<N: Real>() {
+    let [a, b, c, d] =
+        [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]].map(point::<N>);
+    for corners in [[a, b, c, d], [b, a, c, d]] {
+        let surface = space::tetrahedron(&Tetrahedron::new(corners));
+        check_convex(&surface, 4.0);
+        assert_eq!(volume_of(&surface), 4.0, "a sixth of 24");
+        assert_eq!(surface.vertices, corners, "its own");
+    }
+}
+
 fn hulls<N: Real>() {
     let mut random = Random::new(5);
     for count in [4, 8, 30, 120] {
@@ -234,6 +298,14 @@ fn powers_of_two_scale<N: Real>() {
                 space::capsule(&Capsule::try_from_ends(a, b, size(0.6)).expect("good numbers"), 9),
                 space::cylinder(&Cylinder::new(size(0.7), size(0.3)), 7),
                 space::cone(&Cone::new(size(0.7), size(0.3)), 7),
+                space::ellipsoid(
+                    &Ellipsoid::new(Vector::<N, 3>::new(size(1.3), size(0.4), size(0.6))),
+                    7,
+                ),
+                space::tapered_capsule(
+                    &TaperedCapsule::try_from_ends(a, b, [size(0.6), size(0.2)]).expect("numbers"),
+                    9,
+                ),
             ]
         };
         let mut grown = surfaces(N::ONE);
@@ -254,6 +326,10 @@ fn nothing_is_no_trouble<N: Real>() {
             2 + 8 * 4,
         ),
         (space::cylinder(&Cylinder::new(zero, one), 8), 18),
+        (space::ellipsoid(&Ellipsoid::new(Vector::<N, 3>::new(one, zero, one)), 8), 2 + 8 * 3),
+        (space::ellipsoid(&Ellipsoid::new(Vector::<N, 3>::zeros()), 8), 2 + 8 * 3),
+        (space::tapered_capsule(&TaperedCapsule::<N, 3>::new(one, zero, zero), 8), 2 + 8 * 4),
+        (space::tetrahedron(&Tetrahedron::new([middle; 4])), 4),
         (space::cylinder(&Cylinder::new(one, zero), 8), 18),
         (space::cone(&Cone::new(zero, one), 8), 10),
         (space::cone(&Cone::new(zero, zero), 8), 10),
@@ -283,6 +359,9 @@ fn all<N: Real>() {
     cones::<N>();
     flat_faces::<N>();
     hulls::<N>();
+    ellipsoids::<N>();
+    tapered_capsules::<N>();
+    tetrahedra::<N>();
     powers_of_two_scale::<N>();
     nothing_is_no_trouble::<N>();
 }

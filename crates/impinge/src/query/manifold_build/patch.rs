@@ -204,12 +204,13 @@ fn outline<N: Real, const D: usize>(
     tolerance: N,
 ) -> Vec<Member<N, D>> {
     let members = without_copies(members, tolerance);
-    let forth = chain(members.iter(), tolerance);
-    let back = chain(members.iter().rev(), tolerance);
+    let forth = chain(members.iter());
+    let back = chain(members.iter().rev());
     // Each chain ends where the other starts.
     let ends = forth.len().saturating_sub(1).max(1);
     let mut outline: Vec<Member<N, D>> = forth[..ends].to_vec();
     outline.extend_from_slice(&back[..back.len() - 1]);
+    thin(&mut outline, tolerance);
     if !outline.iter().any(|member| member.candidate.distance <= level) {
         let depth = |member: &Member<N, D>| member.candidate.distance;
         let deeper =
@@ -231,10 +232,7 @@ fn without_copies<N: Real, const D: usize>(
         let lower = old.candidate.distance - new.candidate.distance;
         lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     };
-    members.sort_by(|a, b| {
-        let (a, b) = (&a.candidate.flat, &b.candidate.flat);
-        a.x.as_f64().total_cmp(&b.x.as_f64()).then(a.y.as_f64().total_cmp(&b.y.as_f64()))
-    });
+    members.sort_by(by_place);
     let mut kept: Vec<Member<N, D>> = Vec::new();
     for member in members {
         let flat = member.candidate.flat;
@@ -250,24 +248,27 @@ fn without_copies<N: Real, const D: usize>(
             None => kept.push(member),
         }
     }
+    // An exchange may have taken a point past its neighbours.
+    kept.sort_by(by_place);
     kept
 }
 
-/// One side of the hull of sorted points, from the first to the last: every corner turns left by
-/// more than rounding.
+fn by_place<N: Real, const D: usize>(a: &Member<N, D>, b: &Member<N, D>) -> core::cmp::Ordering {
+    let (a, b) = (&a.candidate.flat, &b.candidate.flat);
+    a.x.as_f64().total_cmp(&b.x.as_f64()).then(a.y.as_f64().total_cmp(&b.y.as_f64()))
+}
+
+/// One side of the hull of sorted points, from the first to the last: every corner turns left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
 fn chain<'a, N: Real, const D: usize>(
     members: impl Iterator<Item = &'a Member<N, D>>,
-    tolerance: N,
 ) -> Vec<Member<N, D>> {
     let mut chain: Vec<Member<N, D>> = Vec::new();
     for member in members {
         while let [.., before, last] = &chain[..] {
-            let whole = member.candidate.flat - before.candidate.flat;
-            let turn = cross2(&whole, &(last.candidate.flat - before.candidate.flat));
             // Positive is left of the whole: inside.
-            if turn < -tolerance * whole.norm() {
+            if beside(before, last, member) < N::ZERO {
                 break;
             }
             chain.pop();
@@ -275,4 +276,27 @@ fn chain<'a, N: Real, const D: usize>(
         chain.push(*member);
     }
     chain
+}
+
+/// Twice the area of a triangle; positive if `at` lies left of the way from one end to the other.
+fn beside<N: Real, const D: usize>(from: &Member<N, D>, at: &Member<N, D>, to: &Member<N, D>) -> N {
+    let origin = from.candidate.flat;
+    cross2(&(to.candidate.flat - origin), &(at.candidate.flat - origin))
+}
+
+/// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
+/// next to them.
+fn thin<N: Real, const D: usize>(outline: &mut Vec<Member<N, D>>, tolerance: N) {
+    let mut at = 0;
+    while outline.len() > 2 && at < outline.len() {
+        let before = &outline[if at == 0 { outline.len() - 1 } else { at - 1 }];
+        let after = &outline[if at + 1 == outline.len() { 0 } else { at + 1 }];
+        let length = (after.candidate.flat - before.candidate.flat).norm();
+        let is_straight = beside(before, &outline[at], after).abs() <= tolerance * length;
+        if is_straight {
+            outline.remove(at);
+        } else {
+            at += 1;
+        }
+    }
 }

@@ -34,11 +34,13 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     Seen { see: &see, name: &name, radius, precision }.span(ray)
 }
 
+/// Tells the signed distance of a place and the unit vector out of the solid along which it is
+/// measured; `None` if the place is not finite.
+pub(super) type See<'a, N, const D: usize> = &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>;
+
 /// A convex solid as seen from places in its local frame.
 pub(super) struct Seen<'a, N: Real, const D: usize> {
-    /// The signed distance of a place and the unit vector out of the solid along which it is measured;
-    /// `None` if the place is not finite.
-    pub(super) see: &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>,
+    pub(super) see: See<'a, N, D>,
     /// The name of a place on the surface, given with the normal there.
     pub(super) name: &'a dyn Fn(&Vector<N, D>, &Vector<N, D>) -> FeatureId,
     /// The solid lies within this distance of the local origin.

@@ -57,9 +57,9 @@ impl<N: Real> Extent<N> {
     pub(super) fn around(points: &[[N; 3]]) -> Self {
         let mut extent = Self { low: points[0], high: points[0] };
         for point in &points[1..] {
-            for axis in 0..3 {
-                extent.low[axis] = min(extent.low[axis], point[axis]);
-                extent.high[axis] = max(extent.high[axis], point[axis]);
+            for (axis, &x) in point.iter().enumerate() {
+                extent.low[axis] = min(extent.low[axis], x);
+                extent.high[axis] = max(extent.high[axis], x);
             }
         }
         extent
@@ -139,7 +139,8 @@ pub(super) fn search<N: Real>(
     let mut stack: SmallVec<[(N, Block); 40]> = SmallVec::new();
     stack.extend(key_of(pyramid.top()).map(|key| (key, pyramid.top())));
     while let Some((bound, block)) = stack.pop() {
-        if !(bound <= lowest) {
+        let is_within = bound <= lowest;
+        if !is_within {
             continue;
         }
         if block.level == 0 {

@@ -206,6 +206,10 @@ impl<N: Real> Cells<N> for HeightField<N, 2> {
 }
 
 impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
+    fn bounds(&self) -> Aabb<N, 2> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 2>, visit: &mut dyn FnMut(u32)) {
         (table::<N, 2>().overlapping)(self, aabb, visit);
     }

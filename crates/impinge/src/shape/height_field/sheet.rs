@@ -387,6 +387,10 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
 }
 
 impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
+    fn bounds(&self) -> Aabb<N, 3> {
+        self.local_aabb()
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, 3>, visit: &mut dyn FnMut(u32)) {
         (table::<N, 3>().overlapping)(self, aabb, visit);
     }

@@ -29,6 +29,9 @@ pub(super) struct Finding<N: Real, const D: usize> {
     /// What they say of the contact of the shapes, in the frame of the first.
     pub(super) patch: Patch<N, D>,
     pub(super) standing: Standing,
+    /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
+    /// if it touches otherwise.
+    pub(super) face: Option<Vector<N, D>>,
     /// Lengths below this are rounding errors.
     pub(super) tolerance: N,
 }
@@ -72,7 +75,8 @@ fn plain<N: Space<D>, const D: usize>(
     (N::tables().contacts)(&placed.pair(), request, &mut raw);
     let patch = placed.patch(&raw, parts);
     let (standing, tolerance) = (Standing::Own, placed.tolerance());
-    let mut finding = Finding { parts, distance: N::INFINITY, patch, standing, tolerance };
+    let (distance, face) = (N::INFINITY, None);
+    let mut finding = Finding { parts, distance, patch, standing, face, tolerance };
     finding.distance = finding.lowest();
     (!finding.patch.points.is_empty()).then_some(finding)
 }
@@ -145,7 +149,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         build_between(&pair, &found, request, &mut raw);
     }
     let (patch, tolerance) = (placed.patch(&raw, parts), placed.tolerance());
-    Some(Finding { parts, distance: found.distance, patch, standing, tolerance })
+    let face = verdicts[1].face().filter(|_| standing != Standing::Left);
+    Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
 }
 
 /// What both surfaces together say.

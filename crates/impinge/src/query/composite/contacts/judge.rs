@@ -33,6 +33,16 @@ pub(super) enum Verdict<N: Real, const D: usize> {
     Refused,
 }
 
+impl<N: Real, const D: usize> Verdict<N, D> {
+    /// The normal of the face that a contact would be with.
+    pub(super) const fn face(&self) -> Option<Vector<N, D>> {
+        match self {
+            Self::Face(face) | Self::Snapped(face) | Self::Beyond(face) => Some(*face),
+            Self::Nothing | Self::Admitted | Self::Refused => None,
+        }
+    }
+}
+
 /// The contact of a part with the other solid, as seen by the composite.
 pub(super) struct Case<N: Real, const D: usize> {
     pub(super) part: u32,

@@ -2,7 +2,8 @@
 //!
 //! For every two parts within reach [`facts`] finds their separation and asks the surfaces, if there
 //! are any, whether the normal is one that the whole has there ([`judge`]): if it is that of a seam,
-//! only contacts with the face of the part count. [`resolve`] drops those that another contact
+//! only contacts with the face of the part count. [`hidden`] drops contacts from behind a face that is
+//! touched from its front, [`resolve`] those that another contact
 //! explains, and makes sure that solids that overlap have a contact. What is left is merged into flat
 //! patches.
 //!
@@ -11,6 +12,7 @@
 
 mod candidates;
 mod facts;
+mod hidden;
 mod judge;
 mod resolve;
 mod scene;

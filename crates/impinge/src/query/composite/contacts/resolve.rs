@@ -27,6 +27,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
 ) {
+    super::hidden::drop_hidden(scene, findings);
     let mut ways = Vec::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
         note(&mut ways, finding);
@@ -82,6 +83,7 @@ fn is_explained<N: Space<D>, const D: usize>(
     ways.iter().any(|way| {
         let is_other = is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
         is_other
+            && way.depth > N::ZERO
             && way.depth <= depth
             && placed.is_parted(&(way.normal * way.depth), finding.tolerance)
     })

@@ -86,6 +86,39 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Self { between, surfaces: between.composites().map(surface) }
     }
 
+    /// The first shape is one solid.
+    pub(super) fn first_is_convex(&self) -> bool {
+        self.between.composites()[0].is_none()
+    }
+
+    /// Two parts of the second shape hang together.
+    pub(super) fn are_adjacent(&self, part: u32, other: u32) -> bool {
+        let [_, composite] = self.between.composites();
+        composite.is_some_and(|composite| composite.are_adjacent(part, other))
+    }
+
+    /// How low and how high a part of the second shape lies over the plane of another with a given
+    /// normal, and what counts as rounding. `None` of half-spaces.
+    pub(super) fn heights(
+        &self,
+        part: u32,
+        plane: u32,
+        normal: &Vector<N, D>,
+    ) -> Option<(N, N, N)> {
+        let composite = self.between.composites()[1]?;
+        let origin = anchor(&composite.part(plane));
+        let (part, plane) =
+            (moved(&composite.part(part), &origin), moved(&composite.part(plane), &origin));
+        let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
+            let map = Geometry(body.kind()).as_support_map()?;
+            let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));
+            Some((along.dot(&point.coords), map.reach()))
+        };
+        let (level, reach1) = top(&plane, normal)?;
+        let ((high, reach2), (low, _)) = (top(&part, normal)?, top(&part, &-normal)?);
+        Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
+    }
+
     /// Two parts.
     pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.between.composites();

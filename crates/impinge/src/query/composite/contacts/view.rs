@@ -1,12 +1,15 @@
 //! The contacts of composites as users see them.
 
 use super::CompositeContacts;
-use crate::math::{Pose, Space};
+use crate::math::{Pose, Space, Vector};
 use crate::query::kinematic::{ContactKinematic, Sides};
 use crate::query::manifold::{TrackedContact, placed};
 use crate::query::manifold_build::{Patch, PatchPoint};
 use crate::query::{ContactId, ContactManifold, Pair, Placement};
-use crate::shape::{Geometry, Kind, Part};
+use crate::shape::{Geometry, Kind, Part, PartSolid};
+
+/// Normals that differ by no more than so many rounding units are the same.
+const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// One manifold for each patch; `pair` is that of the last update. They are written over the
@@ -59,7 +62,41 @@ fn kinematic<N: Space<D>, const D: usize>(
     raw.point1 = pose1.inverse_point(&raw.point1);
     let parts = Pair { first, second, pose12 };
     let normal = pose1.inverse_vector(&patch.normal);
-    Sides::new(&parts, &normal).kinematic(&raw).seen_from(&pose1, &pose2)
+    let kinematic = Sides::new(&parts, &normal).kinematic(&raw);
+    let kinematic = match turning(pair, patch, point) {
+        Some(is_second) => kinematic.turning_with(is_second),
+        None => kinematic,
+    };
+    kinematic.seen_from(&pose1, &pose2)
+}
+
+/// Whether the normal is that of the second surface's face, or of the first's; `None` if of neither.
+fn turning<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    patch: &Patch<N, D>,
+    point: &PatchPoint<N, D>,
+) -> Option<bool> {
+    let outward1 = patch.normal;
+    let outward2 = -pair.pose12.inverse_vector(&patch.normal);
+    let [part1, part2] = point.parts;
+    if is_face_normal(pair.second, part2, &outward2) {
+        return Some(true);
+    }
+    is_face_normal(pair.first, part1, &outward1).then_some(false)
+}
+
+/// A surface has the normal, up to rounding, on a face. A line in space has no face.
+fn is_face_normal<N: Space<D>, const D: usize>(
+    kind: Kind<'_, N, D>,
+    part: u32,
+    outward: &Vector<N, D>,
+) -> bool {
+    let Some(composite) = Geometry(kind).as_composite() else { return false };
+    let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
+    let is_in_space = (N::tables().tangents)(outward)[1] != Vector::<N, D>::zeros();
+    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
+    let room = N::lit(ROUNDING) * N::EPSILON;
+    face.is_some_and(|face| !is_line && (face - outward).norm() <= room)
 }
 
 /// The part of a shape that a number names; `None` of a shape that is its own part.
