@@ -17,7 +17,8 @@ fn sweep<N: Real>(case: &Value, tolerance: f64) {
     let two = placed2::<N>(&case["shape2"], &case["pose2"]).expect("a box");
     let end = placed2::<N>(&case["shape2"], &params["end_pose2"]).expect("a box");
     let way = end.pose.translation.vector - two.pose.translation.vector;
-    let turn = number::<f64>(&params["end_pose2"]["angle"]) - number::<f64>(&case["pose2"]["angle"]);
+    let turn =
+        number::<f64>(&params["end_pose2"]["angle"]) - number::<f64>(&case["pose2"]["angle"]);
     let still = ConstantVelocities::<N, 2>::still(one.pose);
     let after_many_turns = UnitComplex::new(N::lit(513.366_76));
     let starts: [Isometry<N>; 2] =
@@ -30,7 +31,8 @@ fn sweep<N: Real>(case: &Value, tolerance: f64) {
             let motions: [&dyn RigidMotion<N, 2>; 2] = [&still, &sweep];
             let (shape1, shape2) = (&*one.shape, &*two.shape);
             let found = nonlinear_time_of_impact(motions[0], shape1, motions[1], shape2, &options);
-            let swapped = nonlinear_time_of_impact(motions[1], shape2, motions[0], shape1, &options);
+            let swapped =
+                nonlinear_time_of_impact(motions[1], shape2, motions[0], shape1, &options);
             let [found, swapped] = [found, swapped].map(|found| found.map(|found| found.toi));
             assert_eq!(found, swapped, "both orders");
             found.map(Real::as_f64)

@@ -15,8 +15,8 @@ use impinge::shape::{Ball, Capsule, Cuboid, ShapeHandle};
 use impinge::world::{
     BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionWorld, QueryFilter, WorldError,
 };
-use serde_json::Value;
 use query_support::random::Random;
+use serde_json::Value;
 use world_stage::{Stage, ball, contacts, half_space, step, vector};
 
 const CASES: &str = include_str!("data/regression_cases.json");
@@ -304,7 +304,7 @@ fn each_order(order: &mut Vec<u32>, count: usize, visit: &mut dyn FnMut(&[u32]))
     for at in 0..count {
         each_order(order, count - 1, visit);
         if at + 1 < count {
-            order.swap(if count % 2 == 0 { at } else { 0 }, count - 1);
+            order.swap(if count.is_multiple_of(2) { at } else { 0 }, count - 1);
         }
     }
 }
@@ -336,7 +336,8 @@ fn all_pairs<N: Stage<3>>() {
     let mut world = CollisionWorld::<N, 3, ()>::new(N::lit(0.05));
     let mut boxes = Vec::new();
     for _ in 0..300 {
-        let (at, half) = ([(); 3].map(|()| quarter(8.0)), [(); 3].map(|()| 0.25 + quarter(0.75).abs()));
+        let (at, half) =
+            ([(); 3].map(|()| quarter(8.0)), [(); 3].map(|()| 0.25 + quarter(0.75).abs()));
         let shape = ShapeHandle::new(Cuboid::new(vector::<N, 3>(half)));
         let handle = world.add(N::at(at), shape, CollisionGroups::new(), contacts(0.0), ());
         boxes.push((handle, at, half));
@@ -349,7 +350,11 @@ fn all_pairs<N: Stage<3>>() {
             for (two, at2, half2) in &boxes[..index] {
                 let meets = (0..3).all(|i| (at1[i] - at2[i]).abs() <= half1[i] + half2[i]);
                 let pair = world.contact_pair(*one, *two);
-                assert_eq!(pair.is_some_and(|pair| pair.num_contacts() > 0), meets, "{one:?} {two:?}");
+                assert_eq!(
+                    pair.is_some_and(|pair| pair.num_contacts() > 0),
+                    meets,
+                    "{one:?} {two:?}"
+                );
                 found += u32::from(meets);
             }
         }
