@@ -33,11 +33,14 @@ const REGIMES: [Regime; 7] = [
     Regime::Coincident,
 ];
 
+/// How many times larger the second solid is.
+const RATIOS: [f64; 8] = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3, 1e-6, 1e6];
+
 /// How many pairs of each two kinds are tried in each regime: a few, or as many as the variable
 /// `IMPINGE_LAWS` says.
 fn seeds() -> u64 {
     let asked = std::env::var("IMPINGE_LAWS").ok();
-    asked.map_or(12, |asked| asked.parse().expect("IMPINGE_LAWS is a number of pairs"))
+    asked.map_or(16, |asked| asked.parse().expect("IMPINGE_LAWS is a number of pairs"))
 }
 
 /// What the tests vary.
@@ -330,7 +333,7 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
         for (regime, seed) in REGIMES.iter().flat_map(|r| (0..seeds()).map(move |seed| (*r, seed)))
         {
-            let ratio = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3][usize::try_from(seed % 6).expect("small")];
+            let ratio = RATIOS[usize::try_from(seed % 8).expect("small")];
             let base = Setting {
                 kinds: [kind1, kind2],
                 regime,
