@@ -292,9 +292,9 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option
         }
         for row in column + 1..count {
             let factor = rows[row][column] / rows[column][column];
-            for k in column..=count {
-                let above = rows[column][k];
-                rows[row][k] -= factor * above;
+            let above = rows[column];
+            for (entry, above) in rows[row].iter_mut().zip(above).skip(column) {
+                *entry -= factor * above;
             }
         }
     }
