@@ -6,9 +6,11 @@
 mod ball;
 mod capsule;
 mod cone;
+mod crossing;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod enclosed;
 mod location;
 mod plane;
 pub(crate) mod point2;
