@@ -133,7 +133,8 @@ fn check_against_twins(corners: &[P3], triangles: &[[u32; 3]], seed: u64) -> [us
     let (mut inside, mut outside) = (0, 0);
     for _ in 0..600 {
         let point = asked(random, &exact);
-        let distance = exact.distance_to_point(&impinge::dim3::na::Isometry3::identity(), &point, false);
+        let distance =
+            exact.distance_to_point(&impinge::dim3::na::Isometry3::identity(), &point, false);
         if distance < 1e-5 {
             continue;
         }
@@ -182,7 +183,8 @@ fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
         steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| (x, y, z))))
     {
         let at = [x, y, z];
-        let expected = bodies.iter().map(|(low, high)| to_box(at, low, high)).fold(f64::MAX, nearer);
+        let expected =
+            bodies.iter().map(|(low, high)| to_box(at, low, high)).fold(f64::MAX, nearer);
         let point = Point::from(Vector::<f64, 3>::from(moved(at)).map(N::lit));
         let found = mesh.signed_distance(&point).expect("a volume").as_f64();
         assert!((found - expected).abs() < 1e-6, "{found} not {expected} at {at:?} {bodies:?}");
@@ -333,8 +335,7 @@ fn check_lines<N: Real>() {
         let random = &mut Random(seed, false);
         // On a grid, so that many are in line; the line crosses itself.
         let mut whole = || (random.within(-4.0, 4.0)).round();
-        let corners: Vec<_> =
-            (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
+        let corners: Vec<_> = (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
         let here = corners.iter().map(|corner| Point::from(corner.coords.map(N::lit))).collect();
         let line = Polyline::<N, 2>::closed(here);
         assert!(line.is_outline(), "closed");

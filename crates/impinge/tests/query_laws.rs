@@ -105,7 +105,16 @@ fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
 }
 
 /// What arithmetic may get wrong about a pair of kinds, relative to their size.
+///
+/// A solid a million times smaller than the other shows it faces whose directions are only known up to
+/// rounding a million times as large.
 fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
+    let ratio = setting.ratio.max(1.0 / setting.ratio);
+    max(of_alike::<N, D>(setting), N::EPSILON * N::lit(ratio))
+}
+
+/// The same for solids of about the same size.
+fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     let kinds = setting.kinds;
     let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
     let ball = kinds.contains(&ShapeKind::Ball) || kinds.contains(&ShapeKind::Plane);
@@ -207,7 +216,9 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
         ShapeKind::Polytope => 1,
         _ => 0,
     };
-    let sharp: i32 = setting.kinds.iter().map(sharpness).sum();
+    // So may one that is no larger than what is lost in the rounding of the other.
+    let is_lost = N::lit(setting.ratio.min(1.0)) < N::lit(16.0) * noise;
+    let sharp = setting.kinds.iter().map(sharpness).sum::<i32>() + if is_lost { 3 } else { 0 };
     let slack = if sharp > 0 { noise } else { noise / N::lit(4.0) };
     let moved = |side: N| {
         let mut pose = pair[1].pose.clone();
