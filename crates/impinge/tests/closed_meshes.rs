@@ -43,7 +43,7 @@ fn joined(bodies: &[(Vec<P3>, Vec<[u32; 3]>)]) -> (Vec<P3>, Vec<[u32; 3]>) {
 fn bumpy(random: &mut Random, subdivisions: u32) -> (Vec<P3>, Vec<[u32; 3]>) {
     let surface = surfaces::ball(&Ball::new(1.0_f64), subdivisions);
     let mut bump = |corner: &P3| {
-        let spike = if random.bits() % 16 == 0 { 4.0 } else { 1.0 };
+        let spike = if random.bits().is_multiple_of(16) { 4.0 } else { 1.0 };
         rounded(corner * (random.within(0.6, 1.4) * spike))
     };
     (surface.vertices.iter().map(&mut bump).collect(), surface.triangles)
@@ -133,7 +133,8 @@ fn check_against_twins(corners: &[P3], triangles: &[[u32; 3]], seed: u64) -> [us
     let (mut inside, mut outside) = (0, 0);
     for _ in 0..600 {
         let point = asked(random, &exact);
-        let distance = exact.distance_to_point(&impinge::dim3::na::Isometry3::identity(), &point, false);
+        let distance =
+            exact.distance_to_point(&impinge::dim3::na::Isometry3::identity(), &point, false);
         if distance < 1e-5 {
             continue;
         }
@@ -145,7 +146,7 @@ fn check_against_twins(corners: &[P3], triangles: &[[u32; 3]], seed: u64) -> [us
         let expected = if is_inside { -distance } else { distance };
         assert_eq!(exact.signed_distance(&point), Some(expected), "{point}");
         assert_eq!(exact.encloses(&point), Some(is_inside), "{point}");
-        let near = Point::from(point.coords.map(|x| x.as_f32()));
+        let near = Point::from(point.coords.map(Real::as_f32));
         let found = single.signed_distance(&near).expect("a volume").as_f64();
         assert!((found - expected).abs() < 1e-5, "{found} instead of {expected} at {point}");
         assert_eq!(single.encloses(&near), Some(is_inside), "{point}");
@@ -182,7 +183,8 @@ fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
         steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| (x, y, z))))
     {
         let at = [x, y, z];
-        let expected = bodies.iter().map(|(low, high)| to_box(at, low, high)).fold(f64::MAX, nearer);
+        let expected =
+            bodies.iter().map(|(low, high)| to_box(at, low, high)).fold(f64::MAX, nearer);
         let point = Point::from(Vector::<f64, 3>::from(moved(at)).map(N::lit));
         let found = mesh.signed_distance(&point).expect("a volume").as_f64();
         assert!((found - expected).abs() < 1e-6, "{found} not {expected} at {at:?} {bodies:?}");
@@ -333,8 +335,7 @@ fn check_lines<N: Real>() {
         let random = &mut Random(seed, false);
         // On a grid, so that many are in line; the line crosses itself.
         let mut whole = || (random.within(-4.0, 4.0)).round();
-        let corners: Vec<_> =
-            (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
+        let corners: Vec<_> = (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
         let here = corners.iter().map(|corner| Point::from(corner.coords.map(N::lit))).collect();
         let line = Polyline::<N, 2>::closed(here);
         assert!(line.is_outline(), "closed");

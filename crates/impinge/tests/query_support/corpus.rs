@@ -3,8 +3,8 @@
 use impinge::math::na::{Quaternion, Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry, Point, Real, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, HeightField, Plane,
-    Rounded, Segment, Shape, TriMesh, Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, HeightField,
+    Plane, Rounded, Segment, Shape, TriMesh, Triangle,
 };
 use serde_json::Value;
 
@@ -105,9 +105,8 @@ pub fn shape3<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 3>>> {
 
 /// A field of one height, perhaps with all cells but the first removed.
 fn height_field<N: Real>(value: &Value) -> HeightField<N, 3> {
-    let count = |name: &str| {
-        usize::try_from(value[name].as_u64().expect("a whole number")).expect("few")
-    };
+    let count =
+        |name: &str| usize::try_from(value[name].as_u64().expect("a whole number")).expect("few");
     let (rows, columns) = (count("rows"), count("cols"));
     assert!(value["heights"] == "all 0" || value["heights"] == 0.0, "flat");
     let heights = vec![N::ZERO; rows * columns];

@@ -56,9 +56,8 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: W
 /// Of a triangle in space, whose front is outside. The point may lie on a triangle along the ray
 /// unnoticed; then its winding number is that of a point beside it.
 pub(super) fn of_triangle(corners: [Point<f64, 3>; 3], point: &Point<f64, 3>, way: Way) -> Added {
-    let seen = |p: &Point<f64, 3>| {
-        Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3])
-    };
+    let seen =
+        |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
     let around = around_seen(&corners.each_ref().map(seen), &seen(point));
     if around == 0 {
         return Some(0);

@@ -28,7 +28,8 @@ use crate::partitioning::BoxTree;
 ///
 /// **Sides.** In space the front of a triangle is the side that sees its corners counter-clockwise.
 /// A mesh has two sides, or one if asked by `one_sided`: then nothing touches it from behind, and what
-/// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside. In the plane
+/// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside in the queries that all
+/// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In the plane
 /// triangles are filled, and their winding means nothing.
 ///
 /// **Seams.** Contacts see the mesh as one surface (see [`Surface`](super::Surface)): at an edge or
