@@ -45,8 +45,9 @@
 //! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
 //! * The same calls give the same bits, on every run, machine and number of threads. Pairs, events
 //!   and answers come in order of the handles.
-//! * Methods that panic on misuse have a `try_` twin that returns the error; either way nothing was
-//!   changed.
+//! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the error;
+//!   either way nothing was changed. To ask for a part, corner or height that there is not panics as
+//!   it does for a slice.
 //!
 //! # Features
 //!
