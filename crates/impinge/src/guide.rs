@@ -8,6 +8,10 @@ pub struct Introduction;
 pub struct Pipeline;
 #[doc = include_str!("../../../guide/shapes.md")]
 pub struct Shapes;
+#[doc = include_str!("../../../guide/composites.md")]
+pub struct Composites;
+#[doc = include_str!("../../../guide/own-shapes.md")]
+pub struct OwnShapes;
 #[doc = include_str!("../../../guide/contacts.md")]
 pub struct Contacts;
 #[doc = include_str!("../../../guide/groups.md")]

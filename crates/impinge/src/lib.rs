@@ -2,8 +2,8 @@
 //!
 //! You move your objects by your own rules; there are no forces here. A world tells you, at each
 //! update, which pairs came to touch or parted, where their contact points are, how deep and along
-//! which direction. It also answers rays, points and boxes, and [`query`] any question about two
-//! shapes on their own.
+//! which direction. It also answers rays, points, boxes, shapes and moving shapes, and [`query`] any
+//! question about two shapes on their own.
 //!
 //! ```
 //! use impinge::dim3::na::{Isometry3, Vector3};
@@ -31,20 +31,23 @@
 //!   where it shall serve both.
 //! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
-//! * [`shape`] has the solids. Positions are nalgebra's isometries, re-exported as `na`.
+//! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions are
+//!   nalgebra's isometries, re-exported as `na`.
 //!
 //! # What holds everywhere
 //!
-//! * Intersecting, a distance of zero, and a contact with a depth of zero or more are one fact (of
-//!   half-spaces that overlap without bound alone there is no contact). Touching counts, and so does
-//!   a distance equal to a prediction or margin.
+//! * Intersecting, a distance of zero, and a contact with a depth of zero or more are one fact. (No
+//!   contact have half-spaces that overlap without bound, and surfaces with one side with what is
+//!   behind them; of composites that just touch the contact may be a rounding error away.) Touching
+//!   counts, and so does a distance equal to a prediction or margin.
 //! * A depth is positive inside. Normals are unit vectors from the first solid to the second. Angles
 //!   are in radians. Lengths and times have the units that you give them.
 //! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
 //! * The same calls give the same bits, on every run, machine and number of threads. Pairs, events
 //!   and answers come in order of the handles.
-//! * Methods that panic on misuse have a `try_` twin that returns the error; either way nothing was
-//!   changed.
+//! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the error;
+//!   either way nothing was changed. To ask for a part, corner or height that there is not panics as
+//!   it does for a slice.
 //!
 //! # Features
 //!

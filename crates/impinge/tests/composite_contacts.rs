@@ -119,3 +119,89 @@ fn laws_hold_over_hills() {
 fn laws_hold_over_hills_with_one_side() {
     laws_over_hills::<f64>(&hills::<f64>(Pattern::Zigzag).one_sided());
 }
+
+/// What holds for any two shapes: overlapping, a distance of zero and a contact are one fact; one
+/// contact and the manifolds agree; swapping flips.
+fn laws_of_pairs<N: Real + Space<3, Isometry = Isometry3<N>>>(
+    label: &str,
+    shapes: [&dyn Shape<N, 3>; 2],
+    reach: f64,
+) {
+    let (mut random, mut overlaps, rounds) = (Random::new(4), 0, 60);
+    for round in 0..rounds {
+        let mut place = |scale: f64| {
+            let at = v(random.unit() * scale, random.unit() * scale, random.unit() * scale);
+            Isometry3::from_parts(Translation3::from(at), turned::<N>(&mut random))
+        };
+        let (pose1, pose2) = (place(0.1), place(reach));
+        let label = format!("{label}, round {round}: {pose1:?} {pose2:?}");
+        let prediction = N::lit(0.05);
+        let (placed1, placed2) = ((&pose1, shapes[0]), (&pose2, shapes[1]));
+        let mut sliding = Sliding::<N, 3>::new();
+        let manifolds = sliding.update(placed1, placed2, prediction);
+        let all: Vec<TrackedContact<N, 3>> =
+            manifolds.iter().flat_map(|manifold| manifold.contacts().to_vec()).collect();
+        let depths = all.iter().map(|tracked| tracked.contact.depth);
+        let deepest = depths.reduce(|a, b| if b > a { b } else { a });
+        let apart = distance(&pose1, shapes[0], &pose2, shapes[1]);
+        overlaps += i32::from(apart == N::ZERO);
+        let is_touching = deepest.is_some_and(|depth| depth >= N::ZERO);
+        assert_eq!(apart == N::ZERO, is_touching, "{label}: {apart} {deepest:?}");
+        let single = contact(&pose1, shapes[0], &pose2, shapes[1], prediction);
+        assert_eq!(single.is_some(), deepest.is_some(), "{label}: {single:?} {deepest:?}");
+        let swapped = contact(&pose2, shapes[1], &pose1, shapes[0], prediction);
+        assert_eq!(swapped.map(|swapped| swapped.flipped()), single, "{label}");
+        let mut other = Sliding::<N, 3>::new();
+        let flipped = other.update(placed2, placed1, prediction);
+        let flipped: Vec<_> = flipped.iter().flat_map(|m| m.contacts().to_vec()).collect();
+        assert_eq!(flipped.len(), all.len(), "{label}");
+        for (one, two) in all.iter().zip(&flipped) {
+            assert_eq!(one.contact, two.contact.flipped(), "{label}");
+            assert_eq!((one.part1, one.part2), (two.part2, two.part1), "{label}");
+            let same = one.kinematic.contact(&pose1, &pose2);
+            let off = (same.depth - one.contact.depth).abs();
+            assert!(off <= N::lit(1e4) * N::EPSILON, "{label}: {same:?} {one:?}");
+        }
+        let (Some(single), Some(deepest)) = (single, deepest) else { continue };
+        let off = (single.depth - deepest).abs();
+        assert!(off <= N::lit(256.0) * N::EPSILON, "{label}: {} {deepest}", single.depth);
+    }
+    assert!(overlaps > 5 && overlaps < rounds - 2, "{label}: {overlaps} of {rounds} overlap");
+}
+
+fn stairs<N: Real + Space<3, Isometry = Isometry3<N>>>() -> Compound<N, 3> {
+    let step = |i: u32| {
+        let (x, z) = (f64::from(i % 4) * 0.5 - 0.75, f64::from(i / 4) * 0.5 - 0.75);
+        let y = 0.2 * f64::from((i * 7) % 3) - 0.2;
+        let cube = ShapeHandle::new(Cuboid::new(v::<N>(0.25, 0.3, 0.25)));
+        (Isometry3::from_parts(Translation3::from(v(x, y, z)), UnitQuaternion::identity()), cube)
+    };
+    Compound::<N, 3>::new((0..16).map(step).collect())
+}
+
+fn laws_of_all_pairs<N: Real + Space<3, Isometry = Isometry3<N>>>() {
+    let (hills, stairs) = (grid_piece::<N>(), stairs::<N>());
+    for (name, solid) in solids3::<N>() {
+        laws_of_pairs(&format!("{name} and stairs"), [solid.as_ref(), &stairs], 1.8);
+        laws_of_pairs(&format!("{name} and hills"), [&hills, solid.as_ref()], 1.3);
+    }
+    laws_of_pairs("stairs", [&stairs, &stairs], 1.9);
+    laws_of_pairs("stairs and hills", [&stairs, &hills], 1.2);
+    laws_of_pairs("hills", [&hills, &hills], 1.2);
+}
+
+/// A small piece of hilly ground.
+fn grid_piece<N: Real + Space<3>>() -> TriMesh<N, 3> {
+    let height = |x: f64, z: f64| 0.3 * x * x - 0.2 * x * z;
+    grid::<N>(5, 0.4, [0.0; 3], Pattern::Zigzag, height)
+}
+
+#[test]
+fn laws_hold_for_pairs_in_single_precision() {
+    laws_of_all_pairs::<f32>();
+}
+
+#[test]
+fn laws_hold_for_pairs_in_double_precision() {
+    laws_of_all_pairs::<f64>();
+}

@@ -41,7 +41,7 @@ fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
 ) {
     let mut random = Random::new(5);
     for (name, solid) in solids::<N>() {
-        for angle in [0.0, 0.013, 0.5, 1.570_796_326_794_896_6, -0.8, 2.9] {
+        for angle in [0.0, 0.013, 0.5, std::f64::consts::FRAC_PI_2, -0.8, 2.9] {
             for frame in [Isometry2::identity(), Isometry2::new(v(-40.0, 11.0), N::lit(0.7))] {
                 let turn = UnitComplex::new(N::lit(angle));
                 let height = -lowest(solid.as_ref(), turn) - N::lit(depth);

@@ -355,9 +355,9 @@ fn equations<const D: usize>(
         one.chain(local2.iter().zip(&state.weights2))
     };
     for i in 0..D {
-        for j in 0..D {
+        for (j, entry) in rows[i].iter_mut().enumerate().take(D) {
             let bend = bends().fold(Quad::ZERO, |sum, (l, weight)| sum + l.bend[i][j] * *weight);
-            rows[i][j] = -bend - if i == j { state.multiple } else { Quad::ZERO };
+            *entry = -bend - if i == j { state.multiple } else { Quad::ZERO };
         }
         rows[i][D] = -state.normal[i];
         rows[D][i] = state.normal[i];

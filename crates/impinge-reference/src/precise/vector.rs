@@ -97,9 +97,9 @@ pub fn perpendicular<const D: usize>(spans: &[Vector<D>]) -> Vector<D> {
         return result;
     }
     let (a, b) = (&spans[0], &spans[1]);
-    for i in 0..3 {
+    for (i, component) in result.iter_mut().enumerate() {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        result[i] = a[j] * b[k] - a[k] * b[j];
+        *component = a[j] * b[k] - a[k] * b[j];
     }
     result
 }

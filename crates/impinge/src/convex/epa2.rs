@@ -12,7 +12,7 @@ use super::candidate::Candidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
-use super::newton::sharpen;
+use super::newton::settles;
 use super::polish::polish;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -112,18 +112,21 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
             if let Some(mix) = polish(difference, &mut best, &[side.start, next]) {
                 return placed(&best, &mix, N::HALF);
             }
-            if -candidate.height - side.offset > noise() {
-                sharpen(difference, &mut best);
+            let is_closed = -candidate.height - side.offset <= noise();
+            if is_closed {
+                if best.height <= before {
+                    best.prefer(candidate, N::TWO * tolerance());
+                }
+                let mix = Mix::nearest(&best, &[side.start, next]);
+                return settle(difference, &best, &mix, &vertices(ring, &best));
+            }
+            // Flat sides are not far; what is smooth is found faster than by growing.
+            if settles(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }
-            if best.height <= before {
-                best.prefer(candidate, N::TWO * tolerance());
-            }
-            let mix = Mix::nearest(&best, &[side.start, next]);
-            return settle(difference, &best, &mix, &vertices(ring, &best));
         }
         let known = ring.iter().any(|other| other.start.point == candidate.vertex.point);
-        if known || -candidate.height - side.offset <= noise() {
+        if known {
             // It grows no more: what counts from now on is its certificate.
             ring[index].offset = -candidate.height;
             continue;

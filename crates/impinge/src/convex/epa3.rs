@@ -12,12 +12,16 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
-use super::newton::{settles, sharpen};
+use super::newton::settles;
 use super::polish::{lowest, polish};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
 
+/// Cap on the local searches where the hull ends without an answer, and the cosine of the angle within
+/// which one does for another.
+const CLIMBS: usize = 6;
+const SAME_CLIMB: f64 = 0.95;
 /// Cap on the number of support points. Flat faces take about ten, curved ones up to a hundred; where
 /// a whole ring of normals is equally good, as for coaxial cylinders, the cap is what stops.
 const ROUNDS: usize = 128;
@@ -128,14 +132,19 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
-            if -candidate.height - face.offset > noise() {
-                return sharpened(difference, hull, best);
+            let is_closed = -candidate.height - face.offset <= noise();
+            if is_closed {
+                if best.height <= before {
+                    best.prefer(candidate, N::TWO * tolerance());
+                }
+                let mix = Mix::nearest(&best, &corners);
+                return settle(difference, &best, &mix, hull.vertices());
             }
-            if best.height <= before {
-                best.prefer(candidate, N::TWO * tolerance());
+            // Flat faces are not far; what is smooth is found faster than by growing.
+            if settles(difference, &mut best) {
+                hull.keep(&[best.vertex]);
+                return locate(difference, &best, hull.vertices());
             }
-            let mix = Mix::nearest(&best, &corners);
-            return settle(difference, &best, &mix, hull.vertices());
         }
         if hull.contains(&candidate.vertex) {
             // Rounding has bent the hull. What counts from now on is the certificate.
@@ -153,32 +162,29 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
-/// The answer where a curved surface has stopped the growth.
-fn sharpened<N: Real>(
-    difference: &dyn Difference<N, 3>,
-    hull: &mut Hull<N>,
-    mut best: Candidate<N, 3>,
-) -> Separation<N, 3> {
-    sharpen(difference, &mut best);
-    hull.keep(&[best.vertex]);
-    locate(difference, &best, hull.vertices())
-}
-
-/// Goes on from the best normal and from that of the nearest face, where the hull is of no more use:
-/// at the cap, or bent by rounding.
+/// Goes on from the best normals of the faces, where the hull is of no more use: at the cap, or bent
+/// by rounding. Of a small solid deep in a large round one many normals far apart are nearly as good as
+/// the best, so several are tried.
 fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
-    hull: &mut Hull<N>,
+    hull: &Hull<N>,
     best: &mut Candidate<N, 3>,
 ) {
-    let nearest = hull.nearest().map(|index| -hull.face(index).outward);
-    climb(difference, best);
-    if let Some(normal) = nearest {
-        let mut other = Candidate::along(difference, normal);
-        climb(difference, &mut other);
-        best.improve(&other);
+    let mut starts: Vec<_> =
+        hull.normals().map(|outward| Candidate::along(difference, -outward)).collect();
+    starts.push(*best);
+    for _ in 0..CLIMBS {
+        let Some(mut start) = starts.iter().copied().reduce(higher) else { break };
+        starts.retain(|other| other.normal.dot(&start.normal) < N::lit(SAME_CLIMB));
+        climb(difference, &mut start);
+        best.improve(&start);
     }
     settles(difference, best);
+}
+
+/// The candidate that proves more, the first of equals.
+fn higher<N: Real>(first: Candidate<N, 3>, second: Candidate<N, 3>) -> Candidate<N, 3> {
+    if second.height > first.height { second } else { first }
 }
 
 /// What is left to say when no face of the hull has a normal.

@@ -77,6 +77,12 @@ impl<N: Real> Hull<N> {
         nearest
     }
 
+    /// The unit normals out of the faces that are not too thin.
+    pub(super) fn normals(&self) -> impl Iterator<Item = Vector<N, 3>> + '_ {
+        let faces = self.faces.iter().filter(|face| face.offset < N::INFINITY);
+        faces.map(|face| face.outward)
+    }
+
     /// Moves a face outwards to where the difference is known to end.
     pub(super) fn settle(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;

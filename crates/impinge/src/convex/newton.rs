@@ -1,24 +1,12 @@
 //! From a good normal to one that is right to the last bits, where surfaces are curved.
 
 use super::candidate::Candidate;
-use super::climb::climb;
 use super::difference::{Difference, noise};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
 /// Cap on the number of steps; from where iterations stop, one or two are enough.
 const STEPS: usize = 6;
-
-/// Raises the height of `best`, which is known to the tolerance of the iterations, as far as the
-/// arithmetic goes: by Newton's method where both surfaces are smooth, else by a search.
-pub(super) fn sharpen<N: Simplicial<D>, const D: usize>(
-    difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
-) {
-    if !settles(difference, best) {
-        climb(difference, best);
-    }
-}
 
 /// Newton's method on the sphere of normals; whether it has ended at a normal across which the two
 /// support points lie.

@@ -63,12 +63,15 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         current = Candidate::along(difference, unit(&(current.normal + turn))?.0);
         best.improve(&current);
         sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
-        let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides);
+        // What is left after a step is about its square, and the weights are as good as the step: a
+        // point outside its core, by however little, is none in the end.
+        let ends = squared <= N::EPSILON;
+        let slack = if ends { noise() } else { noise::<N>().sqrt() };
+        let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides, slack);
         if changed {
             current = *best;
             sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
-        } else if squared <= N::EPSILON {
-            // What is left after a step is about its square.
+        } else if ends {
             best.prefer(current, N::EPSILON);
             let mix = Mix::new(sides[0].mixed(), sides[1].mixed());
             return Some(mix).filter(|mix| mix.meets_within(best, N::TWO * tolerance()));
@@ -181,10 +184,9 @@ impl<N: Simplicial<D>, const D: usize> Side<N, D> {
         sum
     }
 
-    /// The place of the least weight that is negative by more than noise.
-    fn worst(&self) -> Option<(usize, N)> {
-        let mut worst = None;
-        let mut least = -noise::<N>().sqrt();
+    /// The place of the least weight that is negative by more than the slack.
+    fn worst(&self, slack: N) -> Option<(usize, N)> {
+        let (mut worst, mut least) = (None, -slack);
         for (index, &weight) in self.weights.iter().enumerate() {
             if weight < least {
                 (worst, least) = (Some((index, weight)), weight);
@@ -222,8 +224,8 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
 }
 
 /// Drops the point that would have to pull instead of push; says whether there was one.
-fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2]) -> bool {
-    let place = match (sides[0].worst(), sides[1].worst()) {
+fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2], slack: N) -> bool {
+    let place = match (sides[0].worst(slack), sides[1].worst(slack)) {
         (Some((index, one)), Some((_, two))) if one <= two => (0, index),
         (Some((index, _)), None) => (0, index),
         (_, Some((index, _))) => (1, index),
@@ -292,9 +294,9 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option
         }
         for row in column + 1..count {
             let factor = rows[row][column] / rows[column][column];
-            for k in column..=count {
-                let above = rows[column][k];
-                rows[row][k] -= factor * above;
+            let above = rows[column];
+            for (entry, above) in rows[row].iter_mut().zip(above).skip(column) {
+                *entry -= factor * above;
             }
         }
     }

@@ -35,6 +35,10 @@ impl<N: Real, const D: usize> Contact<N, D> {
 /// `prediction` asks for contacts at least that deep. `None` if `prediction` is NaN or a pose is not
 /// finite, and for half-spaces that overlap without bound, which have no depth.
 ///
+/// Of a composite it is the deepest contact of its manifolds: that of a part, with a normal that the
+/// whole surface has there ([`Surface`](crate::shape::Surface)). A surface with one side has none from
+/// behind. Cost: that of [`distance`](crate::query::distance), and of the parts that overlap.
+///
 /// ```
 /// use impinge::math::{Isometry3, Vector};
 /// use impinge::query::contact;

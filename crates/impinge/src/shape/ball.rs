@@ -8,7 +8,8 @@ use crate::math::{Point, Pose, Real, Vector};
 
 /// The points within `radius` of the local origin.
 ///
-/// Radius zero is a point. Scaled by factors of different magnitudes it is an [`Ellipsoid`]. Its only feature is `Face(0)`.
+/// Radius zero is a point. Scaled by factors of different magnitudes it is an [`Ellipsoid`]. Its only
+/// feature is `Face(0)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball<N: Real> {
     radius: N,

@@ -59,6 +59,11 @@ impl Joints {
         &self.parts[start..end]
     }
 
+    /// The vertices of each joint still lie at one position.
+    pub(super) fn are_together<N: Real, const D: usize>(&self, vertices: &[Point<N, D>]) -> bool {
+        self.of_vertex.iter().zip(vertices).all(|(&joint, at)| vertices[joint as usize] == *at)
+    }
+
     /// Two parts have a joint in common.
     pub(super) fn are_joined<const K: usize>(&self, a: &[u32; K], b: &[u32; K]) -> bool {
         let b = b.map(|vertex| self.of(vertex));

@@ -16,7 +16,7 @@ use crate::partitioning::{BoxTree, BoxTreeError};
 /// [`Segment`]; all is in the frame of the line. Segments belong together by the positions of their
 /// ends, not by the indices.
 ///
-/// **Sides.** A line has no inside. In the plane it has two sides, or one if asked by `one_sided`:
+/// **Sides.** A line has no inside, but for `encloses` and `signed_distance` of one in the plane. In the plane it has two sides, or one if asked by `one_sided`:
 /// then what is solid lies on its left, as for an outline that runs counter-clockwise, and nothing
 /// touches it from there.
 ///
@@ -46,6 +46,8 @@ pub struct Polyline<N: Real, const D: usize> {
     pub(super) segments: Vec<[u32; 2]>,
     pub(super) joints: Joints,
     pub(super) tree: BoxTree<N, D>,
+    /// As many segments start as end at each joint, and ends that belong together lie together.
+    is_cycle: bool,
     /// The normal on the front of a segment from its direction, of a line with one side: known in
     /// the plane only.
     pub(super) front: Option<Front<N, D>>,
@@ -118,8 +120,9 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         check_parts(&segments, vertices.len())?;
         let joints = Joints::new(&vertices, &segments);
         let tree = BoxTree::try_from_boxes(&boxes_of(&vertices, &segments)).map_err(refused)?;
+        let is_cycle = is_cycle(vertices.len(), &segments, &joints);
         let (front, keeps_internal_edges) = (None, false);
-        Ok(Self { vertices, segments, joints, tree, front, keeps_internal_edges })
+        Ok(Self { vertices, segments, joints, tree, is_cycle, front, keeps_internal_edges })
     }
 
     /// The line scaled along the axes of its frame, about its origin. Where that mirrors it, each
@@ -158,6 +161,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         check_moved(vertices, self.vertices.len())?;
         self.tree.try_refit(&boxes_of(vertices, &self.segments)).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
+        let is_whole = self.joints.are_together(vertices);
+        self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
         Ok(())
     }
 }
@@ -238,6 +243,16 @@ impl<N: Real, const D: usize> Polyline<N, D> {
 }
 
 impl<N: Real> Polyline<N, 2> {
+    /// The line is the outline of an area, or of several: at each joint as many segments end as start,
+    /// as in every [closed](Self::closed) one. O(1).
+    ///
+    /// Vertices that [`Self::set_vertices`] moves apart, though they were at one position, open the line.
+    /// What lies inside say [`Self::encloses`] and [`Self::signed_distance`].
+    #[must_use]
+    pub const fn is_outline(&self) -> bool {
+        self.is_cycle
+    }
+
     /// Lets nothing touch the line from its left: what is solid lies there, as for an outline that
     /// runs counter-clockwise.
     #[must_use]
@@ -245,6 +260,16 @@ impl<N: Real> Polyline<N, 2> {
         self.front = Some(polyline_parts::right_of);
         self
     }
+}
+
+/// As many segments end as start at each joint.
+fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
+    let mut surplus = vec![0_i64; vertices];
+    for &[from, to] in segments {
+        surplus[joints.of(from) as usize] += 1;
+        surplus[joints.of(to) as usize] -= 1;
+    }
+    surplus.iter().all(|&starts| starts == 0)
 }
 
 /// From each vertex to the next; the vertices are counted later.

@@ -89,7 +89,7 @@ fn value(expansion: &[f64]) -> f64 {
 }
 
 /// Twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
-pub(super) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
+pub(crate) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
     let (u, v) = (a - c, b - c);
     let (left, right) = (u.x * v.y, u.y * v.x);
     let (det, bound) = (left - right, 4.0 * f64::EPSILON * (left.abs() + right.abs()));
@@ -127,7 +127,7 @@ pub(super) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
 /// Six times the volume of the tetrahedron: positive if `q` lies on the side of the triangle `abc`
 /// from which it is seen counter-clockwise. The sign is exact.
 #[inline]
-pub(super) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
+pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let (u, v, w): (Vector<f64, 3>, Vector<f64, 3>, Vector<f64, 3>) = (a - q, b - q, c - q);
     let (vw, wv) = (v.x * w.y, v.y * w.x);
     let (wu, uw) = (w.x * u.y, w.y * u.x);

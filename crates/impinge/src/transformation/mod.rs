@@ -12,5 +12,6 @@ mod outline;
 mod quickhull;
 mod span;
 
+pub(crate) use exact::{area, volume};
 pub use hull2::convex_hull2;
 pub use hull3::{IndexedHull, convex_hull3};

@@ -87,7 +87,11 @@ fn ellipses<N: Real>() {
     let solid = Ellipsoid::new(Vector::<N, 2>::new(N::lit(2.0), N::lit(0.5)));
     for count in COUNTS {
         let points = doubles(&plane::ellipse(&solid, count).points);
-        assert_eq!((points.len(), check_polygon(&points)), (count.max(3) as usize, Ok(())));
+        assert_eq!(
+            (points.len(), check_polygon(&points)),
+            (count.max(3) as usize, Ok(())),
+            "a corner each"
+        );
         for [x, y] in points {
             let level = (x / 2.0).hypot(y / 0.5);
             assert!((level - 1.0).abs() <= 8.0 * epsilon::<N>(), "({x}, {y}) is at {level}");

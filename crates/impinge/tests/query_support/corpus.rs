@@ -3,13 +3,13 @@
 use impinge::math::na::{Quaternion, Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry, Point, Real, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, Shape,
-    Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, HeightField,
+    Plane, Rounded, Segment, Shape, TriMesh, Triangle,
 };
 use serde_json::Value;
 
 use super::Placed;
-use super::solids::{Ellipsoid, RoundHull};
+use super::solids;
 
 /// All cases of a file.
 pub fn cases(text: &str) -> Vec<Value> {
@@ -65,10 +65,17 @@ fn common<N: Real, const D: usize>(value: &Value) -> Option<Box<dyn Shape<N, D>>
         }
         "halfspace" => Box::new(Plane::new(Unit::new_normalize(vector(&value["normal"])))),
         "round_cuboid" => {
-            let half_extents = vector(&value["half_extents"]);
-            Box::new(RoundHull::<N, D>::cuboid(&half_extents, number(&value["r"])))
+            let cuboid = Cuboid::<N, D>::new(vector(&value["half_extents"]));
+            Box::new(Rounded::new(cuboid, number(&value["r"])))
         }
-        "ellipsoid" => Box::new(Ellipsoid::<N, D> { radii: vector(&value["radii"]) }),
+        "ellipsoid" => Box::new(Ellipsoid::<N, D>::new(vector(&value["radii"]))),
+        "round_cuboid by support" => {
+            let half_extents = vector(&value["half_extents"]);
+            Box::new(solids::RoundHull::<N, D>::cuboid(&half_extents, number(&value["r"])))
+        }
+        "ellipsoid by support" => {
+            Box::new(solids::Ellipsoid::<N, D> { radii: vector(&value["radii"]) })
+        }
         _ => return None,
     })
 }
@@ -90,8 +97,33 @@ pub fn shape3<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 3>>> {
             Some(Box::new(Cone::new(number(&value["half_height"]), either(value, "radius", "r"))))
         }
         Some("convex" | "convex_hull") => Some(hull(&points(&value["points"]))),
+        Some("heightfield") => Some(Box::new(height_field(value))),
+        Some("trimesh") => Some(Box::new(tri_mesh(value))),
         _ => None,
     })
+}
+
+/// A field of one height, perhaps with all cells but the first removed.
+fn height_field<N: Real>(value: &Value) -> HeightField<N, 3> {
+    let count =
+        |name: &str| usize::try_from(value[name].as_u64().expect("a whole number")).expect("few");
+    let (rows, columns) = (count("rows"), count("cols"));
+    assert!(value["heights"] == "all 0" || value["heights"] == 0.0, "flat");
+    let heights = vec![N::ZERO; rows * columns];
+    let field = HeightField::<N, 3>::new(rows, columns, heights, vector(&value["size"]));
+    match value["holes"].as_str() {
+        None => field,
+        Some("all cells except (0,0)") => field.with_holes(|row, column| (row, column) != (0, 0)),
+        Some(other) => panic!("no holes {other}"),
+    }
+}
+
+/// A mesh of vertices and triangles.
+pub fn tri_mesh<N: Real>(value: &Value) -> TriMesh<N, 3> {
+    let name = |index: &Value| u32::try_from(index.as_u64().expect("whole")).expect("few");
+    let triangles = value["indices"].as_array().expect("a list").iter();
+    let triangles = triangles.map(|corners| [0, 1, 2].map(|corner| name(&corners[corner])));
+    TriMesh::new(points(&value["vertices"]), triangles.collect())
 }
 
 /// The hull of some points.
@@ -111,6 +143,13 @@ fn standing<N: Real>(shape: &Value) -> UnitQuaternion<N> {
         Some("x") => UnitQuaternion::from_axis_angle(&Vector::<N, 3>::z_axis(), -N::frac_pi_2()),
         _ => UnitQuaternion::identity(),
     }
+}
+
+/// Where the origin of a shape of the corpus lies in its frame here: fields are centred.
+fn offset<N: Real>(shape: &Value) -> Translation<N, 3> {
+    let size = shape.get("origin_corner").map(|_| vector::<N, 3>(&shape["size"]));
+    let half = size.map(|size| Vector::<N, 3>::new(size.x, N::ZERO, size.z) * N::HALF);
+    Translation::from(half.unwrap_or_else(Vector::<N, 3>::zeros))
 }
 
 /// The translation of a pose, by either of its names; none is the origin.
@@ -138,5 +177,6 @@ pub fn placed3<N: Real>(shape: &Value, pose: &Value) -> Option<Placed<N, UnitQua
     let value = pose.get("q").or_else(|| pose.get("rotation_xyzw"));
     let q = value.map_or_else(Vector::<f64, 4>::w, vector).normalize().map(N::lit);
     let rotation = UnitQuaternion::new_normalize(Quaternion::from(q)) * standing(shape);
-    Some(Placed { shape: shape3(shape)?, pose: Isometry::from_parts(translation(pose), rotation) })
+    let pose = Isometry::from_parts(translation(pose), rotation) * offset(shape);
+    Some(Placed { shape: shape3(shape)?, pose })
 }

@@ -48,16 +48,13 @@ pub const PATTERNS: [Pattern; 5] =
 
 /// A flat floor of `2 n²` triangles, `n` cells of size `cell` each way around `center`; `height`
 /// gives the y of each vertex.
-pub fn grid<N: Real>(
+pub fn grid<N: Real + Space<3>>(
     n: u32,
     cell: f64,
     center: [f64; 3],
     pattern: Pattern,
     height: impl Fn(f64, f64) -> f64,
-) -> TriMesh<N, 3>
-where
-    N: Space<3>,
-{
+) -> TriMesh<N, 3> {
     let mut random = Random::new(7);
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     let half = f64::from(n) * cell / 2.0;
@@ -207,10 +204,7 @@ pub fn slide<N, R, const D: usize>(
 }
 
 /// The height of the lowest point of a solid turned like this.
-pub fn lowest<N: Real>(solid: &dyn Shape<N, 3>, turned: &Isometry3<N>) -> N
-where
-    N: Space<3>,
-{
+pub fn lowest<N: Real>(solid: &dyn Shape<N, 3>, turned: &Isometry3<N>) -> N {
     let pose = Pose::from_isometry(turned);
     let geometry = solid.geometry();
     let map = geometry.as_support_map().expect("a convex solid");

@@ -35,8 +35,8 @@ const MAX_STEPS: usize = 1024;
 /// # Cost
 ///
 /// A computation of the distance for each step: typically 15 for motions with constant velocities, 40
-/// for others, several times as many where the bodies graze each other or turn fast. Each step goes as far as no point of the bodies can have used up the gap
-/// (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996), by the speed along the
+/// for others, several times as many where the bodies graze each other or turn fast. Each step goes as
+/// far as no point of the bodies can have used up the gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996), by the speed along the
 /// normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex polyhedra",
 /// 2006) of the fastest point of the shape and by how much its path can bend, or by spheres around the
 /// bodies while these are apart. A half-space that turns is fastest far out: its speed counts there

@@ -42,11 +42,12 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
     pub(super) fn candidates_of_points(&self, out: &mut Candidates<N, D>) {
         let tolerance = self.frame.tolerance;
         match (self.first.corners.as_slice(), self.second.corners.as_slice()) {
-            ([corner1], [corner2]) => {
-                if (corner1.flat - corner2.flat).norm() <= N::TWO * tolerance {
-                    self.push(&corner1.point, &corner2.point, [corner1.id, corner2.id], out);
-                }
+            ([corner1], [corner2])
+                if (corner1.flat - corner2.flat).norm() <= N::TWO * tolerance =>
+            {
+                self.push(&corner1.point, &corner2.point, [corner1.id, corner2.id], out);
             }
+            ([_], [_]) => {}
             ([corner], _) => {
                 if let Some(id) = self.second.locate(&corner.flat, tolerance) {
                     self.push_corner_of_first(corner, id, out);

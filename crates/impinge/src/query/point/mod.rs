@@ -6,9 +6,11 @@
 mod ball;
 mod capsule;
 mod cone;
+mod crossing;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod enclosed;
 mod location;
 mod plane;
 pub(crate) mod point2;
@@ -59,7 +61,8 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// part answers; inside, the part that the point lies deepest in, by the nearest point of that part's
 /// own boundary, which may lie inside another part. So the depth is at most the depth in the union, and
 /// equal to it where parts do not overlap. Of several parts the first by number answers. Triangles of
-/// space and segments are surfaces, which hold the points on them and enclose nothing; distances from
+/// space and segments are surfaces, which hold the points on them and enclose nothing (but closed meshes
+/// have [`signed_distance`](crate::shape::TriMesh::signed_distance)); distances from
 /// them are as exact where the mesh is far from its origin as where it is near. A composite without
 /// parts is infinitely far from everything.
 ///

@@ -1,7 +1,7 @@
 //! The nearest point of a segment.
 
 use super::SurfacePoint;
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Segment, SupportMap};
 
 /// The nearest point of the segment between `ends`, and where it is: 0 at the first end, 1 at the
@@ -12,7 +12,7 @@ pub(in crate::query) fn nearest<N: Real, const D: usize>(
 ) -> (Point<N, D>, N) {
     let [a, b] = ends;
     let (along, to_point) = (b - a, point - a);
-    let (part, whole) = (to_point.dot(&along), along.norm_squared());
+    let (part, whole) = shares(&along, &to_point);
     if part >= whole && whole > N::ZERO {
         return (*b, N::ONE);
     }
@@ -21,6 +21,18 @@ pub(in crate::query) fn nearest<N: Real, const D: usize>(
         return (a + along * fraction, fraction);
     }
     (*a, N::ZERO)
+}
+
+/// How far a vector leads along another, and how far that one leads itself, both in the same unit.
+fn shares<N: Real, const D: usize>(along: &Vector<N, D>, to_point: &Vector<N, D>) -> (N, N) {
+    let (part, whole) = (to_point.dot(along), along.norm_squared());
+    if whole * N::EPSILON > N::MIN_POSITIVE && whole + part.abs() < N::INFINITY {
+        return (part, whole);
+    }
+    // Their squares are no numbers of the type, or lose digits.
+    let scale = max(max_component(along), max_component(to_point)).power_of_two_below();
+    let (along, to_point) = (along / scale, to_point / scale);
+    (to_point.dot(&along), along.norm_squared())
 }
 
 /// The name of a place on a segment: an end, or what lies between.

@@ -22,7 +22,14 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
     /// Of two nearest points of parts, the one nearer to `asked`; the first where equal.
     pub(super) fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
         let (first, second) = (asked - self.point, asked - other.point);
-        if second.norm_squared() < first.norm_squared() { other } else { self }
+        let (square1, square2) = (first.norm_squared(), second.norm_squared());
+        // Squares of large and of small lengths are no numbers of the type.
+        let usable = |square: N| square > N::MIN_POSITIVE && square < N::INFINITY;
+        let is_other = match usable(square1) && usable(square2) {
+            true => square2 < square1,
+            false => length(&second) < length(&first),
+        };
+        if is_other { other } else { self }
     }
 
     /// For a set without thickness: what lies on it within rounding is its own projection.

@@ -2,7 +2,7 @@
 
 use super::SurfacePoint;
 use super::segment::{feature_at, nearest};
-use crate::math::{Point, Real, cross, max};
+use crate::math::{Point, Real, cross, max, max_component};
 use crate::shape::{FeatureId, SupportMap, Triangle};
 
 /// The nearest of four candidates: one on each side and the foot of the perpendicular.
@@ -38,7 +38,7 @@ fn foot<N: Real>(triangle: &Triangle<N, 3>, point: &Point<N, 3>) -> Option<Surfa
     let [a, b, c] = triangle.corners();
     let (to_b, to_c, to_point) = (b - a, c - a, point - a);
     // In units of a power of two near the size: fourth powers of lengths stay in range.
-    let scale = max(to_b.norm(), to_c.norm()).power_of_two_below();
+    let scale = max(max_component(&to_b), max_component(&to_c)).power_of_two_below();
     let (u, v, p) = (to_b / scale, to_c / scale, to_point / scale);
     let normal = cross(&u, &v);
     let squared = normal.norm_squared();

@@ -5,14 +5,14 @@ use super::projection::{
 };
 use super::wrong_kinds;
 use crate::convex::Separation;
-use crate::math::{Point, Real, unit};
+use crate::math::{Point, Real, Vector, unit};
 use crate::query::Pair;
 use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
 /// The separation of a ball from a tapered capsule.
 ///
-/// A centre on the axis leaves along a fixed perpendicular; one at the centre of the larger ball, where
-/// that holds the other, along the first axis of the solid's frame.
+/// A centre on the axis leaves along a fixed perpendicular, one at an end away from the other; one at the
+/// centre of the larger ball, where that holds the other, along the first axis of the solid's frame.
 pub(super) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -34,7 +34,7 @@ pub(in crate::query) fn project<N: Real, const D: usize>(
     point: &Point<N, D>,
 ) -> (Projection<N, D>, FeatureId) {
     let Some(taper) = capsule.taper() else {
-        return around_end(capsule, capsule.larger_end(), point);
+        return around_end(capsule, capsule.larger_end(), point, &first_axis());
     };
     let from_first = point - capsule.segment().a();
     let away = made_perpendicular(&from_first, &taper.along)
@@ -42,10 +42,10 @@ pub(in crate::query) fn project<N: Real, const D: usize>(
     let (x, y) = (from_first.dot(&away), from_first.dot(&taper.along));
     let along_side = taper.cosine * y - taper.sine * x;
     if along_side < N::ZERO {
-        return around_end(capsule, 0, point);
+        return around_end(capsule, 0, point, &-taper.along);
     }
     if along_side > taper.cosine * taper.length {
-        return around_end(capsule, 1, point);
+        return around_end(capsule, 1, point, &taper.along);
     }
     let distance = taper.cosine * x + taper.sine * y - capsule.radii()[0];
     let outward = away * taper.cosine + taper.along * taper.sine;
@@ -53,14 +53,15 @@ pub(in crate::query) fn project<N: Real, const D: usize>(
     (Projection { distance, outward, point: nearest }, FeatureId::Edge(0))
 }
 
-/// A point seen from one of the balls.
+/// A point seen from one of the balls; `fallback` is the way out from its centre.
 fn around_end<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     end: usize,
     point: &Point<N, D>,
+    fallback: &Vector<N, D>,
 ) -> (Projection<N, D>, FeatureId) {
     let (center, radius) = (capsule.end(end), capsule.radii()[end]);
-    let (outward, away) = unit(&(point - center)).unwrap_or_else(|| (first_axis(), N::ZERO));
+    let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
     let name = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
     let nearest = center + outward * radius;
     (Projection { distance: away - radius, outward, point: nearest }, name)
@@ -69,7 +70,6 @@ fn around_end<N: Real, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vector;
 
     type P = Point<f64, 3>;
 
@@ -93,6 +93,20 @@ mod tests {
         assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
         let (inside, name) = seen(0.0, 2.5);
         assert!((inside.distance + 2.5).abs() < 1e-14 && name == FeatureId::Edge(0), "{inside:?}");
+    }
+
+    #[test]
+    fn the_centre_of_an_end() {
+        // By rounding, the end may seem to lie beyond the side.
+        let (a, b) = (P::new(0.3, 0.1, 0.7), P::new(0.1, -0.2, 0.5));
+        for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
+            let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");
+            for (point, other, radius) in [(a, b, radii[0]), (b, a, radii[1])] {
+                let (seen, _) = project(&one, &point);
+                let other = (other - point).dot(&seen.outward) + radii[0] + radii[1] - radius;
+                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {seen:?}");
+            }
+        }
     }
 
     #[test]

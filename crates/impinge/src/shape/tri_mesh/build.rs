@@ -39,6 +39,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         let tree = BoxTree::try_from_boxes(&boxes).map_err(refused)?;
         let normals = normals_of(&vertices, &triangles);
         Ok(Self {
+            is_cycle: topology.is_cycle,
             vertices,
             triangles,
             topology,
@@ -125,6 +126,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.try_refit(&boxes).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);
+        self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
         Ok(())
     }
 }

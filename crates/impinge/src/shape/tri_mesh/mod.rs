@@ -28,7 +28,8 @@ use crate::partitioning::BoxTree;
 ///
 /// **Sides.** In space the front of a triangle is the side that sees its corners counter-clockwise.
 /// A mesh has two sides, or one if asked by `one_sided`: then nothing touches it from behind, and what
-/// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside. In the plane
+/// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside in the queries that all
+/// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In the plane
 /// triangles are filled, and their winding means nothing.
 ///
 /// **Seams.** Contacts see the mesh as one surface (see [`Surface`](super::Surface)): at an edge or
@@ -62,6 +63,8 @@ pub struct TriMesh<N: Real, const D: usize> {
     /// By triangle: unit, on the front; zero without area. None in the plane.
     normals: Vec<Vector<N, D>>,
     tree: BoxTree<N, D>,
+    /// The triangles are a cycle, and corners that belong together lie together.
+    is_cycle: bool,
     is_one_sided: bool,
     keeps_internal_edges: bool,
 }
@@ -186,6 +189,18 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
+    /// The mesh is the boundary of a volume, or of several: each side with a length is run along by as
+    /// many triangles in one direction as in the other. O(1).
+    ///
+    /// So is every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented); and one whose
+    /// bodies share a side, which has four triangles then, or that has triangles with repeated corners.
+    /// Vertices that [`Self::set_vertices`] moves apart, though they were at one position, open the mesh.
+    /// What lies inside say [`Self::encloses`] and [`Self::signed_distance`].
+    #[must_use]
+    pub const fn is_volume(&self) -> bool {
+        self.is_cycle
+    }
+
     /// Lets nothing touch the mesh from behind; the front of a triangle is the side that sees its
     /// corners counter-clockwise. Neighbours should agree on it: see [`Self::is_oriented`].
     #[must_use]

@@ -31,6 +31,8 @@ pub(super) struct Topology {
     pub(super) joints: Joints,
     /// By triangle and side: the triangle across, or one of the two numbers above.
     across: Vec<[u32; 3]>,
+    /// Each side is run along as often in one direction as in the other.
+    pub(super) is_cycle: bool,
 }
 
 /// A side by its ends, the smaller joint first, and whose it is.
@@ -53,10 +55,15 @@ impl Topology {
         }
         sides.sort_unstable();
         let mut across = vec![[BORDER; 3]; triangles.len()];
+        let mut is_cycle = true;
         for group in sides.chunk_by(|a, b| a.0 == b.0) {
             link(group, &mut across);
+            let is_forward = |&&([from, _], index, side): &&Side| {
+                joints.of(triangles[index as usize][usize::from(side)]) == from
+            };
+            is_cycle &= 2 * group.iter().filter(is_forward).count() == group.len();
         }
-        Self { joints, across }
+        Self { joints, across, is_cycle }
     }
 
     /// The triangle that is alone across a side.

@@ -9,7 +9,7 @@
 
 use super::facts::{Finding, Standing};
 use super::scene::Scene;
-use crate::math::{Space, Vector};
+use crate::math::{Space, Vector, max};
 
 /// Faces whose normals' cosine is above this hide nothing from each other.
 const ALIKE: f64 = 0.99;
@@ -61,7 +61,9 @@ fn is_hidden<N: Space<D>, const D: usize>(
     (front, front_normal): (&Finding<N, D>, &Vector<N, D>),
 ) -> bool {
     let (part, other) = (back.parts[1], front.parts[1]);
-    scene.are_adjacent(part, other)
+    // What is farther hides nothing, so that the prediction never changes what overlaps.
+    front.distance <= max(back.distance, N::ZERO)
+        && scene.are_adjacent(part, other)
         && place(scene, (part, other, front_normal)) == Place::Back
         && place(scene, (other, part, back_normal)) == Place::Front
 }

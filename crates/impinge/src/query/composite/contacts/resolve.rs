@@ -83,6 +83,7 @@ fn is_explained<N: Space<D>, const D: usize>(
     ways.iter().any(|way| {
         let is_other = is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
         is_other
+            && way.depth > N::ZERO
             && way.depth <= depth
             && placed.is_parted(&(way.normal * way.depth), finding.tolerance)
     })

@@ -1,0 +1,150 @@
+//! How often a ray along an axis crosses what is around a point: once, exactly.
+//!
+//! The winding number of a closed line or surface around a point is the number of times that a ray from
+//! the point leaves it less the times it enters. Whether it does at a segment or triangle is read off
+//! exact signs. Ties, where the ray meets corners or sides, are settled as if the point were moved by an
+//! infinitesimal step across the ray, the same for all parts (Edelsbrunner and Mücke, "Simulation of
+//! Simplicity", 1990; in the plane this is the half-open rule): so what one part leaves out its
+//! neighbour counts, and no direction of the ray can be unlucky.
+
+use core::cmp::Ordering;
+
+use crate::math::Point;
+use crate::transformation::{area, volume};
+
+/// A ray from a point to infinity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    pub(super) axis: usize,
+    /// Towards larger coordinates.
+    pub(super) is_ascending: bool,
+}
+
+/// What one part adds to the winding number; `None` if the point lies on it.
+type Added = Option<i64>;
+
+/// The sign of a determinant as a count.
+fn sign(determinant: f64) -> i64 {
+    match determinant.partial_cmp(&0.0) {
+        Some(Ordering::Greater) => 1,
+        Some(Ordering::Less) => -1,
+        _ => 0,
+    }
+}
+
+/// Of a segment of the plane, whose left is inside. The point may lie on a segment across the ray
+/// unnoticed; then its winding number is that of a point beside it.
+pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: Way) -> Added {
+    let across = 1 - way.axis;
+    let at = point[across];
+    let rises = ends[0][across] <= at && at < ends[1][across];
+    let falls = ends[1][across] <= at && at < ends[0][across];
+    if !rises && !falls {
+        return Some(0);
+    }
+    let side = sign(area(&ends[0], &ends[1], point));
+    // Rising on the side of larger x the segment has the point on its left; with x and y exchanged,
+    // left is right.
+    let is_above = (rises == (side > 0)) == (way.axis == 0);
+    match side {
+        0 => None,
+        _ if is_above == way.is_ascending => Some(side),
+        _ => Some(0),
+    }
+}
+
+/// Of a triangle in space, whose front is outside. The point may lie on a triangle along the ray
+/// unnoticed; then its winding number is that of a point beside it.
+pub(super) fn of_triangle(corners: [Point<f64, 3>; 3], point: &Point<f64, 3>, way: Way) -> Added {
+    let seen =
+        |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
+    let around = around_seen(&corners.each_ref().map(seen), &seen(point));
+    if around == 0 {
+        return Some(0);
+    }
+    let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
+    // A triangle that is seen counter-clockwise against the axis has its back to what is below.
+    let is_above = side * around < 0;
+    match side {
+        0 => None,
+        _ if is_above == way.is_ascending => Some(if way.is_ascending { around } else { -around }),
+        _ => Some(0),
+    }
+}
+
+/// How often three sides run around a point of the plane: 0, or the sign of their turn. On a side the
+/// point counts as moved by (ε, ε²).
+fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
+    let one = |at: usize| {
+        let (a, b) = (&corners[at], &corners[(at + 1) % 3]);
+        let (rises, falls) = (a.y <= point.y && point.y < b.y, b.y <= point.y && point.y < a.y);
+        if !rises && !falls {
+            return 0;
+        }
+        let side = sign(area(a, b, point));
+        let is_beside = if rises { side > 0 } else { side < 0 };
+        if is_beside { side } else { 0 }
+    };
+    (0..3).map(one).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ways(axes: usize) -> impl Iterator<Item = Way> {
+        (0..axes).flat_map(|axis| [true, false].map(|is_ascending| Way { axis, is_ascending }))
+    }
+
+    /// All eight points of a grid of three by three around the middle one, as an outline.
+    #[test]
+    fn an_outline_along_the_ray() {
+        let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
+        let corner = |at: usize| Point::<f64, 2>::from(ring[at % 8].map(f64::from));
+        for (x, y) in (-1..4).flat_map(|x| (-1..4).map(move |y| (x, y))) {
+            let point = Point::<f64, 2>::new(f64::from(x), f64::from(y));
+            let inside = x == 1 && y == 1;
+            let on_line = !inside && (0..3).contains(&x) && (0..3).contains(&y);
+            for way in ways(2) {
+                let each = (0..8).map(|at| of_segment([corner(at), corner(at + 1)], &point, way));
+                let winding: Option<i64> = each.sum();
+                let expected = Some(i64::from(inside));
+                assert!(winding == expected || on_line, "{winding:?} at {point} along {way:?}");
+            }
+        }
+    }
+
+    /// The same for the surface of a cube with its corners, the middles of its sides and of its faces.
+    #[test]
+    fn a_surface_along_the_ray() {
+        let mut triangles = Vec::new();
+        for (axis, end) in (0..3).flat_map(|axis| [0.0, 2.0].map(|end| (axis, end))) {
+            for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                let at = |du: f64, dv: f64| {
+                    let mut point = Point::<f64, 3>::origin();
+                    (point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]) =
+                        (end, u + du, v + dv);
+                    point
+                };
+                let (a, b, c, d) = (at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0));
+                let outward = [[a, b, c], [a, c, d]];
+                let turned = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
+                triangles.extend(if end > 1.0 { outward } else { outward.map(turned) });
+            }
+        }
+        let steps = || (-1..6).map(|step| f64::from(step) * 0.5);
+        for (x, y, z) in
+            steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| (x, y, z))))
+        {
+            let point = Point::<f64, 3>::new(x, y, z);
+            let inside = point.iter().all(|&x| x > 0.0 && x < 2.0);
+            let on_surface = !inside && point.iter().all(|&x| (0.0..=2.0).contains(&x));
+            for way in ways(3) {
+                let each = triangles.iter().map(|&corners| of_triangle(corners, &point, way));
+                let winding: Option<i64> = each.sum();
+                let expected = Some(i64::from(inside));
+                assert!(winding == expected || on_surface, "{winding:?} at {point} along {way:?}");
+            }
+        }
+    }
+}

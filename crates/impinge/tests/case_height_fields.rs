@@ -1,0 +1,59 @@
+//! Bugs that others had with height fields.
+
+use impinge::math::na::Isometry3;
+use impinge::math::{Point, Real, Vector};
+use impinge::query::{Ray, RayCast};
+use impinge::shape::HeightField;
+
+/// The field of rapier#165: sin(x) + cos(z) on 100 by 100, in 20 by 20 cells of 5 by 5.
+fn waves<N: Real>() -> HeightField<N, 3> {
+    let at = |index: u32| f64::from(index) * 5.0 - 50.0;
+    let height = |row: u32, column: u32| {
+        let ((sine, _), (_, cosine)) = (at(column).sine_cosine(), at(row).sine_cosine());
+        N::lit(sine + cosine)
+    };
+    let heights = (0..21).flat_map(|row| (0..21).map(move |column| height(row, column))).collect();
+    HeightField::<N, 3>::new(
+        21,
+        21,
+        heights,
+        Vector::<N, 3>::new(N::lit(100.0), N::ONE, N::lit(100.0)),
+    )
+}
+
+/// A ray straight down from above meets the field where its height says, at corners and borders too.
+fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
+    let here = Isometry3::identity();
+    let (x, z) = (N::lit(x), N::lit(z));
+    let ray = Ray::new(Point::<N, 3>::new(x, N::lit(10.0), z), -Vector::<N, 3>::y());
+    let hit = field.toi_and_normal_with_ray(&here, &ray, true);
+    let hit = hit.unwrap_or_else(|| panic!("the ray down at {x} {z} misses"));
+    let height = field.height_at(x, z).expect("it is over the field");
+    let error = (N::lit(10.0) - hit.toi - height).abs();
+    assert!(error <= N::lit(32.0) * N::EPSILON, "{error} off at {x} {z}");
+    assert!(hit.normal.y > N::ZERO, "from above at {x} {z}");
+}
+
+/// Vertical rays exactly on the borders of cells, where they were missed: the numbers of the report, and
+/// all corners and borders.
+fn rapier_165<N: Real>() {
+    let field = waves::<N>();
+    let reported =
+        [[5.0, 2.63113], [9.50162, 5.0], [19.00324, 10.0], [30.0, 15.78678], [40.0, 21.04904]];
+    reported.into_iter().for_each(|at| down(&field, at));
+    // The outermost borders, too.
+    for line in 0..=20_u32 {
+        let line = f64::from(line) * 5.0 - 50.0;
+        for step in 0..=400_u32 {
+            let along = f64::from(step) * 0.25 - 50.0;
+            down(&field, [line, along]);
+            down(&field, [along, line]);
+        }
+    }
+}
+
+#[test]
+fn rapier_165_rays_on_borders() {
+    rapier_165::<f32>();
+    rapier_165::<f64>();
+}
