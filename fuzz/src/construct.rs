@@ -18,7 +18,9 @@ impl Task for Construct {
         shape.aabb(&Pose::from_isometry(&M::position(bytes)));
         if let Ok(scaled) = shape.scaled(&bytes.vector()) {
             let kinds = [&shape, &scaled].map(|shape| shape.geometry().kind());
-            let is_known = kinds[0] == kinds[1] || kinds == [ShapeKind::Ball, ShapeKind::Ellipsoid];
+            let is_known = !bytes.is_moderate()
+                || kinds[0] == kinds[1]
+                || kinds == [ShapeKind::Ball, ShapeKind::Ellipsoid];
             assert!(
                 is_known || shape.as_shape::<Compound<N, D>>().is_some(),
                 "{kinds:?} {scaled:?}"

@@ -280,7 +280,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
-        let Some((surface, pose, own)) = self.surface_at(part) else { return Some(*normal) };
+        let (surface, pose, own) = self.surface_at(part)?;
         let snapped = surface.snapped(own, &pose.inverse_vector(normal))?;
         Some(pose.vector(&snapped))
     }
