@@ -1,7 +1,7 @@
 //! Shapes of every kind from bytes.
 
 use impinge::bounding_volume::Aabb;
-use impinge::math::{Point, Pose, Real, Space, Unit, Vector};
+use impinge::math::{Point, Real, Space, Unit, Vector};
 use impinge::shape::{
     Ball, Capsule, Compound, Cuboid, Ellipsoid, Geometry, Plane, Polyline, Rounded, Segment, Shape,
     ShapeHandle, SupportMap, TaperedCapsule, TriMesh, Triangle,
@@ -172,9 +172,17 @@ pub fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32>
     shape.geometry().as_composite().map(|parts| parts.num_parts())
 }
 
-/// At least how far the shape reaches from its own origin; zero for what is unbounded.
+/// About how far the shape reaches from its own origin, the places of its parts included: what rounding
+/// is in proportion to. What is unbounded adds nothing.
 pub fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
-    let aabb = shape.aabb(&Pose::identity());
+    if let Some(parts) = shape.geometry().as_composite() {
+        let one = |part| {
+            let part = parts.part(part);
+            part.pose.translation.abs().sum() + reach(part.solid.as_shape())
+        };
+        return (0..parts.num_parts()).map(one).fold(N::ZERO, impinge::math::max);
+    }
+    let aabb = shape.local_aabb();
     let corners = aabb.mins().iter().chain(aabb.maxs().iter());
     corners.filter(|x| x.is_finite_number()).fold(N::ZERO, |sum, x| sum + x.abs())
 }

@@ -35,7 +35,9 @@ impl Task for Rays {
             assert_eq!(until, first.filter(|hit| hit.toi <= max_time), "{}", context());
         }
         let all = shape.all_hits_with_ray(&m, &ray, max_time, solid);
-        assert_eq!(all.first().copied(), until, "{}", context());
+        if bytes.is_moderate() {
+            assert_eq!(all.first().copied(), until, "{}", context());
+        }
         assert!(
             all.is_sorted_by(|a, b| (a.toi, a.part) < (b.toi, b.part)),
             "{all:?} {}",

@@ -136,7 +136,8 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
         let (apex, disk) = (axis * self.half_height, self.base().reach(&axis));
         let mins = pose.translation + apex.zip_map(&(-apex - disk), min);
         let maxs = pose.translation + apex.zip_map(&(-apex + disk), max);
-        Aabb::new(Point::from(mins), Point::from(maxs))
+        // Where the numbers end there may be everything.
+        Aabb::try_new(Point::from(mins), Point::from(maxs)).unwrap_or_else(|_| Aabb::unbounded())
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

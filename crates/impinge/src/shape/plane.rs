@@ -30,7 +30,7 @@ impl<N: Real, const D: usize> Plane<N, D> {
 
 impl<N: Real, const D: usize> Plane<N, D> {
     /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
-    /// `point`: bounded on one side if the normal lies exactly along an axis, else unbounded.
+    /// `point`: bounded on one side if the normal lies exactly along an axis and the point is a number, else unbounded.
     fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
         let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
         for axis in 0..D {
@@ -41,7 +41,7 @@ impl<N: Real, const D: usize> Plane<N, D> {
                 mins[axis] = point[axis];
             }
         }
-        Aabb::new(mins, maxs)
+        Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
     }
 }
 

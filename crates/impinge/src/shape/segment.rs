@@ -63,7 +63,7 @@ pub(super) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>)
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// The box around two points, grown by `reach`.
+/// The box around two points, grown by `reach`; that of everything where the numbers end.
 pub(super) fn box_of<N: Real, const D: usize>(
     a: &Point<N, D>,
     b: &Point<N, D>,
@@ -71,7 +71,8 @@ pub(super) fn box_of<N: Real, const D: usize>(
 ) -> Aabb<N, D> {
     let reach = Vector::<N, D>::repeat(reach);
     let (low, high) = (a.coords.zip_map(&b.coords, min), a.coords.zip_map(&b.coords, max));
-    Aabb::new(Point::from(low - reach), Point::from(high + reach))
+    Aabb::try_new(Point::from(low - reach), Point::from(high + reach))
+        .unwrap_or_else(|_| Aabb::unbounded())
 }
 
 impl<N: Real, const D: usize> SupportMap<N, D> for Segment<N, D> {

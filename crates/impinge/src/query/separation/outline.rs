@@ -35,7 +35,13 @@ impl<N: Real> Outline<N> {
         }
     }
 
-    fn new(vertices: SmallVec<[Point<N, 2>; 8]>, rounding: N) -> Self {
+    /// Vertices that repeat the one before count once: beside a side of no length there would be no
+    /// [`Self::tip`].
+    fn new(mut vertices: SmallVec<[Point<N, 2>; 8]>, rounding: N) -> Self {
+        vertices.dedup();
+        if vertices.len() > 1 && vertices.first() == vertices.last() {
+            vertices.pop();
+        }
         let mut outline = Self { vertices, normals: SmallVec::new(), rounding };
         for at in 0..outline.vertices.len() {
             let [from, to] = outline.side(at);
