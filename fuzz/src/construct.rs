@@ -105,9 +105,14 @@ fn boxes<N: Space<D>, const D: usize>(bytes: &mut Bytes<'_>) {
     let ray = Ray::new(Point::from(bytes.vector::<N, D>()), bytes.vector());
     let hit: Vec<usize> =
         (0..shifted.len()).filter(|&index| shifted[index].ray_interval(&ray).is_some()).collect();
+    let is_ray = ray.origin.iter().chain(ray.dir.iter()).all(|x| x.is_finite_number());
+    let hit = if is_ray { hit } else { Vec::new() };
     assert_eq!(tree.hit_by(&ray), hit, "{ray:?} {shifted:?}");
     let point = Point::from(bytes.vector::<N, D>());
     let _ = tree.containing(&point);
+    if !point.iter().all(|x| x.is_finite_number()) {
+        return;
+    }
     let nearest = tree.nearest(&point, N::INFINITY).map(|(_, distance)| distance);
     let distances = shifted.iter().map(|own| own.distance_to_point(&point));
     let least = distances.filter(|distance| *distance <= N::INFINITY).reduce(impinge::math::min);

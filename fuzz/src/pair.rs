@@ -220,7 +220,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         let (depth, distance) = (contact.depth, self.distance());
         assert_eq!(max(-depth, N::ZERO), distance, "{contact:?} of\n{self:?}");
         let length = contact.normal.norm();
-        assert!((length - N::ONE).abs() <= N::EPSILON * N::lit(16.0), "{contact:?} of\n{self:?}");
+        assert!((length - N::ONE).abs() <= N::EPSILON * N::lit(64.0), "{contact:?} of\n{self:?}");
         let error = contact.world2 - (contact.world1 - *contact.normal * depth);
         assert!(error.norm() <= self.tolerance(), "{contact:?} of\n{self:?}");
     }

@@ -47,7 +47,7 @@ impl Task for Rays {
             assert!(hit.toi >= N::ZERO && hit.toi.is_finite_number(), "{hit:?} {}", context());
             assert!(hit.part < parts_of(&*shape).unwrap_or(1), "{hit:?} {}", context());
             let length = hit.normal.norm();
-            let is_unit = (length - N::ONE).abs() <= N::EPSILON * N::lit(16.0);
+            let is_unit = (length - N::ONE).abs() <= N::EPSILON * N::lit(64.0);
             let is_turned = Pose::from_isometry(&m).is_finite();
             assert!(
                 (is_unit && is_turned) || !bytes.is_moderate() || length == N::ZERO,

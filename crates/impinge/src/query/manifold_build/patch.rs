@@ -175,7 +175,8 @@ fn reduce_patch<N: Space<D>, const D: usize>(
     patch.points.sort_by_key(|point| point.raw.id);
 }
 
-/// The points of a patch that the request asks for.
+/// The points of a patch that the request asks for; the first, which is the deepest, always, also where
+/// its coordinates are no numbers.
 fn members<N: Real, const D: usize>(
     patch: &Patch<N, D>,
     kept: Vec<Option<u32>>,
@@ -184,16 +185,17 @@ fn members<N: Real, const D: usize>(
 ) -> Vec<Member<N, D>> {
     let origin: Point<N, D> = patch.points[0].raw.point1;
     let ManifoldRequest { prediction, sine, .. } = *merging.request;
-    let member = |(point, kept_id): (&PatchPoint<N, D>, Option<u32>)| {
+    let member = |(at, (point, kept_id)): (usize, (&PatchPoint<N, D>, Option<u32>))| {
         let raw = &point.raw;
-        let arm = raw.point1 - origin;
+        let is_first = at == 0;
+        let arm = if is_first { Vector::<N, D>::zeros() } else { raw.point1 - origin };
         let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
         let (point1, features) = (raw.point1, [raw.feature1, raw.feature2]);
-        let asked = raw.distance <= prediction + sine * flat.norm();
+        let asked = is_first || raw.distance <= prediction + sine * flat.norm();
         let candidate = Candidate { point1, distance: raw.distance, flat, features, kept_id };
         asked.then_some(Member { candidate, parts: point.parts })
     };
-    patch.points.iter().zip(kept).filter_map(member).collect()
+    patch.points.iter().zip(kept).enumerate().filter_map(member).collect()
 }
 
 /// The points on the outline of all, each once; and the deepest, if no point of the outline is at

@@ -144,13 +144,24 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             standing
         }
     };
-    if raw.points.is_empty() {
+    if overlooks(&raw, &found, placed.tolerance()) {
         standing = Standing::Left;
         build_between(&pair, &found, request, &mut raw);
     }
     let (patch, tolerance) = (placed.patch(&raw, parts), placed.tolerance());
     let face = verdicts[1].face().filter(|_| standing != Standing::Left);
     Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
+}
+
+/// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
+/// cut to where the other part is above it, may end beside the overlap.
+fn overlooks<N: Real, const D: usize>(
+    raw: &RawManifold<N, D>,
+    found: &Separation<N, D>,
+    tolerance: N,
+) -> bool {
+    let highest = if found.distance <= N::ZERO { tolerance } else { N::INFINITY };
+    !raw.points.iter().any(|point| point.distance <= highest)
 }
 
 /// What both surfaces together say.
