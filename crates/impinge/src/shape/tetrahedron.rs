@@ -8,7 +8,7 @@ use super::{
     ShapeHandle, SupportMap,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real, Vector, cross, max, unit};
+use crate::math::{Point, Pose, Real, Vector, unit};
 
 /// A tetrahedron whose least height is below so many epsilon of its size counts as flat.
 const FLAT: f64 = 4096.0;
@@ -108,10 +108,10 @@ impl Extent {
     fn of<N: Real>(corners: &[Point<N, 3>; 4]) -> Self {
         let [a, b, c, d] = scaled(corners);
         let (e, f, g) = (b - a, c - a, d - a);
-        let volume = cross(&e, &f).dot(&g);
-        let areas = [cross(&e, &f), cross(&f, &g), cross(&g, &e), cross(&(f - e), &(g - e))];
-        let area = areas.iter().fold(0.0, |most, area| max(area.norm(), most));
-        let size = max(max(e.norm(), f.norm()), g.norm());
+        let volume = e.cross(&f).dot(&g);
+        let areas = [e.cross(&f), f.cross(&g), g.cross(&e), (f - e).cross(&(g - e))];
+        let area = areas.iter().fold(0.0, |most: f64, area| most.max(area.norm()));
+        let size = e.norm().max(f.norm()).max(g.norm());
         let height = if area > 0.0 { volume.abs() / area } else { 0.0 };
         Self { is_mirrored: volume < 0.0, size, height }
     }
@@ -125,12 +125,18 @@ impl Extent {
 /// The corners as doubles, relative to the first, divided by a power of two near their size.
 pub(super) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
-    let size = corners.iter().fold(0.0, |size, corner| max(corner.amax(), size));
     // Twice: the difference of two large ones may overflow, and of two near ones is small.
-    let unit = size.power_of_two_below() * 2.0;
+    let unit = power_of_two_below(&corners) * 2.0;
     let from_first = corners.map(|corner| corner / unit - corners[0] / unit);
-    let size = from_first.iter().fold(0.0, |size, corner| max(corner.amax(), size));
-    from_first.map(|corner| corner / size.power_of_two_below())
+    let unit = power_of_two_below(&from_first);
+    from_first.map(|corner| corner / unit)
+}
+
+/// A power of two near the largest coordinate. Doubles serve shapes of every scalar, also where they
+/// are no scalar themselves.
+fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
+    let largest = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.amax()));
+    f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
 /// The vertices, edges and faces of four corners, whatever they span.
@@ -141,8 +147,8 @@ fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N
         .iter()
         .map(|face| {
             let [a, b, c] = [face[0], face[1], face[2]].map(|corner| places[corner]);
-            let normal = unit(&cross(&(b - a), &(c - a)));
-            normal.map_or_else(Vector::<f64, 3>::y, |(normal, _)| normal).map(N::lit)
+            let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
+            normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit)
         })
         .map(|normal| unit(&normal).map_or(normal, |(normal, _)| normal))
         .collect();

@@ -3,7 +3,7 @@
 use super::tetrahedron::{EDGES, scaled};
 use super::tilt::Tilt;
 use super::{Feature, FeatureId};
-use crate::math::{Point, Real, Vector, cross, max, unit};
+use crate::math::{Point, Real, Vector, unit};
 
 /// Corners nearer to a line than so many epsilon of the size lie on it.
 const STRAIGHT: f64 = 4096.0;
@@ -106,17 +106,18 @@ impl<N: Real> Outline<N> {
 fn widest_normal(places: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
     let [a, b, c, d] = places;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
-    let across = triangles.map(|[a, b, c]| cross(&(b - a), &(c - a)));
-    unit(&across.into_iter().fold(Vector::<f64, 3>::zeros(), |most, area| {
+    let across = triangles.map(|[a, b, c]| (b - a).cross(&(c - a)));
+    let widest = across.into_iter().fold(Vector::<f64, 3>::zeros(), |most, area| {
         if area.norm() > most.norm() { area } else { most }
-    }))
+    });
+    widest.try_normalize(0.0).map(|normal| (normal, widest.norm()))
 }
 
 /// The corners that no side passes outside of, in order around the normal.
 fn ring(places: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, noise: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
         let side = places[b] - places[a];
-        cross(&side, &(places[c] - places[a])).dot(normal) >= -noise * side.norm()
+        side.cross(&(places[c] - places[a])).dot(normal) >= -noise * side.norm()
     };
     let side_from = |a: usize, taken: &[u32]| {
         let leads = |b: &usize| {
@@ -163,5 +164,5 @@ fn ends(places: &[Vector<f64, 3>; 4]) -> Vec<u32> {
     let [a, b] = EDGES
         .into_iter()
         .fold([0, 1], |best, ends| if apart(ends) > apart(best) { ends } else { best });
-    if max(apart([a, b]), 0.0) > 0.0 { vec![a, b] } else { vec![0] }
+    if apart([a, b]) > 0.0 { vec![a, b] } else { vec![0] }
 }

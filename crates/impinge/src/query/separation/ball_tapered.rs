@@ -1,7 +1,7 @@
 //! Ball against tapered capsule: in closed form, in any dimension.
 
 use super::projection::{
-    Projection, center_in_second, first_axis, made_perpendicular, perpendicular_to,
+    Projection, center_in_second, first_axis, made_perpendicular, noise, perpendicular_to,
 };
 use super::wrong_kinds;
 use crate::convex::Separation;
@@ -53,7 +53,8 @@ pub(in crate::query) fn project<N: Real, const D: usize>(
     (Projection { distance, outward, point: nearest }, FeatureId::Edge(0))
 }
 
-/// A point seen from one of the balls; `fallback` is the way out from its centre.
+/// A point seen from one of the balls; `fallback` is the way out from its centre, which also serves
+/// where the offset from there is mostly rounding.
 fn around_end<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     end: usize,
@@ -62,6 +63,8 @@ fn around_end<N: Real, const D: usize>(
 ) -> (Projection<N, D>, FeatureId) {
     let (center, radius) = (capsule.end(end), capsule.radii()[end]);
     let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
+    let is_certain = away > noise(center.coords.norm());
+    let outward = if is_certain { outward } else { *fallback };
     let name = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
     let nearest = center + outward * radius;
     (Projection { distance: away - radius, outward, point: nearest }, name)

@@ -157,13 +157,15 @@ fn direct_axis<N: Real>(
     best: &Axis<N>,
     noise: N,
 ) -> Axis<N> {
+    // What the rounding of the gaps adds up to; the direction of close points loses far more.
+    let slack = N::lit(8.0) * noise;
     let between = points.1 - points.0;
     let beside = (between - best.normal * best.gap).norm();
     let direct = unit(&between)
         .filter(|_| beside > noise)
         .map(|(normal, length)| (length, axis(outline1, outline2, normal)));
     match direct {
-        Some((gap, direct)) if direct.gap + noise >= best.gap => Axis { gap, ..direct },
+        Some((gap, direct)) if direct.gap + slack >= best.gap => Axis { gap, ..direct },
         _ => *best,
     }
 }
