@@ -255,7 +255,7 @@ fn surfaces_and_neighbours_are_those_of_the_child() {
         assert!(!surface.faces(part, &Point::<f64, 3>::new(0.0, 1.0, 0.0)), "behind");
     }
     assert!(surface.admits(0, FeatureId::Face(0), &oblique), "a ball has all normals");
-    assert_eq!(surface.snapped(0, &oblique), Some(oblique), "and keeps them");
+    assert_eq!(surface.snapped(0, &oblique), None, "and none stands for another");
     assert!(compound.are_adjacent(1, 2) && !compound.are_adjacent(1, 5), "within one floor only");
     assert!(!compound.are_adjacent(0, 1), "a ball hangs on nothing");
     let mut path = PartPath::new();
