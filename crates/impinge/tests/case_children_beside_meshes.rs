@@ -3,7 +3,7 @@
 
 use impinge::math::{Isometry, Isometry2, Isometry3, Point, Vector};
 use impinge::query::contact;
-use impinge::shape::{Compound, Cuboid, Segment, Shape, ShapeHandle, TriMesh};
+use impinge::shape::{Compound, Cuboid, Segment, Shape, ShapeHandle, TriMesh, Triangle};
 
 /// Where the other solid lies to the child decided about its normal, and was even taken for it, with
 /// its length: a depth of 8.7 where there was one of 3.
@@ -28,6 +28,19 @@ fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
             }
         }
     }
+}
+
+/// The middle of the triangle lies above that of the bar, but the way out of it is down.
+#[test]
+fn contacts_away_from_the_middle_of_the_other() {
+    let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);
+    let bar = ShapeHandle::new(Cuboid::new(Vector::<f32, 2>::new(50.0, 10.0)));
+    let (child, beside) =
+        ((Isometry2::identity(), bar), (Isometry2::identity(), ShapeHandle::new(mesh)));
+    let (alone, both) = (Compound::new(vec![child.clone()]), Compound::new(vec![beside, child]));
+    let corners = [[30.0, 9.0], [40.0, 9.0], [35.0, -10.0]];
+    let [a, b, c] = corners.map(|[x, y]| Point::<f32, 2>::new(x, y));
+    same_contact(&alone, &both, &Isometry2::identity(), &Triangle::new(a, b, c));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use super::bounds::{Body, Moment, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion};
+use core::iter;
+
 use crate::math::{Pose, Space, Unit, Vector, max, max_component};
 use crate::query::Pair;
 use crate::query::composite::{Between, PartSeparation, Wanted, nearest_between};
@@ -102,16 +104,23 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     Some(if swapped { found.flipped() } else { found })
 }
 
-/// Of two bodies that are the same at time zero, the second comes first, by where they are later.
+/// Of two bodies that are the same at time zero, the second comes first, by where they are when they
+/// differ: at the longest time or, if there is none, at one of the times 1, 2¹⁶, 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
     one: &Body<'_, N, D>,
     two: &Body<'_, N, D>,
     options: &ImpactOptions<N>,
 ) -> bool {
-    let time = if options.max_time.is_finite_number() { options.max_time } else { N::ONE };
     let world = Vector::<N, D>::zeros();
-    let [later1, later2] = [one, two].map(|body| body.placed(&world, time));
-    canonical(&later1.pose, later1.shape, &later2.pose, later2.shape).1
+    let later = |time| [one, two].map(|body| body.placed(&world, time));
+    let first = if options.max_time.is_finite_number() { options.max_time } else { N::ONE };
+    let next = |time: &N| (first != options.max_time).then(|| *time * N::lit(65536.0));
+    // 64 times at most, when the numbers end.
+    let times = iter::successors(Some(first), next).take_while(|time| time.is_finite_number());
+    let apart = times.map(later).find(|[later1, later2]| !indistinguishable(later1, later2));
+    apart.is_some_and(|[later1, later2]| {
+        canonical(&later1.pose, later1.shape, &later2.pose, later2.shape).1
+    })
 }
 
 impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {

@@ -45,6 +45,22 @@ impl<N: Real> Section<N> {
         outward.dot(p) - max(outward.dot(&self.apex), outward.dot(&self.rim))
     }
 
+    /// How far `p` is above a side at least, and the normal of that side.
+    ///
+    /// Sideways and up are tried too, after the sides: a cone without height or radius has no side
+    /// there, and its end would not be seen.
+    fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
+        let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
+        let mut best = (self.height(&-y, p), -y);
+        for outward in [self.slant, x, y] {
+            let height = self.height(&outward, p);
+            if height > best.0 {
+                best = (height, outward);
+            }
+        }
+        best
+    }
+
     /// The point of the outline nearest to `p`.
     fn nearest(&self, p: &Vector<N, 2>) -> Vector<N, 2> {
         let p = Point::from(*p);
@@ -61,9 +77,7 @@ impl<N: Real> Section<N> {
 fn project<N: Real>(cone: &Cone<N>, center: &Point<N, 3>) -> Projection<N, 3> {
     let (section, plane) = (Section::of(cone), HalfPlane::of(center));
     let p = plane.point;
-    let down = -Vector::<N, 2>::y();
-    let (below, beside) = (section.height(&down, &p), section.height(&section.slant, &p));
-    let (flat, outward) = if beside > below { (beside, section.slant) } else { (below, down) };
+    let (flat, outward) = section.highest(&p);
     if flat > N::ZERO {
         let point = section.nearest(&p);
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
