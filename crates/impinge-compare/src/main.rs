@@ -1,36 +1,37 @@
-//! Rivals side by side: the same scenes, the same questions, stepped alternately in one process on
-//! one thread.
+//! Rivals side by side: the same scenes, the same questions, alternately in one process on one
+//! thread.
 //!
-//! `impinge-compare [objects [steps [machine]]]` prints a table and writes it to
-//! `bench/<machine>/compare.csv`. Per step, each contender is told the new poses of what moved,
-//! updates, and reads every contact point; only this is timed, by the processor time of the thread.
-//! Looking up the poses and converting them is not. On every tenth step the touching pairs of both
-//! are compared, and the table says by how many they differ: a time for another answer is no time.
+//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
+//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
+//! Before it prints a time it compares the answers: each row says by how many they differ from ours.
+//! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
 //!
 //! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
-//!
-//! Both sides use `f32`, the same prediction and as good as the same loosening of boxes.
 
 mod accuracy;
-mod contender;
-mod ours;
-mod rapier2;
-mod rapier3;
-mod report;
+mod measure;
+mod table;
+mod world;
 
-use contender::{Contender, race};
-use impinge_scenes::{Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift};
-use report::{Row, print_header, print_rows, write_csv};
+use table::Table;
 
-/// Two objects whose distance is at most this have contact points: the sum of what the objects of
-/// the scenes ask for.
-const PREDICTION: f32 = 0.002;
+/// A suite, by name.
+type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
+
+/// The suites, in the order in which `all` runs them.
+const SUITES: &[Suite] = &[("world", world::run)];
 
 /// What the command line asks for.
-struct Arguments {
+#[derive(Clone, Debug)]
+pub struct Arguments {
+    /// How many objects there are in scenes whose size is not part of the case.
     objects: usize,
+    /// How many steps or rounds make a run.
     steps: u32,
+    /// The folder below `bench/`.
     machine: String,
+    /// The suites asked for.
+    suites: Vec<String>,
 }
 
 fn main() {
@@ -41,59 +42,46 @@ fn main() {
         return;
     }
     let arguments = arguments();
-    print_header(&arguments);
-    let n = arguments.objects;
-    let mut rows = Vec::new();
-    for scene in scenes::<2>(n) {
-        let rival = rapier2::Rapier::new(&scene);
-        run(&scene, &mut ours::plane(&scene), rival, &arguments, &mut rows);
+    let is_wanted =
+        |name: &str| arguments.suites.iter().any(|wanted| wanted == "all" || wanted == name);
+    for (_, run) in SUITES.iter().filter(|(name, _)| is_wanted(name)) {
+        for table in run(&arguments) {
+            match table.write(&arguments.machine) {
+                Ok(path) => println!("written to {}", path.display()),
+                Err(error) => eprintln!("the table could not be written: {error}"),
+            }
+        }
     }
-    for scene in scenes::<3>(n) {
-        let rival = rapier3::Rapier::new(&scene);
-        run(&scene, &mut ours::space(&scene), rival, &arguments, &mut rows);
-    }
-    match write_csv(&arguments.machine, &rows) {
-        Ok(path) => println!("\nwritten to {}", path.display()),
-        Err(error) => eprintln!("the table could not be written: {error}"),
-    }
-}
-
-/// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
-fn scenes<const D: usize>(n: usize) -> [Scene<D>; 4] {
-    let linear = f64::from(PREDICTION) / 2.0;
-    let mut scenes = [pile(n), sparse_drift(n), few_moving(n), mixed_shapes(n)];
-    for object in scenes.iter_mut().flat_map(|scene| &mut scene.objects) {
-        object.query = SceneQuery::Contacts { linear, angular: 0.0 };
-    }
-    scenes
-}
-
-/// Runs one scene, prints its part of the table and keeps it.
-fn run<const D: usize>(
-    scene: &Scene<D>,
-    ours: &mut dyn Contender<D>,
-    mut rival: impl Contender<D>,
-    arguments: &Arguments,
-    rows: &mut Vec<Row>,
-) {
-    let result = race(scene, [ours, &mut rival], arguments.steps);
-    let found = Row::of(scene, &result);
-    print_rows(&found);
-    rows.extend(found);
 }
 
 fn arguments() -> Arguments {
+    let mut arguments =
+        Arguments { objects: 10_000, steps: 100, machine: "local".to_owned(), suites: Vec::new() };
     let mut words = std::env::args().skip(1);
-    let mut number = |default: u32| match words.next() {
-        Some(word) => word.parse().unwrap_or_else(|_| usage(&word)),
-        None => default,
-    };
-    let (objects, steps) = (number(10_000), number(100));
-    let machine = words.next().unwrap_or_else(|| "local".to_owned());
-    Arguments { objects: objects as usize, steps, machine }
+    while let Some(word) = words.next() {
+        let mut value = || words.next().unwrap_or_else(|| usage(&word));
+        let number = |text: String| text.parse().unwrap_or_else(|_| usage(&text));
+        match word.as_str() {
+            "--objects" => arguments.objects = number(value()) as usize,
+            "--steps" => arguments.steps = number(value()),
+            "--machine" => arguments.machine = value(),
+            name if name == "all" || SUITES.iter().any(|suite| suite.0 == name) => {
+                arguments.suites.push(word);
+            }
+            other => usage(other),
+        }
+    }
+    if arguments.suites.is_empty() {
+        usage("nothing");
+    }
+    arguments
 }
 
 fn usage(word: &str) -> ! {
-    eprintln!("{word} is not a number\nusage: impinge-compare [objects [steps [machine]]]\n       impinge-compare accuracy [samples]");
+    let suites: Vec<_> = SUITES.iter().map(|suite| suite.0).collect();
+    eprintln!("{word} is not understood");
+    eprintln!("usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]");
+    eprintln!("       impinge-compare accuracy [samples]");
+    eprintln!("suites: all {}", suites.join(" "));
     std::process::exit(2)
 }

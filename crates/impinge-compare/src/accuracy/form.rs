@@ -184,19 +184,42 @@ fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> 
 /// A solid in its own frame.
 #[derive(Clone, Debug)]
 pub enum Form<const D: usize> {
-    Ball { radius: f64 },
-    Cuboid { half_extents: [f64; D] },
-    Capsule { half_height: f64, radius: f64 },
+    Ball {
+        radius: f64,
+    },
+    Cuboid {
+        half_extents: [f64; D],
+    },
+    Capsule {
+        half_height: f64,
+        radius: f64,
+    },
     Segment([[f64; D]; 2]),
     Triangle([[f64; D]; 3]),
     Convex(Vec<[f64; D]>),
-    Cylinder { half_height: f64, radius: f64 },
-    Cone { half_height: f64, radius: f64 },
-    Ellipsoid { half_axes: [f64; D] },
+    Cylinder {
+        half_height: f64,
+        radius: f64,
+    },
+    Cone {
+        half_height: f64,
+        radius: f64,
+    },
+    Ellipsoid {
+        half_axes: [f64; D],
+    },
     /// A ball at minus the half height along the second axis, then one at plus that.
-    Tapered { half_height: f64, radii: [f64; 2] },
-    RoundCuboid { half_extents: [f64; D], radius: f64 },
-    HalfSpace { normal: [f64; D] },
+    Tapered {
+        half_height: f64,
+        radii: [f64; 2],
+    },
+    RoundCuboid {
+        half_extents: [f64; D],
+        radius: f64,
+    },
+    HalfSpace {
+        normal: [f64; D],
+    },
 }
 
 impl<const D: usize> Form<D> {

@@ -118,9 +118,8 @@ fn attempt<const D: usize>(
     random: &mut Random,
 ) -> Option<Known<D>> {
     let forms = kinds.map(|kind| kind.draw::<D>(random, scalar));
-    let solids = [0, 1].map(|i: usize| {
-        forms[i].solid().unwrap_or_else(|| (dimension.particular)(&forms[i]))
-    });
+    let solids = [0, 1]
+        .map(|i: usize| forms[i].solid().unwrap_or_else(|| (dimension.particular)(&forms[i])));
     let radii = [0, 1].map(|i: usize| {
         let radius = solids[i].bounding_radius();
         if radius.is_finite() { radius } else { 0.0 }
@@ -129,7 +128,8 @@ fn attempt<const D: usize>(
     let turns = turns(random);
     let rotations = turns.map(|turn| (dimension.rotation)(random, scalar, turn));
     let at1 = scalar.vector(&random.vector(1.0));
-    let is_deep = regime == Regime::Deep && kinds[0] != Kind::HalfSpace && kinds[1] != Kind::HalfSpace;
+    let is_deep =
+        regime == Regime::Deep && kinds[0] != Kind::HalfSpace && kinds[1] != Kind::HalfSpace;
     // Apart or touching, or one in the middle of the other.
     let away = if is_deep { random.range(0.0, 0.3) * radii[0].min(radii[1]) } else { reach };
     let at2 = scalar.vector(&add(&at1, &scale(&random.unit_vector(), away)));

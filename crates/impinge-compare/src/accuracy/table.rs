@@ -59,13 +59,8 @@ fn csv(rows: &[Row]) -> String {
             let numbers = |list: &[f64]| {
                 extremes(list).map_or(",".to_owned(), |[p, most]| format!("{p:.3e},{most:.3e}"))
             };
-            let counts = [
-                errors.asked,
-                row.dropped,
-                errors.unsupported,
-                errors.missing,
-                errors.wrong_sign,
-            ];
+            let counts =
+                [errors.asked, row.dropped, errors.unsupported, errors.missing, errors.wrong_sign];
             let counts = counts.map(|count| count.to_string()).join(",");
             writeln!(
                 text,

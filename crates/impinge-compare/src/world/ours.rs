@@ -10,7 +10,7 @@ use impinge::shape::{
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
-use crate::contender::{Contender, Reading};
+use super::contender::{Contender, Reading};
 
 type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 

@@ -1,4 +1,4 @@
-//! rapier's `CollisionPipeline` in the plane; the twin of `rapier3` with other constructors.
+//! rapier's `CollisionPipeline` in space; the twin of `rapier2` with other constructors.
 //!
 //! Set up as in the tests of that pipeline: colliders without bodies,
 //! which cost it less than kinematic ones, all collision types active (colliders without bodies are
@@ -6,10 +6,10 @@
 //! and no events. Its boxes are loosened by 0.04, as those of the scenes are.
 
 use impinge_scenes::{Placement, Scene, SceneShape};
-use rapier2d::prelude::*;
+use rapier3d::prelude::*;
 
-use crate::PREDICTION;
-use crate::contender::{Contender, Reading};
+use super::PREDICTION;
+use super::contender::{Contender, Reading};
 
 /// A world of rapier.
 pub struct Rapier {
@@ -25,7 +25,7 @@ pub struct Rapier {
 
 impl Rapier {
     /// A world with the objects of a scene as they are at step 0.
-    pub fn new(scene: &Scene<2>) -> Self {
+    pub fn new(scene: &Scene<3>) -> Self {
         let mut colliders = ColliderSet::new();
         let handles = (0..scene.objects.len()).map(|n| {
             let collider = builder(&scene.objects[n].shape)
@@ -52,11 +52,11 @@ impl Rapier {
     }
 }
 
-fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
+fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
     match shape {
         SceneShape::Ball { radius } => ColliderBuilder::ball(*radius as f32),
-        SceneShape::Cuboid { half_extents: [x, y] } => {
-            ColliderBuilder::cuboid(*x as f32, *y as f32)
+        SceneShape::Cuboid { half_extents: [x, y, z] } => {
+            ColliderBuilder::cuboid(*x as f32, *y as f32, *z as f32)
         }
         SceneShape::Capsule { half_height, radius } => {
             ColliderBuilder::capsule_y(*half_height as f32, *radius as f32)
@@ -65,40 +65,38 @@ fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
             ColliderBuilder::new(SharedShape::halfspace(vector(normal)))
         }
         SceneShape::Segment { ends: [a, b] } => ColliderBuilder::segment(vector(a), vector(b)),
-        SceneShape::Triangle { corners } => {
-            let [a, b, c] = counter_clockwise(*corners);
-            ColliderBuilder::triangle(vector(&a), vector(&b), vector(&c))
+        SceneShape::Triangle { corners: [a, b, c] } => {
+            ColliderBuilder::triangle(vector(a), vector(b), vector(c))
         }
         SceneShape::Convex { points } => {
             let points: Vec<_> = points.iter().map(vector).collect();
             ColliderBuilder::convex_hull(&points).expect("the points span all dimensions")
         }
-        SceneShape::Cylinder { .. } | SceneShape::Cone { .. } => unreachable!("not of the plane"),
+        SceneShape::Cylinder { half_height, radius } => {
+            ColliderBuilder::cylinder(*half_height as f32, *radius as f32)
+        }
+        SceneShape::Cone { half_height, radius } => {
+            ColliderBuilder::cone(*half_height as f32, *radius as f32)
+        }
     }
 }
 
-/// The order that rapier counts on: of a clockwise triangle it misses contacts.
-fn counter_clockwise([a, b, c]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
-    let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if turn < 0.0 { [a, c, b] } else { [a, b, c] }
-}
-
-fn vector(v: &[f64; 2]) -> Vector {
+fn vector(v: &[f64; 3]) -> Vector {
     Vector::from(v.map(|x| x as f32))
 }
 
-fn pose(placement: &Placement<2>) -> Pose {
-    let [x, y] = placement.translation.map(|x| x as f32);
-    let [cosine, sine] = placement.complex().map(|x| x as f32);
-    Pose::from_parts(Vector::new(x, y), Rotation::from_cos_sin_unchecked(cosine, sine))
+fn pose(placement: &Placement<3>) -> Pose {
+    let [x, y, z] = placement.translation.map(|x| x as f32);
+    let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
+    Pose::from_parts(Vector::new(x, y, z), Rotation::from_xyzw(i, j, k, w))
 }
 
-impl Contender<2> for Rapier {
+impl Contender<3> for Rapier {
     fn name(&self) -> &'static str {
         "rapier"
     }
 
-    fn prepare(&mut self, moved: &[(usize, Placement<2>)]) {
+    fn prepare(&mut self, moved: &[(usize, Placement<3>)]) {
         self.moved.clear();
         self.moved.extend(moved.iter().map(|(n, placement)| (self.handles[*n], pose(placement))));
     }

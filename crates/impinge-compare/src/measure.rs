@@ -1,0 +1,55 @@
+//! Clocks and quantiles: the processor time of the calling thread, contenders in turn.
+
+use cpu_time::ThreadTime;
+
+/// The times of one contender, in the unit of the caller.
+#[derive(Clone, Debug, Default)]
+pub struct Times(Vec<f64>);
+
+impl Times {
+    /// Keeps one more.
+    pub fn push(&mut self, time: f64) {
+        self.0.push(time);
+    }
+
+    /// The time that a percentage of them do not exceed; NaN of none.
+    pub fn quantile(&self, percent: usize) -> f64 {
+        let mut times = self.0.clone();
+        times.sort_unstable_by(f64::total_cmp);
+        let last = times.len().saturating_sub(1);
+        times.get(last * percent / 100).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The median.
+    pub fn median(&self) -> f64 {
+        self.quantile(50)
+    }
+}
+
+/// The processor time that some work takes this thread, in nanoseconds, and what came of it.
+pub fn timed<R>(work: impl FnOnce() -> R) -> (f64, R) {
+    let start = ThreadTime::now();
+    let result = work();
+    (start.elapsed().as_secs_f64() * 1e9, result)
+}
+
+/// Runs the contenders in turn, so many rounds; each round begins with the next of them, so that none
+/// always finds the caches as the same other left them. The first round is not kept. The times are
+/// nanoseconds divided by `operations`, the number of operations of one call.
+pub fn in_turn(
+    rounds: usize,
+    operations: usize,
+    contenders: &mut [&mut dyn FnMut()],
+) -> Vec<Times> {
+    let count = contenders.len();
+    let mut times = vec![Times::default(); count];
+    for round in 0..=rounds {
+        for n in (0..count).map(|n| (n + round) % count) {
+            let (time, ()) = timed(&mut *contenders[n]);
+            if round > 0 {
+                times[n].push(time / operations as f64);
+            }
+        }
+    }
+    times
+}
