@@ -6,6 +6,9 @@ const PER_LINE: usize = 8;
 const INLINE: usize = PER_LINE - 1;
 /// The class of a run that is not there.
 const NO_RUN: u32 = 31;
+/// The class from which on an object is heavy: more than 39 links came. It stays so until its run
+/// is given back, so that objects do not come and go between the two.
+const HEAVY: u32 = 3;
 
 /// One end of a pair, as the object at the other end sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,17 +137,24 @@ impl Lines {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Adds a link and says at which place.
+    /// The object has so many links that it should not be searched.
     #[inline]
-    pub(super) fn push(&mut self, object: u32, link: Link) -> u32 {
+    pub(super) fn is_heavy(&self, object: u32) -> bool {
+        self.heads.get(object as usize).is_some_and(|head| (HEAVY..NO_RUN).contains(&head.class()))
+    }
+
+    /// Adds a link and says at which place, and whether the object became heavy by it.
+    #[inline]
+    pub(super) fn push(&mut self, object: u32, link: Link) -> (u32, bool) {
         let head = &mut self.heads[object as usize];
         let count = head.count();
-        if count as usize == head.capacity() {
+        let is_full = count as usize == head.capacity();
+        if is_full {
             self.enlarge(object);
         }
         self.heads[object as usize].set_count(count + 1);
         *self.link_mut(object, count) = link;
-        count
+        (count, is_full && self.heads[object as usize].class() == HEAVY)
     }
 
     /// Gives the object a run, or moves its run to one of twice the size.

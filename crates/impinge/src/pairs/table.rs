@@ -1,17 +1,20 @@
 //! The table of pairs.
 
+use super::heavy::Heavy;
 use super::lines::{Lines, Link, small};
 
 /// A set of unordered pairs; see the module's page for its layout.
 ///
-/// A number may be paired with any number, itself included. Finding a pair costs the smaller of the two
-/// partner counts; adding and removing by index cost constant time.
+/// A number may be paired with any number, itself included. Finding, adding and removing a pair cost
+/// constant time.
 #[derive(Clone, Debug, Default)]
 pub struct PairTable {
     pairs: Vec<(u32, u32)>,
     /// Where the links of the two ends stand among the links of those objects, by pair.
     places: Vec<(u32, u32)>,
     lines: Lines,
+    /// The pairs whose two ends are both heavy.
+    heavy: Heavy,
 }
 
 /// The outcome of [`PairTable::insert`].
@@ -97,6 +100,9 @@ impl PairTable {
     pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.lines.count(a) <= self.lines.count(b);
         let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
+        if self.lines.is_heavy(from) && self.lines.is_heavy(to) {
+            return self.heavy.get(pack(a, b)).map(|index| index as usize);
+        }
         let link = self.lines.links(from).find(|link| link.partner == to)?;
         Some(link.pair as usize)
     }
@@ -112,17 +118,57 @@ impl PairTable {
     /// Adds a pair that the caller knows not to be there; constant time.
     pub fn insert_new(&mut self, a: u32, b: u32) -> usize {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
+        let index = self.pairs.len();
+        self.pairs.push((a, b));
+        self.places.push((0, 0));
+        self.link(index, a, b);
+        index
+    }
+
+    /// Takes out the pair that stands at `index` and puts another, which the caller knows not to be
+    /// there, in its place: no other pair moves. Constant time.
+    ///
+    /// # Panics
+    /// If `index` is not below [`Self::len`].
+    pub fn replace_at(&mut self, index: usize, a: u32, b: u32) {
+        self.unlink_pair(index);
+        debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
+        self.link(index, a, b);
+    }
+
+    /// Writes the pair to `index` and gives both ends their links.
+    fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         self.lines.reach(high);
-        let pair = small(self.pairs.len());
-        let low_place = self.lines.push(low, Link { partner: high, pair });
+        let pair = small(index);
+        let (low_place, low_grew) = self.lines.push(low, Link { partner: high, pair });
         // A number paired with itself has one link, which stands for both ends.
-        let is_alone = low == high;
-        let high_place =
-            if is_alone { low_place } else { self.lines.push(high, Link { partner: low, pair }) };
-        self.pairs.push((low, high));
-        self.places.push((low_place, high_place));
-        self.pairs.len() - 1
+        let (high_place, high_grew) = if low == high {
+            (low_place, false)
+        } else {
+            self.lines.push(high, Link { partner: low, pair })
+        };
+        self.pairs[index] = (low, high);
+        self.places[index] = (low_place, high_place);
+        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
+            self.heavy.set(pack(low, high), index);
+        }
+        for (object, grew) in [(low, low_grew), (high, high_grew)] {
+            if grew {
+                self.became_heavy(object);
+            }
+        }
+    }
+
+    /// Enters the pairs of an object with heavy ones. It has few links yet: this comes with the one
+    /// that made it heavy.
+    #[cold]
+    fn became_heavy(&mut self, object: u32) {
+        for link in self.lines.links(object) {
+            if self.lines.is_heavy(link.partner) {
+                self.heavy.set(pack(object, link.partner), link.pair as usize);
+            }
+        }
     }
 
     /// Takes the pair out, if it is there.
@@ -136,12 +182,7 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn remove_at(&mut self, index: usize) -> Removed {
-        let (low, high) = self.pairs[index];
-        let (low_place, high_place) = self.places[index];
-        self.unlink(low, low_place);
-        if low != high {
-            self.unlink(high, high_place);
-        }
+        self.unlink_pair(index);
         self.pairs.swap_remove(index);
         self.places.swap_remove(index);
         let was_last = index == self.pairs.len();
@@ -151,10 +192,29 @@ impl PairTable {
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
     }
 
+    /// Takes the links of the pair at `index` out.
+    #[inline]
+    fn unlink_pair(&mut self, index: usize) {
+        let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
+        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
+            self.heavy.remove(pack(low, high));
+        }
+        self.unlink(low, low_place);
+        if low != high {
+            self.unlink(high, high_place);
+        }
+    }
+
     /// Takes the link at `place` out of the object's links and tells the pair of the link that
     /// moved there.
+    #[inline]
     fn unlink(&mut self, object: u32, place: u32) {
-        let Some(moved) = self.lines.swap_remove(object, place) else { return };
+        let was_heavy = self.lines.is_heavy(object);
+        let moved = self.lines.swap_remove(object, place);
+        if was_heavy && !self.lines.is_heavy(object) {
+            self.became_light(object);
+        }
+        let Some(moved) = moved else { return };
         let places = &mut self.places[moved.pair as usize];
         if object <= moved.partner {
             places.0 = place;
@@ -164,11 +224,22 @@ impl PairTable {
         }
     }
 
+    /// Takes the few pairs that are left to an object from among those with heavy ones.
+    #[cold]
+    fn became_light(&mut self, object: u32) {
+        for link in self.lines.links(object) {
+            self.heavy.remove(pack(object, link.partner));
+        }
+    }
+
     /// Tells both links of the pair at `index` that it stands there.
     fn relink(&mut self, index: usize) {
         let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
         self.lines.link_mut(low, low_place).pair = small(index);
         self.lines.link_mut(high, high_place).pair = small(index);
+        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
+            self.heavy.set(pack(low, high), index);
+        }
     }
 
     /// Takes out every pair.
@@ -176,6 +247,7 @@ impl PairTable {
         self.pairs.clear();
         self.places.clear();
         self.lines.clear();
+        self.heavy.clear();
     }
 
     /// Checks every invariant of the layout; for tests.
@@ -187,6 +259,7 @@ impl PairTable {
         if self.places.len() != self.pairs.len() {
             return Err("places out of step with pairs".to_owned());
         }
+        let mut heavy = 0;
         for (index, (&(low, high), &(low_place, high_place))) in
             self.pairs.iter().zip(&self.places).enumerate()
         {
@@ -198,6 +271,14 @@ impl PairTable {
             if !(low <= high && from_low && from_high) {
                 return Err(format!("pair {index} = ({low}, {high}) is linked wrongly"));
             }
+            let is_heavy = self.lines.is_heavy(low) && self.lines.is_heavy(high);
+            if self.heavy.get(pack(low, high)) != is_heavy.then_some(pair) {
+                return Err(format!("pair {index} = ({low}, {high}) of heavy ones is lost"));
+            }
+            heavy += usize::from(is_heavy);
+        }
+        if heavy != self.heavy.len() {
+            return Err(format!("{heavy} pairs of heavy ones, {} listed", self.heavy.len()));
         }
         let links: usize = (0..small(self.lines.objects())).map(|a| self.count(a)).sum();
         let alone = self.pairs.iter().filter(|(low, high)| low == high).count();
@@ -281,6 +362,40 @@ mod tests {
         table.clear();
         table.validate().expect("sound");
         assert!(table.is_empty(), "cleared");
+    }
+
+    #[test]
+    fn many_objects_with_many_partners() {
+        // All pairs of 120 numbers: every one is heavy.
+        let mut table = PairTable::new();
+        for b in 0..120 {
+            (0..=b).for_each(|a| _ = table.insert(b, a));
+        }
+        table.validate().expect("sound");
+        assert_eq!(table.len(), 120 * 121 / 2, "each with each, and with itself");
+        // Removals and replacements until all but a few are light again.
+        let (mut state, mut set) = (3, BTreeSet::new());
+        set.extend(table.pairs().iter().map(|&(a, b)| pack(a, b)));
+        for step in 0..7000_u32 {
+            let (a, b) = (next(&mut state, 120), next(&mut state, 120));
+            let index = usize::try_from(next(&mut state, small(set.len()))).expect("small");
+            if table.index_of(a, b).is_none() && step % 8 == 0 {
+                let (old1, old2) = table.pairs()[index];
+                table.replace_at(index, a, b);
+                assert!(set.remove(&pack(old1, old2)) && set.insert(pack(a, b)), "step {step}");
+                assert_eq!(table.index_of(b, a), Some(index), "no pair moves");
+            } else {
+                let (old1, old2) = table.pairs()[index];
+                table.remove_at(index);
+                assert!(set.remove(&pack(old1, old2)), "step {step}");
+            }
+            if step % 250 == 0 {
+                table.validate().expect("sound");
+            }
+            assert_eq!(table.index_of(a, b).is_some(), set.contains(&pack(a, b)), "step {step}");
+        }
+        table.validate().expect("sound");
+        assert!((100..2000).contains(&table.len()), "{} pairs are left", table.len());
     }
 
     #[test]
