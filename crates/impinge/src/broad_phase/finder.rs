@@ -1,8 +1,9 @@
 //! The broad phase without the user's data: numbers and boxes in, changes of pairs out.
 
 use super::BroadPhaseError;
+use super::events::Verdict;
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::bvh::{Bounds, Joiner, Lanes, NONE, Tree};
+use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::math::Real;
 use crate::pairs::PairTable;
 
@@ -64,7 +65,13 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) still: Tree<D>,
     pub(super) unbounded: Vec<u32>,
     pub(super) pairs: PairTable,
-    pub(super) joiner: Joiner,
+    pub(super) joiner: Joiner<D>,
+    /// Objects whose pairs are to be looked through for those that ended: what the join sees of
+    /// them is not enough.
+    pub(super) searched: Vec<u32>,
+    /// Memory for an update.
+    pub(super) found: Changes,
+    pub(super) verdict: Verdict,
     pub(super) lanes: Lanes,
     /// Updates so far; wraps.
     pub(super) clock: u32,
@@ -105,6 +112,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             unbounded: Vec::new(),
             pairs: PairTable::new(),
             joiner: Joiner::default(),
+            searched: Vec::new(),
+            found: Changes::default(),
+            verdict: Verdict::default(),
             lanes,
             clock: 0,
             cursor: 0,
@@ -240,6 +250,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if is_bounded && self.homes[index] == Home::Moving {
             return self.moving.set(id, &loose);
         }
+        if !is_bounded || self.homes[index] == Home::Unbounded {
+            self.searched.push(id);
+        }
         self.leave_home(id);
         if is_bounded {
             self.homes[index] = Home::Moving;
@@ -275,6 +288,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             }
             self.mark(id, AGAIN, Bounds::NOWHERE);
             self.previous[id as usize] = Bounds::NOWHERE;
+            self.searched.push(id);
         }
         again.clear();
         self.again = again;
