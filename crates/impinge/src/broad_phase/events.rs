@@ -6,6 +6,9 @@ use crate::bvh::Changes;
 use crate::math::Real;
 use crate::pairs::{pack, unpack};
 
+/// Pairs whose ends are brought into the cache together.
+const AT_ONCE: usize = 16;
+
 /// What becomes of pairs in an update; packed pairs, ascending.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Verdict {
@@ -120,11 +123,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     fn overlap_before_and_now(&self, a: u32, b: u32) -> (bool, bool) {
-        let old = |id: u32| {
-            let is_changed = self.marks[id as usize] & CHANGED != 0;
-            if is_changed { &self.previous[id as usize] } else { &self.loose[id as usize] }
-        };
-        (old(a).overlaps(old(b)), self.loose[a as usize].overlaps(&self.loose[b as usize]))
+        let before = self.before(a).overlaps(&self.before(b));
+        (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
     /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
@@ -133,18 +133,25 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let Verdict { starting, stopped, events } = &mut self.verdict;
         let mut rest = starting.iter();
         stopped.clear();
-        for &key in ended {
-            let (a, b) = unpack(key);
-            // A pair that the filter refused is not there.
-            let Some(index) = self.pairs.index_of(a, b) else { continue };
-            stopped.push(key);
-            match rest.next().copied().map(unpack) {
-                Some((a, b)) => self.pairs.replace_at(index, a, b),
-                None => _ = self.pairs.remove_at(index),
+        for chunk in ended.chunks(AT_ONCE) {
+            self.pairs.fetch(chunk);
+            self.pairs.fetch(&rest.as_slice()[..rest.len().min(AT_ONCE)]);
+            for &key in chunk {
+                let (a, b) = unpack(key);
+                // A pair that the filter refused is not there.
+                let Some(index) = self.pairs.index_of(a, b) else { continue };
+                stopped.push(key);
+                match rest.next().copied().map(unpack) {
+                    Some((a, b)) => self.pairs.replace_at(index, a, b),
+                    None => _ = self.pairs.remove_at(index),
+                }
             }
         }
-        for (a, b) in rest.copied().map(unpack) {
-            self.pairs.insert_new(a, b);
+        for chunk in rest.as_slice().chunks(AT_ONCE) {
+            self.pairs.fetch(chunk);
+            for (a, b) in chunk.iter().copied().map(unpack) {
+                self.pairs.insert_new(a, b);
+            }
         }
         merge(stopped, starting, events);
     }

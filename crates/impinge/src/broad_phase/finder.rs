@@ -47,7 +47,7 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// As given, at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// The loosened box at the last update, for objects marked as changed.
+    /// The loosened box at the last update, for unbounded objects marked as changed.
     pub(super) previous: Vec<Bounds<D>>,
     pub(super) homes: Vec<Home>,
     pub(super) marks: Vec<u8>,
@@ -226,10 +226,11 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.waiting_at[index] = NONE;
             self.exact[index] = aabb;
             let tight = Bounds::enclosing(&aabb);
+            let is_inside = self.loose[index].contains(&tight);
             let stays = match self.homes[index] {
                 Home::Nowhere => false,
-                Home::Moving | Home::Still => self.loose[index].contains(&tight),
-                Home::Unbounded => self.loose[index].contains(&tight) && !tight.is_finite(),
+                Home::Moving | Home::Still => is_inside,
+                Home::Unbounded => is_inside && !tight.is_finite(),
             };
             if !stays {
                 self.move_to(id, Bounds::enclosing(&aabb.loosened(self.margin)));
@@ -239,17 +240,27 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.waiting = waiting;
     }
 
+    #[inline]
     fn move_to(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
-        let was_nowhere = self.homes[index] == Home::Nowhere;
-        let before = if was_nowhere { Bounds::NOWHERE } else { self.loose[index] };
-        self.mark(id, CHANGED, before);
-        self.loose[index] = loose;
         self.last_change[index] = self.clock;
-        let is_bounded = loose.is_finite();
-        if is_bounded && self.homes[index] == Home::Moving {
+        if self.homes[index] == Home::Moving && loose.is_finite() {
+            // The tree knows the box of before.
+            self.mark(id, CHANGED);
+            self.loose[index] = loose;
             return self.moving.set(id, &loose);
         }
+        self.move_home(id, loose);
+    }
+
+    /// Moves an object to the tree of moving ones or to the list of unbounded ones.
+    #[inline(never)]
+    fn move_home(&mut self, id: u32, loose: Bounds<D>) {
+        let index = id as usize;
+        self.previous[index] = self.before(id);
+        self.mark(id, CHANGED);
+        self.loose[index] = loose;
+        let is_bounded = loose.is_finite();
         if !is_bounded || self.homes[index] == Home::Unbounded {
             self.searched.push(id);
         }
@@ -263,14 +274,27 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Marks the object; `before` counts if it is the first mark since the last update.
-    fn mark(&mut self, id: u32, mark: u8, before: Bounds<D>) {
+    /// The loosened box at the last update.
+    pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
-        if self.marks[index] & CHANGED == 0 {
-            self.previous[index] = before;
+        let in_tree = match self.homes[index] {
+            Home::Nowhere => Some(Bounds::NOWHERE),
+            Home::Moving => self.moving.before(id),
+            Home::Still => self.still.before(id),
+            Home::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
+            Home::Unbounded => Some(self.loose[index]),
+        };
+        // What is empty there was not: an unbounded box must not meet it.
+        in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
+    }
+
+    #[inline]
+    fn mark(&mut self, id: u32, mark: u8) {
+        let marks = &mut self.marks[id as usize];
+        if *marks & CHANGED == 0 {
             self.changes.push(id);
         }
-        self.marks[index] |= CHANGED | mark;
+        *marks |= CHANGED | mark;
     }
 
     /// Makes all pairs of the objects that are to be asked about again begin again.
@@ -286,7 +310,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
                 Home::Still => self.still.forget_before(id),
                 Home::Unbounded => {}
             }
-            self.mark(id, AGAIN, Bounds::NOWHERE);
+            self.mark(id, AGAIN);
             self.previous[id as usize] = Bounds::NOWHERE;
             self.searched.push(id);
         }

@@ -151,6 +151,11 @@ impl<const D: usize> Tree<D> {
         self.slot(id).map(|slot| &self.boxes[slot])
     }
 
+    /// The box of the object at the last [`Self::settle`]: empty for one that is new.
+    pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
+        self.slot(id).map(|slot| self.before[slot / LANES].lane(slot % LANES))
+    }
+
     fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)

@@ -1,6 +1,5 @@
 //! The table of pairs.
 
-use super::heavy::Heavy;
 use super::lines::{Lines, Link, small};
 
 /// A set of unordered pairs; see the module's page for its layout.
@@ -10,11 +9,7 @@ use super::lines::{Lines, Link, small};
 #[derive(Clone, Debug, Default)]
 pub struct PairTable {
     pairs: Vec<(u32, u32)>,
-    /// Where the links of the two ends stand among the links of those objects, by pair.
-    places: Vec<(u32, u32)>,
     lines: Lines,
-    /// The pairs whose two ends are both heavy.
-    heavy: Heavy,
 }
 
 /// The outcome of [`PairTable::insert`].
@@ -91,20 +86,13 @@ impl PairTable {
     /// out until there is none takes an object out.
     #[must_use]
     pub fn any_pair_of(&self, a: u32) -> Option<usize> {
-        let last = self.lines.count(a).checked_sub(1)?;
-        Some(self.lines.link(a, small(last)).pair as usize)
+        Some(self.lines.last_link(a)?.pair as usize)
     }
 
     /// Where the pair stands in [`Self::pairs`], in either order of its ends.
     #[must_use]
     pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
-        let a_is_lighter = self.lines.count(a) <= self.lines.count(b);
-        let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
-        if self.lines.is_heavy(from) && self.lines.is_heavy(to) {
-            return self.heavy.get(pack(a, b)).map(|index| index as usize);
-        }
-        let link = self.lines.links(from).find(|link| link.partner == to)?;
-        Some(link.pair as usize)
+        self.lines.pair_of(a, b)
     }
 
     /// Adds the pair unless it is there.
@@ -120,7 +108,6 @@ impl PairTable {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
         let index = self.pairs.len();
         self.pairs.push((a, b));
-        self.places.push((0, 0));
         self.link(index, a, b);
         index
     }
@@ -131,7 +118,7 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn replace_at(&mut self, index: usize, a: u32, b: u32) {
-        self.unlink_pair(index);
+        self.unlink(index);
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
         self.link(index, a, b);
     }
@@ -139,35 +126,13 @@ impl PairTable {
     /// Writes the pair to `index` and gives both ends their links.
     fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.pairs[index] = (low, high);
         self.lines.reach(high);
         let pair = small(index);
-        let (low_place, low_grew) = self.lines.push(low, Link { partner: high, pair });
+        self.lines.push(low, Link { partner: high, pair });
         // A number paired with itself has one link, which stands for both ends.
-        let (high_place, high_grew) = if low == high {
-            (low_place, false)
-        } else {
-            self.lines.push(high, Link { partner: low, pair })
-        };
-        self.pairs[index] = (low, high);
-        self.places[index] = (low_place, high_place);
-        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
-            self.heavy.set(pack(low, high), index);
-        }
-        for (object, grew) in [(low, low_grew), (high, high_grew)] {
-            if grew {
-                self.became_heavy(object);
-            }
-        }
-    }
-
-    /// Enters the pairs of an object with heavy ones. It has few links yet: this comes with the one
-    /// that made it heavy.
-    #[cold]
-    fn became_heavy(&mut self, object: u32) {
-        for link in self.lines.links(object) {
-            if self.lines.is_heavy(link.partner) {
-                self.heavy.set(pack(object, link.partner), link.pair as usize);
-            }
+        if low != high {
+            self.lines.push(high, Link { partner: low, pair });
         }
     }
 
@@ -182,9 +147,8 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn remove_at(&mut self, index: usize) -> Removed {
-        self.unlink_pair(index);
+        self.unlink(index);
         self.pairs.swap_remove(index);
-        self.places.swap_remove(index);
         let was_last = index == self.pairs.len();
         if !was_last {
             self.relink(index);
@@ -194,60 +158,36 @@ impl PairTable {
 
     /// Takes the links of the pair at `index` out.
     #[inline]
-    fn unlink_pair(&mut self, index: usize) {
-        let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
-        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
-            self.heavy.remove(pack(low, high));
-        }
-        self.unlink(low, low_place);
+    fn unlink(&mut self, index: usize) {
+        let (low, high) = self.pairs[index];
+        self.lines.remove(low, high);
         if low != high {
-            self.unlink(high, high_place);
-        }
-    }
-
-    /// Takes the link at `place` out of the object's links and tells the pair of the link that
-    /// moved there.
-    #[inline]
-    fn unlink(&mut self, object: u32, place: u32) {
-        let was_heavy = self.lines.is_heavy(object);
-        let moved = self.lines.swap_remove(object, place);
-        if was_heavy && !self.lines.is_heavy(object) {
-            self.became_light(object);
-        }
-        let Some(moved) = moved else { return };
-        let places = &mut self.places[moved.pair as usize];
-        if object <= moved.partner {
-            places.0 = place;
-        }
-        if object >= moved.partner {
-            places.1 = place;
-        }
-    }
-
-    /// Takes the few pairs that are left to an object from among those with heavy ones.
-    #[cold]
-    fn became_light(&mut self, object: u32) {
-        for link in self.lines.links(object) {
-            self.heavy.remove(pack(object, link.partner));
+            self.lines.remove(high, low);
         }
     }
 
     /// Tells both links of the pair at `index` that it stands there.
     fn relink(&mut self, index: usize) {
-        let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
-        self.lines.link_mut(low, low_place).pair = small(index);
-        self.lines.link_mut(high, high_place).pair = small(index);
-        if self.lines.is_heavy(low) && self.lines.is_heavy(high) {
-            self.heavy.set(pack(low, high), index);
-        }
+        let ((low, high), pair) = (self.pairs[index], small(index));
+        self.lines.set_pair(low, Link { partner: high, pair });
+        self.lines.set_pair(high, Link { partner: low, pair });
+    }
+
+    /// Brings what is known of the ends of some packed pairs into the cache: several waits for memory
+    /// pass at once where the changes that follow would wait one by one. Changes nothing.
+    #[inline]
+    pub(crate) fn fetch(&self, keys: &[u64]) {
+        let count = |key: u64| {
+            let (low, high) = unpack(key);
+            self.count(low).wrapping_add(self.count(high))
+        };
+        core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
     }
 
     /// Takes out every pair.
     pub fn clear(&mut self) {
         self.pairs.clear();
-        self.places.clear();
         self.lines.clear();
-        self.heavy.clear();
     }
 
     /// Checks every invariant of the layout; for tests.
@@ -256,29 +196,14 @@ impl PairTable {
     /// What is wrong, in words.
     pub fn validate(&self) -> Result<(), String> {
         self.lines.validate()?;
-        if self.places.len() != self.pairs.len() {
-            return Err("places out of step with pairs".to_owned());
-        }
-        let mut heavy = 0;
-        for (index, (&(low, high), &(low_place, high_place))) in
-            self.pairs.iter().zip(&self.places).enumerate()
-        {
-            let pair = small(index);
-            let from_low = low_place < small(self.count(low))
-                && self.lines.link(low, low_place) == Link { partner: high, pair };
-            let from_high = high_place < small(self.count(high))
-                && self.lines.link(high, high_place) == Link { partner: low, pair };
-            if !(low <= high && from_low && from_high) {
+        for (index, &(low, high)) in self.pairs.iter().enumerate() {
+            let pair = Some(small(index));
+            let mut ends = [(low, high), (high, low)].into_iter().map(|(from, to)| {
+                self.lines.links(from).find(|link| link.partner == to).map(|link| link.pair)
+            });
+            if low > high || ends.any(|end| end != pair) {
                 return Err(format!("pair {index} = ({low}, {high}) is linked wrongly"));
             }
-            let is_heavy = self.lines.is_heavy(low) && self.lines.is_heavy(high);
-            if self.heavy.get(pack(low, high)) != is_heavy.then_some(pair) {
-                return Err(format!("pair {index} = ({low}, {high}) of heavy ones is lost"));
-            }
-            heavy += usize::from(is_heavy);
-        }
-        if heavy != self.heavy.len() {
-            return Err(format!("{heavy} pairs of heavy ones, {} listed", self.heavy.len()));
         }
         let links: usize = (0..small(self.lines.objects())).map(|a| self.count(a)).sum();
         let alone = self.pairs.iter().filter(|(low, high)| low == high).count();

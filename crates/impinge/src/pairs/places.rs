@@ -1,52 +1,50 @@
-//! Where pairs of two heavy objects stand: a hash table, so that neither is searched.
+//! Where the links of objects with very many stand: a hash table, so that these are not searched.
 //!
 //! Entries lie where multiplications of the two numbers say (linear probing; Knuth 1973, vol. 3,
 //! § 6.4, with his removal that leaves no graves). Nothing ever walks over the entries, so their
 //! order shows nowhere.
 
-use super::lines::small;
-
-/// The index of an entry without a pair.
+/// The place of an entry without a key.
 const FREE: u32 = u32::MAX;
 /// The least number of entries, once there is one.
 const LEAST: usize = 256;
 
-/// A pair and where it stands in the dense array.
+/// A link, named by its two ends, and its place.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     key: u64,
-    index: u32,
+    place: u32,
 }
 
-/// From packed pairs to indices.
+/// From links, named by their two ends, to places.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Heavy {
+pub(super) struct Places {
     /// A power of two of entries, at most half of them in use; or none.
     entries: Vec<Entry>,
     used: usize,
 }
 
-impl Heavy {
-    /// Where the pair stands, if it is in the table.
+impl Places {
+    /// The place of the link, if it is in the table.
     pub(super) fn get(&self, key: u64) -> Option<u32> {
         if self.entries.is_empty() {
             return None;
         }
         let entry = self.entries[self.place_of(key)];
-        (entry.index != FREE).then_some(entry.index)
+        (entry.place != FREE).then_some(entry.place)
     }
 
-    /// Adds the pair, or moves it.
-    pub(super) fn set(&mut self, key: u64, index: usize) {
+    /// Adds the link, or gives it another place.
+    pub(super) fn set(&mut self, key: u64, value: u32) {
         if (self.used + 1) * 2 > self.entries.len() {
             self.grow();
         }
         let place = self.place_of(key);
-        self.used += usize::from(self.entries[place].index == FREE);
-        self.entries[place] = Entry { key, index: small(index) };
+        self.used += usize::from(self.entries[place].place == FREE);
+        self.entries[place] = Entry { key, place: value };
     }
 
-    /// Takes the pair out, if it is there: entries behind it that could not stand here before move
+    /// Takes the link out, if it is there: entries behind it that could not stand here before move
     /// up, until one is free.
     pub(super) fn remove(&mut self, key: u64) {
         if self.entries.is_empty() {
@@ -54,12 +52,12 @@ impl Heavy {
         }
         let mask = self.entries.len() - 1;
         let mut gap = self.place_of(key);
-        if self.entries[gap].index == FREE {
+        if self.entries[gap].place == FREE {
             return;
         }
         self.used -= 1;
         let mut next = (gap + 1) & mask;
-        while self.entries[next].index != FREE {
+        while self.entries[next].place != FREE {
             // How far each stands from where its key would like it: who came past the gap may move.
             let from_home = next.wrapping_sub(self.home(self.entries[next].key)) & mask;
             if from_home >= next.wrapping_sub(gap) & mask {
@@ -68,7 +66,7 @@ impl Heavy {
             }
             next = (next + 1) & mask;
         }
-        self.entries[gap].index = FREE;
+        self.entries[gap].place = FREE;
     }
 
     /// Takes everything out.
@@ -77,17 +75,17 @@ impl Heavy {
         self.used = 0;
     }
 
-    /// The pairs in the table.
+    /// The links in the table.
     pub(super) const fn len(&self) -> usize {
         self.used
     }
 
-    /// The entry of the pair, or the free one where it belongs. At most half are in use, so the
+    /// The entry of the key, or the free one where it belongs. At most half are in use, so the
     /// search ends.
     fn place_of(&self, key: u64) -> usize {
         let mask = self.entries.len() - 1;
         let mut place = self.home(key);
-        while self.entries[place].index != FREE && self.entries[place].key != key {
+        while self.entries[place].place != FREE && self.entries[place].key != key {
             place = (place + 1) & mask;
         }
         place
@@ -104,9 +102,9 @@ impl Heavy {
 
     fn grow(&mut self) {
         let length = (2 * self.entries.len()).max(LEAST);
-        let free = Entry { key: 0, index: FREE };
+        let free = Entry { key: 0, place: FREE };
         let old = core::mem::replace(&mut self.entries, vec![free; length]);
-        for entry in old.iter().filter(|entry| entry.index != FREE) {
+        for entry in old.iter().filter(|entry| entry.place != FREE) {
             let place = self.place_of(entry.key);
             self.entries[place] = *entry;
         }
@@ -120,7 +118,7 @@ mod tests {
 
     #[test]
     fn random_calls_agree_with_a_sorted_map() {
-        let (mut state, mut table, mut map) = (5_u64, Heavy::default(), BTreeMap::new());
+        let (mut state, mut table, mut map) = (5_u64, Places::default(), BTreeMap::new());
         let mut next = |bound: u64| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
             (state >> 33) % bound
@@ -130,9 +128,9 @@ mod tests {
             // 30 × 30 keys of two halves, which crowd; every other call takes one out.
             let key = next(30) << 32 | next(30);
             if next(2) == 0 {
-                let index = usize::try_from(next(1000)).expect("small");
-                table.set(key, index);
-                map.insert(key, small(index));
+                let value = u32::try_from(next(1000)).expect("small");
+                table.set(key, value);
+                map.insert(key, value);
             } else {
                 table.remove(key);
                 removed += usize::from(map.remove(&key).is_some());
