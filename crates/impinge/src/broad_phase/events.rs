@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
         self.apply_waiting();
         self.apply_again();
-        self.moving.refit();
+        self.moving.refit_from(&self.loose);
         self.still.refit();
         let mut found = core::mem::take(&mut self.found);
         self.find_changes(&mut found);

@@ -54,6 +54,8 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// The update that last changed the loosened box.
     pub(super) last_change: Vec<u32>,
     waiting: Vec<Waiting<N, D>>,
+    /// Memory for places in `waiting`.
+    leavers: Vec<u32>,
     /// Where an object stands in `waiting`, or [`NONE`].
     waiting_at: Vec<u32>,
     /// The objects marked as changed, each once.
@@ -103,6 +105,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             marks: Vec::new(),
             last_change: Vec::new(),
             waiting: Vec::new(),
+            leavers: Vec::new(),
             waiting_at: Vec::new(),
             changes: Vec::new(),
             again: Vec::new(),
@@ -221,36 +224,55 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Applies the boxes that wait, in the order in which they came.
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
-        for &Waiting { id, aabb } in waiting.iter().filter(|waiting| waiting.id != NONE) {
-            let index = id as usize;
-            self.waiting_at[index] = NONE;
-            self.exact[index] = aabb;
-            let tight = Bounds::enclosing(&aabb);
-            let is_inside = self.loose[index].contains(&tight);
-            let stays = match self.homes[index] {
-                Home::Nowhere => false,
-                Home::Moving | Home::Still => is_inside,
-                Home::Unbounded => is_inside && !tight.is_finite(),
-            };
-            if !stays {
-                self.move_to(id, Bounds::enclosing(&aabb.loosened(self.margin)));
-            }
+        let mut leavers = core::mem::take(&mut self.leavers);
+        self.list_leavers(&waiting, &mut leavers);
+        for &at in &leavers {
+            let Waiting { id, aabb } = &waiting[at as usize];
+            self.leave_loose(*id, aabb);
         }
         waiting.clear();
-        self.waiting = waiting;
+        (self.waiting, self.leavers) = (waiting, leavers);
     }
 
+    /// Stores the exact boxes and lists, by place in the list of those that wait, the objects that
+    /// leave their loosened boxes or have none in a tree. Whether one does, no processor foresees.
+    fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
+        leavers.clear();
+        leavers.resize(waiting.len(), 0);
+        let mut count = 0;
+        for (at, Waiting { id, aabb }) in (0..).zip(waiting) {
+            let index = *id as usize;
+            if *id == NONE {
+                continue;
+            }
+            self.waiting_at[index] = NONE;
+            self.exact[index] = *aabb;
+            let is_in_tree = matches!(self.homes[index], Home::Moving | Home::Still);
+            let stays = is_in_tree & self.loose[index].contains(&Bounds::enclosing(aabb));
+            leavers[count] = at;
+            count += usize::from(!stays);
+        }
+        leavers.truncate(count);
+    }
+
+    /// Gives an object that left it another loosened box.
     #[inline]
-    fn move_to(&mut self, id: u32, loose: Bounds<D>) {
+    fn leave_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
-        self.last_change[index] = self.clock;
+        let loose = Bounds::enclosing(&aabb.loosened(self.margin));
         if self.homes[index] == Home::Moving && loose.is_finite() {
-            // The tree knows the box of before.
+            // The tree knows the box of before, and fetches the new one in its refit.
+            self.last_change[index] = self.clock;
             self.mark(id, CHANGED);
             self.loose[index] = loose;
-            return self.moving.set(id, &loose);
+            return self.moving.set_later(id);
         }
-        self.move_home(id, loose);
+        let tight = Bounds::enclosing(aabb);
+        let is_unbounded = self.homes[index] == Home::Unbounded && !tight.is_finite();
+        if !(is_unbounded && self.loose[index].contains(&tight)) {
+            self.last_change[index] = self.clock;
+            self.move_home(id, loose);
+        }
     }
 
     /// Moves an object to the tree of moving ones or to the list of unbounded ones.

@@ -11,16 +11,35 @@ const STRAYED: f64 = 2.0;
 impl<const D: usize> Tree<D> {
     /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
     pub fn refit(&mut self) {
+        self.refit_from(&[]);
+    }
+
+    /// The same, after it has fetched the boxes of changed objects from a list by id; an empty list
+    /// stands for those that the tree was given.
+    ///
+    /// Objects come in no spatial order: to look for the box of each slot takes reads that a processor
+    /// does many of at once, to write each box to its slot does not.
+    pub(crate) fn refit_from(&mut self, by_id: &[Bounds<D>]) {
+        if !by_id.is_empty() && self.is_stale {
+            self.order_touched();
+            self.fetch_boxes(by_id);
+        }
         self.sort_new();
         self.refit_layers();
     }
 
     pub(super) fn refit_layers(&mut self) {
+        if self.touched.is_empty() && !self.is_restructured {
+            self.strayed.clear();
+            self.is_stale = false;
+            return;
+        }
+        self.order_touched();
         if self.is_stale {
             self.fill_blocks();
         }
         self.strayed.clear();
-        let many = self.touched.len() * 4 > self.before.len();
+        let many = self.touches_many();
         with_kernel!(self.lanes, kernel => {
             if self.is_restructured || many {
                 self.refit_all(kernel);
@@ -30,6 +49,38 @@ impl<const D: usize> Tree<D> {
         });
         self.is_restructured = false;
         self.is_stale = false;
+    }
+
+    /// So many blocks were touched that all of them are looked at.
+    fn touches_many(&self) -> bool {
+        self.touched.len() * 4 > self.before.len()
+    }
+
+    /// Brings the list of touched blocks into ascending order.
+    fn order_touched(&mut self) {
+        if self.touched.is_sorted() {
+            return;
+        }
+        if self.touches_many() {
+            self.touched.clear();
+            let flagged = (0..).zip(&self.is_touched).filter(|&(_, &is_touched)| is_touched);
+            self.touched.extend(flagged.map(|(block, _)| block));
+        } else {
+            self.touched.sort_unstable();
+        }
+    }
+
+    fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
+        for &block in &self.touched {
+            let first = block as usize * LANES;
+            let mut mask = self.layers[0].changed[block as usize];
+            let (ids, boxes) = (&self.ids[first..], &mut self.boxes[first..first + LANES]);
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                boxes[lane] = by_id[ids[lane] as usize];
+            }
+        }
     }
 
     /// Copies the boxes one by one to the blocks that were written to.
@@ -71,7 +122,6 @@ impl<const D: usize> Tree<D> {
     /// Walks up from the touched leaf blocks only.
     #[inline(always)]
     fn refit_touched<K: Kernel>(&mut self, kernel: K) {
-        self.touched.sort_unstable();
         let mut dirty = core::mem::take(&mut self.dirty);
         dirty.clear();
         dirty.extend_from_slice(&self.touched);
@@ -117,13 +167,17 @@ impl<const D: usize> Tree<D> {
 
     /// Declares the present boxes those of before: nothing has changed.
     pub fn settle(&mut self) {
+        if self.touched.is_empty() {
+            return;
+        }
+        self.note_use();
+        self.order_touched();
         for &block in &self.touched {
             let block = block as usize;
             self.before[block] = self.layers[0].blocks[block];
             self.is_touched[block] = false;
         }
         if self.changed > 0 {
-            self.touched.sort_unstable();
             let mut dirty = core::mem::take(&mut self.touched);
             for layer in &mut self.layers {
                 dirty.iter().for_each(|&block| layer.settle(block as usize));

@@ -33,11 +33,21 @@ pub(super) struct Schedule<const D: usize> {
     parts: Vec<(usize, usize)>,
     /// Calls without a renewal; wraps.
     calls: u32,
+    /// Blocks were written to since the surface was looked at.
+    is_used: bool,
 }
 
 impl<const D: usize> Default for Schedule<D> {
     fn default() -> Self {
-        Self { base: None, ordered: 0, fresh: 0, snapshot: Vec::new(), parts: Vec::new(), calls: 0 }
+        Self {
+            base: None,
+            ordered: 0,
+            fresh: 0,
+            snapshot: Vec::new(),
+            parts: Vec::new(),
+            calls: 0,
+            is_used: true,
+        }
     }
 }
 
@@ -55,6 +65,11 @@ impl<const D: usize> Tree<D> {
             self.rearrange(start, items.iter().map(|item| item.id));
         }
         self.schedule.fresh = self.end;
+    }
+
+    /// Notes that boxes changed, so that the surface is worth a look.
+    pub(super) fn note_use(&mut self) {
+        self.schedule.is_used = true;
     }
 
     /// Sorts everything at once.
@@ -87,7 +102,8 @@ impl<const D: usize> Tree<D> {
     /// step would spend its time on.
     fn start_if_worn(&mut self) {
         self.schedule.calls = self.schedule.calls.wrapping_add(1);
-        let looks = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        let looks = is_due && core::mem::take(&mut self.schedule.is_used);
         if self.is_spoilt() || (looks && self.is_worn()) {
             self.schedule.snapshot = self.items_from(0);
             self.schedule.parts = vec![(0, self.live)];

@@ -211,6 +211,20 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
+    /// Announces that the object has another box, which the next [`Self::refit_from`] fetches.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    #[inline]
+    pub(crate) fn set_later(&mut self, id: u32) {
+        let slot = self.expect_slot(id);
+        self.is_stale = true;
+        if self.layers[0].changed[slot / LANES] == 0 {
+            self.touch(slot / LANES);
+        }
+        self.mark_changed(slot);
+    }
+
     /// Makes all pairs of the object begin anew: as if it had not been there before.
     ///
     /// # Panics
