@@ -19,7 +19,7 @@ use crate::pairs::pack;
 
 /// Tasks per chunk in the upper layers, and block pairs per chunk in the lowest.
 const UPPER_CHUNK: usize = 256;
-const LEAF_CHUNK: usize = 2048;
+const LEAF_CHUNK: usize = 512;
 /// Up to one object in so many changed, queries beat the join.
 const QUERIES_BELOW: usize = 4;
 

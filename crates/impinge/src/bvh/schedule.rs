@@ -52,6 +52,11 @@ impl<const D: usize> Default for Schedule<D> {
 }
 
 impl<const D: usize> Tree<D> {
+    /// Objects came since the last refit.
+    pub(super) const fn has_new(&self) -> bool {
+        self.end > self.schedule.fresh
+    }
+
     /// Sorts the objects that came since the last refit among themselves, or everything if they
     /// are a third of all.
     pub(super) fn sort_new(&mut self) {
@@ -139,7 +144,7 @@ impl<const D: usize> Tree<D> {
         let others = self.ids[..self.end].iter();
         ids.extend(others.filter(|&&id| id != NONE && !listed[id as usize]));
         self.rearrange(0, ids.into_iter());
-        self.refit_layers();
+        self.refit_layers(&[]);
         self.settle();
         self.schedule = Schedule { ordered, fresh: self.end, ..Schedule::default() };
     }
