@@ -2,9 +2,9 @@
 
 use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
-use crate::bvh::Changes;
+use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
-use crate::pairs::{pack, unpack};
+use crate::pairs::{PairTable, pack, unpack};
 
 /// Pairs whose ends are brought into the cache together.
 const AT_ONCE: usize = 16;
@@ -40,10 +40,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.find_changes(&mut found);
         self.judge(&mut found, filter);
         // From here on no foreign code runs until everything is consistent.
-        self.commit(&found.ended);
+        self.commit_and_settle(&found.ended);
         self.found = found;
-        self.settle();
-        self.keep_order();
         let events = core::mem::take(&mut self.verdict.events);
         for &(key, started) in &events {
             let (a, b) = unpack(key);
@@ -127,33 +125,24 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
-    /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
-    /// place of one that stops, so that no third one moves.
-    fn commit(&mut self, ended: &[u64]) {
-        let Verdict { starting, stopped, events } = &mut self.verdict;
-        let mut rest = starting.iter();
-        stopped.clear();
-        for chunk in ended.chunks(AT_ONCE) {
-            self.pairs.fetch(chunk);
-            self.pairs.fetch(&rest.as_slice()[..rest.len().min(AT_ONCE)]);
-            for &key in chunk {
-                let (a, b) = unpack(key);
-                // A pair that the filter refused is not there.
-                let Some(index) = self.pairs.index_of(a, b) else { continue };
-                stopped.push(key);
-                match rest.next().copied().map(unpack) {
-                    Some((a, b)) => self.pairs.replace_at(index, a, b),
-                    None => _ = self.pairs.remove_at(index),
-                }
-            }
+    /// Alters the table of pairs, and makes the trees ready for the next update. Neither needs the
+    /// other.
+    fn commit_and_settle(&mut self, ended: &[u64]) {
+        let mut pairs = core::mem::take(&mut self.pairs);
+        let mut verdict = core::mem::take(&mut self.verdict);
+        let is_large = self.homes.len() >= PARALLEL_FROM;
+        let mut commit = || verdict.commit(&mut pairs, ended);
+        let mut settle = || {
+            self.settle();
+            self.keep_order();
+        };
+        if is_large {
+            join(commit, settle);
+        } else {
+            commit();
+            settle();
         }
-        for chunk in rest.as_slice().chunks(AT_ONCE) {
-            self.pairs.fetch(chunk);
-            for (a, b) in chunk.iter().copied().map(unpack) {
-                self.pairs.insert_new(a, b);
-            }
-        }
-        merge(stopped, starting, events);
+        (self.pairs, self.verdict) = (pairs, verdict);
     }
 
     /// Declares the present boxes those of before.
@@ -165,6 +154,50 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.searched.clear();
         self.moving.settle();
         self.still.settle();
+    }
+}
+
+/// Runs both, on two threads if there are several.
+fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    #[cfg(feature = "parallel")]
+    rayon::join(one, other);
+    #[cfg(not(feature = "parallel"))]
+    {
+        one();
+        other();
+    }
+}
+
+impl Verdict {
+    /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
+    /// place of one that stops, so that no third one moves.
+    fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
+        let Self { starting, stopped, events } = self;
+        let mut started = 0;
+        stopped.clear();
+        for chunk in ended.chunks(AT_ONCE) {
+            pairs.fetch(chunk);
+            pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
+            for &key in chunk {
+                let (a, b) = unpack(key);
+                // A pair that the filter refused is not there.
+                let was_there = match starting.get(started) {
+                    Some(&start) => pairs.replace((a, b), unpack(start)).is_some(),
+                    None => pairs.remove(a, b).is_some(),
+                };
+                if was_there {
+                    stopped.push(key);
+                    started = starting.len().min(started + 1);
+                }
+            }
+        }
+        for chunk in starting[started..].chunks(AT_ONCE) {
+            pairs.fetch(chunk);
+            for (a, b) in chunk.iter().copied().map(unpack) {
+                pairs.insert_new(a, b);
+            }
+        }
+        merge(stopped, starting, events);
     }
 }
 

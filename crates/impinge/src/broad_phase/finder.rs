@@ -2,6 +2,7 @@
 
 use super::BroadPhaseError;
 use super::events::Verdict;
+use super::sieve::{Kept, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::math::Real;
@@ -27,9 +28,9 @@ pub(super) const AGAIN: u8 = 2;
 
 /// A box to be given to an object at the next update; the id is [`NONE`] if it was removed since.
 #[derive(Clone, Copy, Debug)]
-struct Waiting<N: Real, const D: usize> {
-    id: u32,
-    aabb: Aabb<N, D>,
+pub(super) struct Waiting<N: Real, const D: usize> {
+    pub(super) id: u32,
+    pub(super) aabb: Aabb<N, D>,
 }
 
 /// Keeps the pairs of objects whose loosened boxes overlap. Objects are dense small numbers.
@@ -235,23 +236,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Stores the exact boxes and lists, by place in the list of those that wait, the objects that
-    /// leave their loosened boxes or have none in a tree. Whether one does, no processor foresees.
+    /// leave their loosened boxes or have none in a tree.
     fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
         leavers.clear();
         leavers.resize(waiting.len(), 0);
-        let mut count = 0;
-        for (at, Waiting { id, aabb }) in (0..).zip(waiting) {
-            let index = *id as usize;
-            if *id == NONE {
-                continue;
-            }
-            self.waiting_at[index] = NONE;
-            self.exact[index] = *aabb;
-            let is_in_tree = matches!(self.homes[index], Home::Moving | Home::Still);
-            let stays = is_in_tree & self.loose[index].contains(&Bounds::enclosing(aabb));
-            leavers[count] = at;
-            count += usize::from(!stays);
-        }
+        let kept = Kept { homes: &self.homes, loose: &self.loose };
+        let sieve = Sieve { first: 0, exact: &mut self.exact, waiting_at: &mut self.waiting_at };
+        let count = sieve.run(&kept, waiting, 0, leavers);
         leavers.truncate(count);
     }
 
@@ -381,6 +372,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 }
 
 /// A count as an id.
+#[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("fewer than 2^32 objects")
 }

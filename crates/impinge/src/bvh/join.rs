@@ -14,7 +14,7 @@ use core::ops::Range;
 
 use super::kernel::{Kernel, TaskList, with_kernel};
 use super::tree::small;
-use super::{Bounds, LANES, Tree};
+use super::{Block, Bounds, LANES, Tree};
 use crate::pairs::pack;
 
 /// Tasks per chunk in the upper layers, and block pairs per chunk in the lowest.
@@ -281,7 +281,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
     let (before_a, changed_b) = (&sides.first.before[..], &leaves_b.changed[..]);
-    let reach_b = &leaves_b.reach[..];
+    let (reach_b, boxes) = (&leaves_b.reach[..], Boxes::of(sides));
     let lanes = &mut scratch.tasks;
     lanes.clear();
     for (&a, &b) in first.iter().zip(second) {
@@ -301,27 +301,41 @@ fn join_leaves<K: Kernel, const D: usize>(
         // Arithmetic in place of a branch: how it goes, no processor foresees.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
-        let mask = differing(kernel, sides, slot, b) & upper;
+        let mask = boxes.differing(kernel, slot, b) & upper;
         if mask != 0 {
             kernel.push(out, slot, b * small(LANES), mask);
         }
     }
 }
 
-/// The lanes of block `b` of the second tree whose overlap with the first tree's slot is not what it
-/// was before. None where neither changed.
-#[inline(always)]
-pub(super) fn differing<K: Kernel, const D: usize>(
-    kernel: K,
-    sides: Sides<'_, D>,
-    slot: u32,
-    b: u32,
-) -> u32 {
-    let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-    let now = &sides.first.boxes[slot as usize];
-    let before = sides.first.before[block].lane(lane);
-    kernel.overlaps(&sides.second.layers[0].blocks[b as usize], now)
-        ^ kernel.overlaps(&sides.second.before[b as usize], &before)
+/// The boxes of both sides, now and before.
+#[derive(Clone, Copy)]
+pub(super) struct Boxes<'a, const D: usize> {
+    now_a: &'a [Bounds<D>],
+    before_a: &'a [Block<D>],
+    now_b: &'a [Block<D>],
+    before_b: &'a [Block<D>],
+}
+
+impl<'a, const D: usize> Boxes<'a, D> {
+    #[inline(always)]
+    pub(super) fn of(sides: Sides<'a, D>) -> Self {
+        let (first, second) = (sides.first, sides.second);
+        let (now_b, before_b) = (&second.layers[0].blocks[..], &second.before[..]);
+        // Of equal length: told once rather than asked for each pair.
+        let now_b = &now_b[..before_b.len()];
+        Self { now_a: &first.boxes, before_a: &first.before, now_b, before_b }
+    }
+
+    /// The lanes of block `b` of the second tree whose overlap with the first tree's slot is not
+    /// what it was before. None where neither changed.
+    #[inline(always)]
+    pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> u32 {
+        let (slot, b) = (slot as usize, b as usize);
+        let before = self.before_a[slot / LANES].lane(slot % LANES);
+        kernel.overlaps(&self.now_b[b], &self.now_a[slot])
+            ^ kernel.overlaps(&self.before_b[b], &before)
+    }
 }
 
 impl<const D: usize> Tree<D> {

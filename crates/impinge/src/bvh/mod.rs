@@ -47,5 +47,4 @@ pub use ordered::{Frontier, Keys};
 pub use tree::{NONE, Tree};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
-#[cfg(feature = "parallel")]
 pub(crate) const PARALLEL_FROM: usize = 2000;

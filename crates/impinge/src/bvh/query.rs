@@ -4,7 +4,7 @@
 //! tests of one layer do not depend on each other.
 
 use super::LANES;
-use super::join::{Scratch, Sides, differing};
+use super::join::{Boxes, Scratch, Sides};
 use super::kernel::Kernel;
 use super::tree::small;
 
@@ -36,11 +36,11 @@ pub(super) fn ask<K: Kernel, const D: usize>(
         }
         core::mem::swap(tasks, next);
     }
-    let leaves = &sides.second.layers[0];
+    let (leaves, boxes) = (&sides.second.layers[0], Boxes::of(sides));
     let (queries, blocks) = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
-        let mut mask = differing(kernel, sides, slot, block);
+        let mut mask = boxes.differing(kernel, slot, block);
         if sides.is_self {
             mask &= !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
         }

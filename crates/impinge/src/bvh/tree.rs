@@ -217,12 +217,17 @@ impl<const D: usize> Tree<D> {
     /// If the object is not in the tree.
     #[inline]
     pub(crate) fn set_later(&mut self, id: u32) {
-        let slot = self.expect_slot(id);
+        let slot = self.slots[id as usize] as usize;
+        let (block, bit) = (slot / LANES, 1 << (slot % LANES));
+        let mask = &mut self.layers[0].changed[block];
+        let was_unchanged = *mask == 0;
+        self.changed += usize::from(*mask & bit == 0);
+        *mask |= bit;
         self.is_stale = true;
-        if self.layers[0].changed[slot / LANES] == 0 {
-            self.touch(slot / LANES);
+        // A block with changed lanes is listed already.
+        if was_unchanged {
+            self.touch(block);
         }
-        self.mark_changed(slot);
     }
 
     /// Makes all pairs of the object begin anew: as if it had not been there before.
@@ -296,7 +301,8 @@ impl<const D: usize> Tree<D> {
         hole.unwrap_or_else(|| self.append_slot())
     }
 
-    /// A free lane of the block that a descent along the least growth ends in.
+    /// A free lane near where a descent along the least growth ends: of the last sixteen blocks, that
+    /// with a free lane which grows least.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
@@ -306,12 +312,17 @@ impl<const D: usize> Tree<D> {
                 let own = &children[*child];
                 own.merged(bounds).half_surface() - own.half_surface()
             };
-            block = (block * LANES..last)
-                .min_by(|a, b| growth(a).total_cmp(&growth(b)))
-                .unwrap_or_default();
+            let near = (block * LANES..last).filter(|&child| layer > 1 || self.has_hole(child));
+            block = near.min_by(|a, b| growth(a).total_cmp(&growth(b)))?;
         }
         let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
+    }
+
+    /// A lane of the leaf block is free. The search keeps no count of it, since it is short.
+    fn has_hole(&self, block: usize) -> bool {
+        let slots = &self.ids[block * LANES..(block + 1) * LANES];
+        slots.iter().fold(false, |found, &id| found | (id == NONE))
     }
 
     /// The slot after the last one in use, in a new block if need be.

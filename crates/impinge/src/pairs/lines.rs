@@ -83,6 +83,16 @@ pub(super) struct Lines {
     places: Places,
 }
 
+/// Where among the first `count` links that to the partner stands. All are looked at: where a search
+/// ends, no processor foresees.
+#[inline]
+fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
+    let hit = |at: usize| u32::from(links[at].partner == partner) << at;
+    let hits = (0..links.len()).fold(0, |hits, at| hits | hit(at));
+    let place = hits.trailing_zeros();
+    ((place as usize) < count.min(links.len())).then_some(place)
+}
+
 /// The link from an object to a partner, as one number.
 #[inline]
 fn directed(object: u32, partner: u32) -> u64 {
@@ -163,15 +173,20 @@ impl Lines {
     #[inline]
     fn find(&self, object: u32, partner: u32) -> Option<u32> {
         let head = self.heads.get(object as usize)?;
-        let is_it = |link: &Link| link.partner == partner;
-        let place = head.links.iter().take(head.count() as usize).position(is_it);
+        let count = head.count() as usize;
+        let place = place_in(&head.links, count, partner);
         if place.is_some() || head.class() == NO_RUN {
-            return place.map(small);
+            return place;
         }
         if head.class() >= HEAVY {
             return self.places.get(directed(object, partner));
         }
-        self.links(object).position(|link| is_it(&link)).map(small)
+        let (start, beyond) = (head.start as usize, count.saturating_sub(INLINE));
+        let lines = self.pool[start..start + beyond.div_ceil(PER_LINE)].iter();
+        lines.enumerate().find_map(|(at, line)| {
+            let place = place_in(&line.links, beyond - at * PER_LINE, partner)?;
+            Some(small(INLINE + at * PER_LINE) + place)
+        })
     }
 
     /// Where the pair stands in the dense array, if the two have one: asks the one with fewer links.
@@ -204,12 +219,13 @@ impl Lines {
         }
     }
 
-    /// Takes the link to the partner out, which must be there. The object's last link takes its place.
+    /// Takes the link to the partner out, if it is there, and says where the pair stands. The
+    /// object's last link takes its place.
     #[inline]
-    pub(super) fn remove(&mut self, object: u32, partner: u32) {
-        let place = self.find(object, partner).expect("both ends of a pair have links");
+    pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
+        let place = self.find(object, partner)?;
         let last = self.heads[object as usize].count() - 1;
-        let moved = self.link(object, last);
+        let (taken, moved) = (self.link(object, place), self.link(object, last));
         *self.link_mut(object, place) = moved;
         self.heads[object as usize].set_count(last);
         if self.is_heavy(object) {
@@ -219,6 +235,7 @@ impl Lines {
         if last as usize == INLINE {
             self.release(object);
         }
+        Some(taken.pair as usize)
     }
 
     /// Gives the object a run, or moves its run to one of twice the size.

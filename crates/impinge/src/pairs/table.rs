@@ -112,15 +112,13 @@ impl PairTable {
         index
     }
 
-    /// Takes out the pair that stands at `index` and puts another, which the caller knows not to be
-    /// there, in its place: no other pair moves. Constant time.
-    ///
-    /// # Panics
-    /// If `index` is not below [`Self::len`].
-    pub fn replace_at(&mut self, index: usize, a: u32, b: u32) {
-        self.unlink(index);
-        debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
-        self.link(index, a, b);
+    /// Takes the pair of `old` out, if it is there, and puts that of `new`, which the caller knows not
+    /// to be there, in its place: no other pair moves. Returns where it stands. Constant time.
+    pub fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
+        let index = self.unlink(old)?;
+        debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
+        self.link(index, new.0, new.1);
+        Some(index)
     }
 
     /// Writes the pair to `index` and gives both ends their links.
@@ -138,8 +136,8 @@ impl PairTable {
 
     /// Takes the pair out, if it is there.
     pub fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
-        let index = self.index_of(a, b)?;
-        Some(self.remove_at(index))
+        let index = self.unlink((a, b))?;
+        Some(self.close_gap(index))
     }
 
     /// Takes out the pair that stands at `index`; constant time.
@@ -147,23 +145,28 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn remove_at(&mut self, index: usize) -> Removed {
-        self.unlink(index);
+        self.unlink(self.pairs[index]);
+        self.close_gap(index)
+    }
+
+    /// Takes the links of the pair out, if it is there, and says where it stands.
+    #[inline]
+    fn unlink(&mut self, (a, b): (u32, u32)) -> Option<usize> {
+        let index = self.lines.remove(a, b)?;
+        if a != b {
+            self.lines.remove(b, a);
+        }
+        Some(index)
+    }
+
+    /// Moves the last pair to where one without links stands.
+    fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
         let was_last = index == self.pairs.len();
         if !was_last {
             self.relink(index);
         }
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
-    }
-
-    /// Takes the links of the pair at `index` out.
-    #[inline]
-    fn unlink(&mut self, index: usize) {
-        let (low, high) = self.pairs[index];
-        self.lines.remove(low, high);
-        if low != high {
-            self.lines.remove(high, low);
-        }
     }
 
     /// Tells both links of the pair at `index` that it stands there.
@@ -306,7 +309,7 @@ mod tests {
             let index = usize::try_from(next(&mut state, small(set.len()))).expect("small");
             if table.index_of(a, b).is_none() && step % 8 == 0 {
                 let (old1, old2) = table.pairs()[index];
-                table.replace_at(index, a, b);
+                assert_eq!(table.replace((old2, old1), (a, b)), Some(index), "step {step}");
                 assert!(set.remove(&pack(old1, old2)) && set.insert(pack(a, b)), "step {step}");
                 assert_eq!(table.index_of(b, a), Some(index), "no pair moves");
             } else {
