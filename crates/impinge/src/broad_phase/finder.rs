@@ -73,6 +73,7 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// them is not enough.
     pub(super) searched: Vec<u32>,
     /// Memory for an update.
+    pub(super) resting: Vec<u32>,
     pub(super) found: Changes,
     pub(super) verdict: Verdict,
     pub(super) lanes: Lanes,
@@ -117,6 +118,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             pairs: PairTable::new(),
             joiner: Joiner::default(),
             searched: Vec::new(),
+            resting: Vec::new(),
             found: Changes::default(),
             verdict: Verdict::default(),
             lanes,

@@ -44,6 +44,7 @@ impl<const D: usize> Tree<D> {
                 dirty.extend_from_slice(&self.touched);
             }
             self.refit_leaves(&dirty, by_id);
+            self.note_strayed();
             with_kernel!(self.lanes, kernel => self.refit_above(kernel, &mut dirty));
             self.dirty = dirty;
         }

@@ -1,5 +1,6 @@
 //! The tree: storage and single changes.
 
+use super::order::Load;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
 
@@ -74,6 +75,8 @@ pub struct Tree<const D: usize> {
     pub(super) is_touched: Vec<bool>,
     /// Leaf blocks whose reach leaves out what was before; see [`Self::strayed`].
     pub(super) strayed: Vec<u32>,
+    /// Memory for objects on the move from slot to slot.
+    pub(super) loads: Vec<Load<D>>,
     /// Memory for lists of blocks.
     pub(super) dirty: Vec<u32>,
     /// Lanes with their change bit set.
@@ -113,6 +116,7 @@ impl<const D: usize> Tree<D> {
             touched: Vec::new(),
             is_touched: Vec::new(),
             strayed: Vec::new(),
+            loads: Vec::new(),
             dirty: Vec::new(),
             changed: 0,
             is_restructured: false,
@@ -189,6 +193,7 @@ impl<const D: usize> Tree<D> {
         self.ids[slot] = id;
         self.end = self.end.max(slot + 1);
         self.live += 1;
+        self.note_late(id);
         self.write(slot, bounds);
         self.before[slot / LANES].set_lane(slot % LANES, bounds);
         slot
