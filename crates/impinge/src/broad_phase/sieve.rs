@@ -64,7 +64,8 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
 
 #[cfg(feature = "parallel")]
 mod parallel {
-    use super::{Kept, Sieve, Waiting};
+    use super::super::finder::small;
+    use super::{Kept, NONE, Sieve, Waiting};
     use crate::math::Real;
 
     /// The most objects that one thread looks at.
@@ -76,7 +77,7 @@ mod parallel {
             && rayon::current_num_threads() > 1
             && waiting.is_sorted_by_key(|waiting| waiting.id)
             // Removed ones, whose id says nothing, stand last if at all.
-            && waiting.last().is_some_and(|last| last.id != super::NONE)
+            && waiting.last().is_some_and(|last| last.id != NONE)
     }
 
     impl<N: Real, const D: usize> Sieve<'_, N, D> {
@@ -95,7 +96,7 @@ mod parallel {
             let (waiting1, waiting2) = waiting.split_at(middle);
             let (leavers1, leavers2) = leavers.split_at_mut(middle);
             let (left, right) = self.cut(waiting2[0].id as usize);
-            let middle_at = first_at + super::super::finder::small(middle);
+            let middle_at = first_at + small(middle);
             let (count1, count2) = rayon::join(
                 || left.run_parallel(kept, waiting1, first_at, leavers1),
                 || right.run_parallel(kept, waiting2, middle_at, leavers2),

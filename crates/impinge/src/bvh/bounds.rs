@@ -156,7 +156,10 @@ mod tests {
         assert!(below(f64::NAN).is_nan(), "NaN stays");
         assert_eq!(below(-0.0_f64).to_bits(), 0, "zeros are positive");
         assert_eq!(below(-0.0_f32).to_bits(), 0, "those of f32 too");
-        assert!(below(f32::NAN).is_nan() && below(-0.1_f32).to_bits() == (-0.1_f32).to_bits(), "kept");
+        assert!(
+            below(f32::NAN).is_nan() && below(-0.1_f32).to_bits() == (-0.1_f32).to_bits(),
+            "kept"
+        );
     }
 
     #[test]

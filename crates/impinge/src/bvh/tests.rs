@@ -152,10 +152,9 @@ fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32
         let (mut own, mut across) = (Changes::default(), Changes::default());
         joiner.self_join(&first.tree, &mut own);
         joiner.cross_join(&first.tree, &second.tree, &mut across);
-        for counts in [
-            check_changes(own, (&first, &first)),
-            check_changes(across, (&first, &second)),
-        ] {
+        for counts in
+            [check_changes(own, (&first, &first)), check_changes(across, (&first, &second))]
+        {
             found = (found.0 + counts.0, found.1 + counts.1);
         }
         first.settle();

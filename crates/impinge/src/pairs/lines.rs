@@ -333,6 +333,8 @@ impl Lines {
             heavy += self.count(object);
         }
         let listed = self.places.len();
-        (heavy == listed).then_some(()).ok_or(format!("{heavy} links of heavy ones, {listed} listed"))
+        (heavy == listed)
+            .then_some(())
+            .ok_or(format!("{heavy} links of heavy ones, {listed} listed"))
     }
 }
