@@ -60,6 +60,11 @@ impl<S, V: Default> Group<S, V> {
         self.keys[place as usize]
     }
 
+    /// All pairs with their states, in the order in which they lie.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = ((u32, u32), &S)> {
+        self.keys.iter().copied().zip(&self.states)
+    }
+
     /// All pairs, their states and their views.
     pub(crate) fn split_mut(&mut self) -> (&[(u32, u32)], &mut [S], &mut [V]) {
         (&self.keys, &mut self.states, &mut self.views)
