@@ -1,157 +1,252 @@
-//! From the filled slots of one pair to its manifold: the rules of `choose`, in fixed arrays.
+//! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
 
-use super::clip::SLOTS;
-use super::names::Key;
-use crate::math::{Real, Vector, cross2};
+use smallvec::SmallVec;
+
+use super::clip::{SLOTS, Slots};
+use super::names::Naming;
+use crate::math::{Real, Vector, cross2, max, min};
 use crate::query::RawManifold;
 use crate::query::manifold_build::reduce::{ALMOST, NEW_POINT_WEIGHT};
 
-/// The candidates of one pair, in the order of their slots.
-pub(super) struct Candidates<N: Real> {
-    len: usize,
-    slots: [u8; SLOTS],
-    keys: [Key; SLOTS],
-    distances: [N; SLOTS],
-    flat: [[N; 2]; SLOTS],
-    /// The candidates that have the name of an old point, and its number.
-    kept: u32,
+/// The slots of one pair.
+pub(super) struct Choice<'a, N: Real> {
+    pub(super) slots: &'a Slots<N>,
+    pub(super) lane: usize,
+    /// The slots that hold a candidate, by bits.
+    pub(super) valid: u32,
+    /// Those with the smallest distance but for rounding, and the first with the smallest.
+    pub(super) level: u32,
+    pub(super) deepest: usize,
+    pub(super) gap: N,
+    pub(super) prediction: N,
+    pub(super) tolerance: N,
+}
+
+/// The numbers of the old points, for the slots that have their names.
+pub(super) struct Kept {
+    slots: u32,
     ids: [u32; SLOTS],
 }
 
-/// Indices of candidates.
+impl Kept {
+    /// Takes over the numbers; no two old points share their names, nor do two slots.
+    #[inline]
+    pub(super) fn of<N: Real>(old: &RawManifold<N, 3>, naming: &Naming, valid: u32) -> Self {
+        let mut kept = Self { slots: 0, ids: [0; SLOTS] };
+        for point in &old.points {
+            let slot = naming.slot([point.feature1, point.feature2], valid & !kept.slots);
+            if let Some(slot) = slot {
+                kept.slots |= 1 << slot;
+                kept.ids[slot] = point.id;
+            }
+        }
+        kept
+    }
+
+    #[inline]
+    pub(super) fn id(&self, slot: usize) -> Option<u32> {
+        self.has(slot).then(|| self.ids[slot])
+    }
+
+    #[inline]
+    fn has(&self, slot: usize) -> bool {
+        self.slots >> slot & 1 == 1
+    }
+}
+
+/// Some slots in order.
+#[derive(Clone, Copy)]
 pub(super) struct Chosen {
     len: usize,
-    indices: [u8; SLOTS],
+    slots: [u8; SLOTS],
 }
 
 impl Chosen {
-    fn first(len: usize) -> Self {
-        const ALL: [u8; SLOTS] =
-            [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23];
-        Self { len, indices: ALL }
+    #[inline]
+    fn all(valid: u32) -> Self {
+        let mut all = Self { len: 0, slots: [0; SLOTS] };
+        for slot in ones(valid) {
+            all.push(slot);
+        }
+        all
     }
 
     #[inline]
-    pub(super) fn as_slice(&self) -> &[u8] {
-        &self.indices[..self.len]
+    fn push(&mut self, slot: usize) {
+        self.slots[self.len] = slot.to_le_bytes()[0];
+        self.len += 1;
     }
 
-    fn insert(&mut self, place: usize, index: u8) {
-        self.indices.copy_within(place..self.len, place + 1);
-        self.indices[place] = index;
+    #[inline]
+    pub(super) const fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline]
+    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        self.slots[..self.len].iter().map(|&slot| usize::from(slot))
+    }
+
+    fn insert(&mut self, place: usize, slot: usize) {
+        self.slots.copy_within(place..self.len, place + 1);
+        self.slots[place] = slot.to_le_bytes()[0];
         self.len += 1;
     }
 }
 
-impl<N: Real> Candidates<N> {
-    pub(super) fn new() -> Self {
-        Self {
-            len: 0,
-            slots: [0; SLOTS],
-            keys: [Key::default(); SLOTS],
-            distances: [N::ZERO; SLOTS],
-            flat: [[N::ZERO; 2]; SLOTS],
-            kept: 0,
-            ids: [0; SLOTS],
-        }
+/// The numbers of the bits that are set, upwards.
+#[inline]
+fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(move || {
+        let slot = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (slot < SLOTS).then_some(slot)
+    })
+}
+
+impl<N: Real> Choice<'_, N> {
+    #[inline]
+    pub(super) fn distance(&self, slot: usize) -> N {
+        min(max(self.slots.height[slot][self.lane], self.gap), self.prediction)
     }
 
     #[inline]
-    pub(super) fn push(&mut self, slot: usize, key: Key, (flat, distance): ([N; 2], N)) {
-        let at = self.len;
-        self.slots[at] = slot.to_le_bytes()[0];
-        self.keys[at] = key;
-        self.flat[at] = flat;
-        self.distances[at] = distance;
-        self.len += 1;
+    fn flat(&self, slot: usize) -> [N; 2] {
+        let [x, y] = &self.slots.flat;
+        [x[slot][self.lane], y[slot][self.lane]]
     }
 
-    /// Gives candidates the numbers of the old points of the same names, which no two of either have.
+    /// The candidate that stands for the witness: of those whose distance is the smallest but for
+    /// rounding one that the previous manifold held, then the deepest.
     #[inline]
-    pub(super) fn inherit(&mut self, old: &RawManifold<N, 3>) {
-        for point in &old.points {
-            let key = Key::of([point.feature1, point.feature2]);
-            let same = (0..self.len).fold(0, |same, at| same | u32::from(self.keys[at] == key) << at);
-            let heir = same & !self.kept;
-            if heir != 0 {
-                self.ids[heir.trailing_zeros() as usize] = point.id;
-                self.kept |= heir;
+    pub(super) fn deepest(&self, kept: &Kept) -> usize {
+        let old = self.level & kept.slots;
+        if old == 0 { self.deepest } else { self.lowest(old) }
+    }
+
+    /// The first of some slots with the smallest distance of them.
+    #[inline]
+    fn lowest(&self, slots: u32) -> usize {
+        let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
+        if slots.count_ones() > 1 {
+            for slot in ones(slots) {
+                let new = self.distance(slot);
+                if new < distance {
+                    (lowest, distance) = (slot, new);
+                }
             }
         }
+        lowest
     }
 
+    /// At most `limit` candidates.
     #[inline]
-    fn is_kept(&self, index: usize) -> bool {
-        self.kept >> index & 1 == 1
-    }
-
-    /// The candidate that stands for the witness gets its distance: of those at most `limit` deep one
-    /// that the previous manifold held, then the deepest.
-    #[inline]
-    pub(super) fn take_deepest(&mut self, gap: N, tolerance: N) -> usize {
-        let rank = |index: usize| {
-            let is_level = self.distances[index] <= gap + tolerance;
-            (!(is_level && self.is_kept(index)), self.distances[index])
-        };
-        let (mut best, mut least) = (0, rank(0));
-        for index in 1..self.len {
-            let new = rank(index);
-            if (new.0, least.0) == (false, true) || new.0 == least.0 && new.1 < least.1 {
-                (best, least) = (index, new);
-            }
+    pub(super) fn chosen(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
+        if self.valid.count_ones() as usize <= limit {
+            Chosen::all(self.valid)
+        } else {
+            self.outline(deepest, limit, kept)
         }
-        self.distances[best] = gap;
-        best
     }
 
-    /// At most `limit` of them.
-    #[inline]
-    pub(super) fn chosen(&self, deepest: usize, limit: usize, tolerance: N) -> Chosen {
-        if self.len <= limit { Chosen::first(self.len) } else { self.outline(deepest, limit, tolerance) }
-    }
-
-    fn outline(&self, deepest: usize, limit: usize, tolerance: N) -> Chosen {
-        let mut outline = Chosen { len: 1, indices: [0; SLOTS] };
-        outline.indices[0] = deepest.to_le_bytes()[0];
-        let order = self.by_depth();
-        let mut left = (1_u32 << self.len) - 1 & !(1 << deepest);
-        while outline.len < limit {
-            let best = self.best_addition((&outline, left), &order, tolerance);
-            let Some((index, place)) = best else { break };
-            outline.insert(place, index);
+    /// The deepest, then whatever adds most to the outline, as `reduce::chosen` has it.
+    fn outline(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
+        let mut outline = Outline::new(deepest, self.flat(deepest), self.tolerance);
+        let rest = self.by_depth(self.valid & !(1 << deepest), kept);
+        let mut left = (1_u32 << rest.len) - 1;
+        while outline.chosen.len < limit {
+            let Some((index, place)) = outline.best_addition(&rest, left) else { break };
+            outline.insert(place, usize::from(rest.slots[index]), rest.flat[index]);
             left &= !(1 << index);
         }
-        outline
+        outline.chosen
     }
 
-    fn by_depth(&self) -> Chosen {
-        let mut order = Chosen::first(self.len);
-        let key = |index: u8| self.distances[usize::from(index)].as_f64();
-        for end in 1..self.len {
-            let (new, mut at) = (order.indices[end], end);
-            while at > 0 && key(order.indices[at - 1]).total_cmp(&key(new)).is_gt() {
-                order.indices[at] = order.indices[at - 1];
+    /// Slots by distance; of equals the first comes first.
+    #[inline]
+    fn by_depth(&self, slots: u32, kept: &Kept) -> Rest<N> {
+        let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS] }, [0_i64; SLOTS]);
+        for slot in ones(slots) {
+            let (key, mut at) = (total(self.distance(slot)), order.len);
+            while at > 0 && keys[at - 1] > key {
+                (keys[at], order.slots[at]) = (keys[at - 1], order.slots[at - 1]);
                 at -= 1;
             }
-            order.indices[at] = new;
+            (keys[at], order.slots[at]) = (key, slot.to_le_bytes()[0]);
+            order.len += 1;
         }
-        order
+        let mut rest = Rest {
+            len: order.len,
+            slots: order.slots,
+            flat: [[N::ZERO; 2]; SLOTS],
+            weights: [N::ONE; SLOTS],
+        };
+        for (index, slot) in order.iter().enumerate() {
+            rest.flat[index] = self.flat(slot);
+            if !kept.has(slot) {
+                rest.weights[index] = N::lit(NEW_POINT_WEIGHT);
+            }
+        }
+        rest
+    }
+}
+
+/// The candidates that an outline may grow by, the deepest first.
+struct Rest<N: Real> {
+    len: usize,
+    slots: [u8; SLOTS],
+    flat: [[N; 2]; SLOTS],
+    /// What their gain counts for.
+    weights: [N; SLOTS],
+}
+
+/// The points chosen so far, counter-clockwise.
+struct Outline<N: Real> {
+    chosen: Chosen,
+    corners: [[N; 2]; SLOTS],
+    tolerance: N,
+}
+
+/// From a corner to the next, and the least area beyond it that is more than rounding errors.
+#[derive(Clone, Copy)]
+struct OutlineSide<N: Real> {
+    from: [N; 2],
+    along: Vector<N, 2>,
+    least: N,
+}
+
+impl<N: Real> Outline<N> {
+    #[inline]
+    fn new(slot: usize, flat: [N; 2], tolerance: N) -> Self {
+        let mut chosen = Chosen { len: 0, slots: [0; SLOTS] };
+        chosen.push(slot);
+        Self { chosen, corners: [flat; SLOTS], tolerance }
     }
 
-    fn best_addition(
-        &self,
-        (outline, left): (&Chosen, u32),
-        order: &Chosen,
-        tolerance: N,
-    ) -> Option<(u8, usize)> {
+    #[inline]
+    fn insert(&mut self, place: usize, slot: usize, flat: [N; 2]) {
+        self.corners.copy_within(place..self.chosen.len, place + 1);
+        self.corners[place] = flat;
+        self.chosen.insert(place, slot);
+    }
+
+    /// The candidate that adds most and its place in the outline; `None` if none adds more than
+    /// rounding errors.
+    fn best_addition(&self, rest: &Rest<N>, left: u32) -> Option<(usize, usize)> {
+        let mut sides: SmallVec<[OutlineSide<N>; 8]> = SmallVec::new();
+        if self.chosen.len > 1 {
+            sides.extend((0..self.chosen.len).map(|at| self.side(at)));
+        }
         let (mut best, mut best_gain) = (None, N::ZERO);
-        for &index in order.as_slice() {
-            if left >> index & 1 == 0 {
-                continue;
-            }
-            let (gain, place) = self.gain(outline, usize::from(index), tolerance);
-            let is_kept = self.is_kept(usize::from(index));
-            let gain = if is_kept { gain } else { gain * N::lit(NEW_POINT_WEIGHT) };
+        for index in ones(left) {
+            let flat = Vector::<N, 2>::from(rest.flat[index]);
+            let (gain, place) = if sides.is_empty() {
+                let distance = (flat - Vector::<N, 2>::from(self.corners[0])).norm();
+                (if distance > self.tolerance { distance } else { N::ZERO }, 1)
+            } else {
+                beyond(&sides, &flat)
+            };
+            let gain = gain * rest.weights[index];
             if gain > best_gain * N::lit(ALMOST) {
                 (best, best_gain) = (Some((index, place)), gain);
             }
@@ -159,34 +254,32 @@ impl<N: Real> Candidates<N> {
         best
     }
 
-    fn flat(&self, index: usize) -> Vector<N, 2> {
-        Vector::<N, 2>::from(self.flat[index])
-    }
-
-    fn gain(&self, outline: &Chosen, index: usize, tolerance: N) -> (N, usize) {
-        let (corners, flat) = (outline.as_slice(), self.flat(index));
-        let place = |at: usize| self.flat(usize::from(corners[at]));
-        if corners.len() == 1 {
-            let distance = (flat - place(0)).norm();
-            return (if distance > tolerance { distance } else { N::ZERO }, 1);
-        }
-        let (mut gain, mut best) = (N::ZERO, 0);
-        for at in 0..corners.len() {
-            let from = place(at);
-            let side = place(if at + 1 < corners.len() { at + 1 } else { 0 }) - from;
-            let area = -cross2(&side, &(flat - from));
-            if area > gain && area > tolerance * side.norm() {
-                (gain, best) = (area, at + 1);
-            }
-        }
-        (gain, best)
-    }
-
-    /// The slot, the name, the distance of a candidate and its number if it has one.
     #[inline]
-    pub(super) fn get(&self, index: u8) -> (usize, Key, N, Option<u32>) {
-        let at = usize::from(index);
-        let id = self.is_kept(at).then_some(self.ids[at]);
-        (usize::from(self.slots[at]), self.keys[at], self.distances[at], id)
+    fn side(&self, at: usize) -> OutlineSide<N> {
+        let next = if at + 1 < self.chosen.len { at + 1 } else { 0 };
+        let from = self.corners[at];
+        let along = Vector::<N, 2>::from(self.corners[next]) - Vector::<N, 2>::from(from);
+        OutlineSide { from, along, least: self.tolerance * along.norm() }
     }
+}
+
+/// The largest area (doubled) that a place spans with a side of the outline from outside, and its
+/// place in the outline.
+#[inline]
+fn beyond<N: Real>(sides: &[OutlineSide<N>], flat: &Vector<N, 2>) -> (N, usize) {
+    let (mut gain, mut best) = (N::ZERO, 0);
+    for (at, side) in sides.iter().enumerate() {
+        let area = -cross2(&side.along, &(flat - Vector::<N, 2>::from(side.from)));
+        if area > gain && area > side.least {
+            (gain, best) = (area, at + 1);
+        }
+    }
+    (gain, best)
+}
+
+/// A number that is ordered as `total_cmp` orders the scalar.
+#[inline]
+fn total<N: Real>(value: N) -> i64 {
+    let bits = value.as_f64().to_bits().cast_signed();
+    if bits < 0 { bits ^ i64::MAX } else { bits }
 }

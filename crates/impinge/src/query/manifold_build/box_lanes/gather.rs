@@ -29,7 +29,7 @@ impl<N: Real> Inputs<N> {
             for (index, pose) in job.poses.iter().enumerate() {
                 self.put(lane, 12 * index, pose.rotation.as_slice());
                 self.put(lane, 12 * index + 9, pose.translation.as_slice());
-                self.put(lane, 24 + 3 * index, job.half_extents(index).as_slice());
+                self.put(lane, 24 + 3 * index, job.cuboids[index].half_extents().as_slice());
             }
             self.put(lane, 30, &[job.request.prediction]);
             self.straight |= u64::from(job.request.sine <= N::ZERO) << lane;

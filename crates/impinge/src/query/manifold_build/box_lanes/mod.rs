@@ -17,16 +17,16 @@ mod names;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, Simd, SimdMask, dispatch};
+use fearless_simd::{Level, Simd, SimdMask};
 
 use self::axis::lit;
-use self::choose::Candidates;
+use self::choose::{Choice, Kept};
 use self::clip::{Clip, Limits, SLOTS, Slots};
 use self::faces::Faces;
 use self::gather::{Boxes, Inputs};
-use self::names::Naming;
+use self::names::{Naming, Side, parts_at};
 use super::{ManifoldRequest, Pair, RawManifold, contacts3};
-use crate::math::{Point, Pose, Real, Vector, Wide, max, min};
+use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::RawPoint;
 use crate::shape::{Cuboid, Kind};
 
@@ -42,12 +42,8 @@ pub(crate) struct BoxJob<'a, N: Real, const D: usize> {
     pub(crate) raw: &'a mut RawManifold<N, D>,
 }
 
-impl<N: Real, const D: usize> BoxJob<'_, N, D> {
-    fn half_extents(&self, index: usize) -> &Vector<N, D> {
-        self.cuboids[index].half_extents()
-    }
-
-    fn pair(&self) -> Pair<'_, N, D> {
+impl<'a, N: Real, const D: usize> BoxJob<'a, N, D> {
+    fn pair(&self) -> Pair<'a, N, D> {
         let [first, second] = self.cuboids.map(Kind::Cuboid);
         Pair { first, second, pose12: Pose::relative(self.poses[0], self.poses[1]) }
     }
@@ -59,8 +55,24 @@ pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
 }
 
 /// [`update_box_pairs3`] with the vectors of an instruction set.
+///
+/// Of those of x86 only the largest that is worth it and the one that is always there are compiled:
+/// wider registers than AVX2 has bring nothing to eight lanes.
 fn update_at<N: Real>(level: Level, jobs: &mut [BoxJob<'_, N, 3>]) {
-    dispatch!(level, simd => update::<_, N, N::Lanes<_>>(simd, jobs));
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = level.as_avx2() {
+        return simd.vectorize(
+            #[inline(always)]
+            || update::<_, N, N::Lanes<_>>(simd, jobs),
+        );
+    } else if let Some(simd) = level.as_sse2() {
+        return simd.vectorize(
+            #[inline(always)]
+            || update::<_, N, N::Lanes<_>>(simd, jobs),
+        );
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    fearless_simd::dispatch!(level, simd => update::<_, N, N::Lanes<_>>(simd, jobs));
 }
 
 /// Eight by eight. The numbers of the next eight are gathered before those gathered last are used,
@@ -90,13 +102,12 @@ struct Found<N: Real> {
     prediction: [N; LANES],
     normal: [[N; LANES]; 3],
     /// The pose of the second box in the frame of the first, the rotation by columns.
-    rotation: [[N; LANES]; 9],
+    rotation: [[[N; LANES]; 3]; 3],
     translation: [[N; LANES]; 3],
     /// Half of the rectangle's box across the rectangle.
     half: [N; LANES],
-    /// The lanes: the axis across the rectangle is the first, the second, and so of the
-    /// parallelogram; the rectangle faces up, the parallelogram is on the positive side, the
-    /// rectangle is the second box's.
+    /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
+    /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
     sides: [u8; 8],
     /// The lanes that are too far apart, and those whose slots are filled.
     is_apart: u8,
@@ -112,7 +123,7 @@ impl<N: Real> Found<N> {
             tolerance: row,
             prediction: row,
             normal: [row; 3],
-            rotation: [row; 9],
+            rotation: [[row; 3]; 3],
             translation: [row; 3],
             half: row,
             sides: [0; 8],
@@ -141,9 +152,9 @@ impl<N: Real> Found<N> {
         self.sides = [
             bits(faces.is_w[0]),
             bits(faces.is_w[1]),
+            bits(faces.is_upward),
             bits(faces.is_m[0]),
             bits(faces.is_m[1]),
-            bits(faces.is_upward),
             bits(faces.is_positive),
             bits(axis.is_second),
             0,
@@ -161,7 +172,7 @@ impl<N: Real> Found<N> {
             normal[axis].store(&mut self.normal[axis]);
             boxes.translation[axis].store(&mut self.translation[axis]);
             for row in 0..3 {
-                boxes.rotation[axis][row].store(&mut self.rotation[3 * axis + row]);
+                boxes.rotation[axis][row].store(&mut self.rotation[axis][row]);
             }
         }
     }
@@ -173,112 +184,130 @@ impl<N: Real> Found<N> {
         } else if self.is_built >> lane & 1 == 1 {
             self.choose(lane, columns, job);
         } else {
-            let [first, second] = job.cuboids.map(Kind::Cuboid);
-            let pose12 = Pose::relative(job.poses[0], job.poses[1]);
-            contacts3(&Pair { first, second, pose12 }, job.request, job.raw);
+            contacts3(&job.pair(), job.request, job.raw);
         }
     }
 
     fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
-        let sides = Sides::of(columns.byte(7, lane));
-        let (at_end, beyond) = (
-            [columns.byte(3, lane), columns.byte(4, lane)],
-            [columns.byte(5, lane), columns.byte(6, lane)],
-        );
-        let naming = Naming::new([sides.rectangle, sides.parallelogram], sides.is_second, at_end, beyond);
-        let (gap, prediction) = (self.gap[lane], self.prediction[lane]);
-        let mut candidates = Candidates::new();
-        let mut left = u32::from_le_bytes([
-            columns.byte(0, lane),
-            columns.byte(1, lane),
-            columns.byte(2, lane),
-            0,
-        ]);
-        while left != 0 {
-            let slot = left.trailing_zeros() as usize;
-            left &= left - 1;
-            if slot < SLOTS {
-                let flat = [self.slots.flat[0][slot][lane], self.slots.flat[1][slot][lane]];
-                let distance = min(max(self.slots.height[slot][lane], gap), prediction);
-                candidates.push(slot, naming.key(slot), (flat, distance));
-            }
-        }
-        let (raw, tolerance) = (&mut *job.raw, self.tolerance[lane]);
-        candidates.inherit(raw);
-        let deepest = candidates.take_deepest(gap, tolerance);
-        let chosen = candidates.chosen(deepest, job.request.max_points.max(1), tolerance);
-        raw.points.clear();
-        let pose12 = self.pose12(lane);
-        for &index in chosen.as_slice() {
-            let (slot, key, distance, id) = candidates.get(index);
-            let id = id.unwrap_or_else(|| raw.ids.next());
-            let point1 = self.point1(lane, slot, (&sides, &pose12));
-            let [feature1, feature2] = key.features();
-            raw.points.push(RawPoint { point1, distance, feature1, feature2, id });
+        let sides = Sides::of(columns.byte(6, lane));
+        let faces = [sides.rectangle, sides.parallelogram];
+        let parts = parts_at(lane, &self.slots.at_end, &self.slots.beyond);
+        let naming = Naming::new(faces, sides.is_second, parts);
+        let choice = Choice {
+            slots: &self.slots,
+            lane,
+            valid: columns.slots(0, lane),
+            level: columns.slots(3, lane),
+            deepest: self.slots.deepest[lane].as_f32() as usize,
+            gap: self.gap[lane],
+            prediction: self.prediction[lane],
+            tolerance: self.tolerance[lane],
+        };
+        let kept = Kept::of(job.raw, &naming, choice.valid);
+        let deepest = choice.deepest(&kept);
+        let chosen = choice.chosen(deepest, job.request.max_points.max(1), &kept);
+        let raw = &mut *job.raw;
+        raw.points.resize(chosen.len(), RawPoint::default());
+        for (slot, point) in chosen.iter().zip(&mut raw.points) {
+            point.id = kept.id(slot).unwrap_or_else(|| raw.ids.next());
+            point.point1 = self.point1(lane, slot, &sides);
+            point.distance = if slot == deepest { choice.gap } else { choice.distance(slot) };
+            [point.feature1, point.feature2] = naming.features(slot);
         }
         if !raw.points.is_sorted_by_key(|point| point.id) {
             raw.points.sort_by_key(|point| point.id);
         }
-        raw.normal = Vector::<N, 3>::from(self.normal.map(|row| row[lane]));
+        raw.normal = self.vector(&self.normal, lane);
     }
 
-    fn pose12(&self, lane: usize) -> Pose<N, 3> {
-        Pose {
-            rotation: crate::math::Matrix::<N, 3>::from_iterator(self.rotation.iter().map(|row| row[lane])),
-            translation: Vector::<N, 3>::from(self.translation.map(|row| row[lane])),
-        }
+    #[inline]
+    fn vector(&self, rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
+        Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
     }
 
-    /// The point of a slot on the first box, in its frame.
-    fn point1(&self, lane: usize, slot: usize, (sides, pose12): (&Sides, &Pose<N, 3>)) -> Point<N, 3> {
-        let (w, is_upward) = sides.rectangle;
+    /// The point of a slot on the first box, in its frame: as `Pose::point` for a rectangle of the
+    /// second box.
+    #[inline]
+    fn point1(&self, lane: usize, slot: usize, sides: &Sides) -> Point<N, 3> {
+        let w = sides.rectangle.axis;
         let rise = if sides.is_second { self.slots.height[slot][lane] } else { N::ZERO };
         let level = self.half[lane] + rise;
-        let mut point = Point::<N, 3>::origin();
+        let mut point = [N::ZERO; 3];
+        point[w] = if sides.rectangle.is_positive { level } else { -level };
         point[(w + 1) % 3] = self.slots.flat[0][slot][lane];
         point[(w + 2) % 3] = self.slots.flat[1][slot][lane];
-        point[w] = if is_upward { level } else { -level };
-        if sides.is_second { pose12.point(&point) } else { point }
+        let [x, y, z] = point;
+        if !sides.is_second {
+            return Point::<N, 3>::new(x, y, z);
+        }
+        let [column1, column2, column3] = &self.rotation;
+        let along = self.vector(column1, lane) * x
+            + self.vector(column2, lane) * y
+            + self.vector(column3, lane) * z;
+        Point::from(along + self.vector(&self.translation, lane))
     }
 }
 
 /// The faces of one pair.
 struct Sides {
-    rectangle: names::Side,
-    parallelogram: names::Side,
+    rectangle: Side,
+    parallelogram: Side,
     is_second: bool,
 }
 
 impl Sides {
+    /// From the bits of `Found::sides`.
+    #[inline]
     fn of(bits: u8) -> Self {
-        let bit = |index: u32| bits >> index & 1 == 1;
-        let axis = |first: bool, second: bool| if first { 0 } else { 2 - usize::from(second) };
-        Self {
-            rectangle: (axis(bit(0), bit(1)), bit(4)),
-            parallelogram: (axis(bit(2), bit(3)), bit(5)),
-            is_second: bit(6),
-        }
+        const AXES: [usize; 4] = [2, 0, 1, 0];
+        let side = |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+        Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
     }
 }
 
-/// The masks of eight pairs, turned so that a byte has the bits of one pair.
-struct Columns([u64; 8]);
+/// The masks of eight pairs, turned so that a byte has the bits of one pair: three bytes of the slots
+/// that are there, three of those that are level, one of the faces.
+struct Columns([[u8; LANES]; 7]);
 
 impl Columns {
     #[inline(always)]
     fn of<N: Real>(found: &Found<N>) -> Self {
-        let (slots, valid) = (&found.slots, &found.slots.valid);
-        let part = |first: usize| core::array::from_fn(|index| valid[first + index]);
-        let [at_end0, at_end1] = slots.at_end;
-        let [beyond0, beyond1] = slots.beyond;
-        let rows = [part(0), part(8), part(16), at_end0, at_end1, beyond0, beyond1, found.sides];
-        Self(rows.map(|row| transposed(u64::from_le_bytes(row))))
+        let Slots { valid, level, .. } = &found.slots;
+        let rows = [
+            part(valid, 0),
+            part(valid, 8),
+            part(valid, 16),
+            part(level, 0),
+            part(level, 8),
+            part(level, 16),
+            found.sides,
+        ];
+        Self(rows.map(
+            #[inline(always)]
+            |row| transposed(u64::from_le_bytes(row)).to_le_bytes(),
+        ))
     }
 
     #[inline]
     fn byte(&self, row: usize, lane: usize) -> u8 {
-        self.0[row].to_le_bytes()[lane]
+        self.0[row][lane & (LANES - 1)]
     }
+
+    /// The bits of all slots.
+    #[inline]
+    fn slots(&self, row: usize, lane: usize) -> u32 {
+        let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
+        u32::from_le_bytes(bytes)
+    }
+}
+
+/// Eight bytes in a row.
+#[inline(always)]
+fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
+    core::array::from_fn(
+        #[inline(always)]
+        |index| bytes[first + index],
+    )
 }
 
 /// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
