@@ -43,7 +43,7 @@ pub(crate) struct BoxJob<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> BoxJob<'a, N, D> {
-    fn pair(&self) -> Pair<'a, N, D> {
+    pub(super) fn pair(&self) -> Pair<'a, N, D> {
         let [first, second] = self.cuboids.map(Kind::Cuboid);
         Pair { first, second, pose12: Pose::relative(self.poses[0], self.poses[1]) }
     }
@@ -260,7 +260,8 @@ impl Sides {
     #[inline]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
-        let side = |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+        let side =
+            |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
         Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
     }
 }
