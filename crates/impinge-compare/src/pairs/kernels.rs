@@ -3,20 +3,23 @@
 use super::question::{Contender, Question};
 use super::regime::PAIRS;
 
-/// How many rounds are counted.
-const ROUNDS: usize = 8;
-
-/// Runs every contender whose name is `only` in the cases of one question that are selected, and says
-/// how many calls there were.
-pub fn count(case: &str, question: Question, only: &str, contenders: &mut [Box<dyn Contender>]) {
-    let is_meant = |one: &&mut Box<dyn Contender>| one.treats(question) && one.name() == only;
+/// Runs the contender of this name in so many rounds of a case, and says how many calls that were. The
+/// first round is not counted.
+pub fn count(
+    case: &str,
+    question: Question,
+    name: &str,
+    contenders: &mut [Box<dyn Contender>],
+    rounds: usize,
+) {
+    let is_meant = |one: &&mut Box<dyn Contender>| one.treats(question) && one.name() == name;
     for contender in contenders.iter_mut().filter(is_meant) {
         contender.reset(question);
         contender.ask(question);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             counted(&mut **contender, question);
         }
-        println!("{case}, {}: {} calls", contender.name(), ROUNDS * PAIRS);
+        println!("{case}, {name}: {} calls", rounds * PAIRS);
     }
 }
 

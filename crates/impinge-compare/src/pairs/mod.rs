@@ -35,10 +35,12 @@
 //! row says what it is on this machine, which is compared by what the manifold of two balls takes
 //! parry. In the end come the cases where impinge takes more than half of the time of its best rival.
 //!
-//! Instructions per call of an update of manifolds, say of stacked cuboids (see `bench/callgrind.md`):
+//! `kernels` runs so many rounds (`--steps`) of one contender (`--only`, its whole name) in the cases
+//! selected, for instruction counters and profilers. Instructions per call are those collected divided
+//! by the calls that it prints (see `bench/callgrind.md`):
 //!
 //! ```text
-//! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
+//! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --steps 8 --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
 //! ```
 
 mod form;
@@ -85,7 +87,8 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
 /// Runs, for an instruction counter, what is selected.
 pub fn count(arguments: &Arguments) {
     each(&arguments.case, &mut |case, question, _, contenders| {
-        kernels::count(case, question, &arguments.only, contenders);
+        let rounds = arguments.steps as usize;
+        kernels::count(case, question, &arguments.only, contenders, rounds);
     });
 }
 

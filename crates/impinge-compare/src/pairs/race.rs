@@ -11,7 +11,7 @@ use crate::table::Row;
 const LONGEST: f64 = 3e7;
 
 /// The fewest rounds that are measured.
-const FEWEST: usize = 3;
+const FEWEST: usize = 2;
 
 /// Asks all contenders, and gives a row for each that has an answer for every pair. The first one is
 /// the measure of the others.

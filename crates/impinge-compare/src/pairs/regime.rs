@@ -222,7 +222,7 @@ impl<const D: usize> Search<'_, D> {
     /// solids are apart. `None` where the distance jumps over it.
     fn share(&self, distance: &dyn Fn(f64) -> f64) -> Option<f64> {
         const LONGEST: f64 = 6.0;
-        const HALVINGS: usize = 32;
+        const HALVINGS: usize = 24;
         const ACCURACY: f64 = 1e-4;
         let wanted = self.regime.distance();
         let (mut low, mut high) = (0.0, LONGEST);
