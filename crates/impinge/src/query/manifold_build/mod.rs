@@ -13,6 +13,7 @@
 
 mod along;
 mod box_faces;
+mod box_lanes;
 mod box_sides;
 mod facet;
 mod frame;
@@ -25,6 +26,7 @@ mod reduce;
 pub(super) mod tests;
 mod witness;
 
+pub(crate) use self::box_lanes::{BoxJob, update_box_pairs3};
 pub(super) use self::along::{Along, build_along, build_between};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
