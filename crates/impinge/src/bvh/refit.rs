@@ -33,7 +33,7 @@ impl<const D: usize> Tree<D> {
 
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
         self.strayed.clear();
-        if !(self.touched.is_empty() && !self.is_restructured) {
+        if !self.touched.is_empty() || self.is_restructured {
             self.order_touched();
             let mut dirty = core::mem::take(&mut self.dirty);
             dirty.clear();

@@ -92,7 +92,6 @@ impl Places {
     }
 
     /// Where the key would like to stand.
-    #[expect(clippy::cast_possible_truncation, reason = "a hash is cut to the table's length")]
     fn home(&self, key: u64) -> usize {
         // Numbers from the golden ratio and from SplitMix64 (Steele et al. 2014).
         let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
