@@ -10,6 +10,7 @@
 
 mod accuracy;
 mod measure;
+mod queries;
 mod table;
 mod world;
 
@@ -19,7 +20,7 @@ use table::Table;
 type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
 
 /// The suites, in the order in which `all` runs them.
-const SUITES: &[Suite] = &[("world", world::run)];
+const SUITES: &[Suite] = &[("world", world::run), ("queries", queries::run)];
 
 /// What the command line asks for.
 #[derive(Clone, Debug)]
