@@ -1,10 +1,23 @@
 //! Rivals side by side: the same scenes, the same questions, alternately in one process on one
 //! thread.
 //!
-//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
-//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
-//! Before it prints a time it compares the answers: each row says by how many they differ from ours.
-//! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
+//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME] [--only NAME] [--case TEXT]`
+//! prints the tables of the suites named, or of all of them for `all`, and writes each to
+//! `bench/<machine>/<suite>.csv`. Before it prints a time it compares the answers: each row says by
+//! how many they differ from ours. Times are those of the thread's processor, median, minimum and the
+//! ninetieth percentile.
+//!
+//! `--only` leaves the contenders whose name contains a text, so that one can be profiled alone, and
+//! `--case` the cases whose words do. Such tables are not whole and are not written.
+//!
+//! To be run twice, for the processor that Rust assumes and for the one that is there:
+//!
+//! ```text
+//! cargo run --release --features c -- all --machine NAME
+//! RUSTFLAGS='-C target-cpu=native' cargo run --release --features c -- all --machine NAME-native
+//! ```
+//!
+//! The feature `c` adds the rivals in C and C++: see [`world`].
 //!
 //! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
 
@@ -32,6 +45,27 @@ pub struct Arguments {
     machine: String,
     /// The suites asked for.
     suites: Vec<String>,
+    /// What the name of a contender has to contain.
+    only: String,
+    /// What the words of a case have to contain.
+    case: String,
+}
+
+impl Arguments {
+    /// Whether a contender of this name is to run.
+    fn wants_contender(&self, name: &str) -> bool {
+        name.contains(&self.only)
+    }
+
+    /// Whether a case is to run.
+    fn wants_case(&self, case: &str) -> bool {
+        case.contains(&self.case)
+    }
+
+    /// Whether all contenders run in all cases.
+    const fn is_whole(&self) -> bool {
+        self.only.is_empty() && self.case.is_empty()
+    }
 }
 
 fn main() {
@@ -45,7 +79,7 @@ fn main() {
     let is_wanted =
         |name: &str| arguments.suites.iter().any(|wanted| wanted == "all" || wanted == name);
     for (_, run) in SUITES.iter().filter(|(name, _)| is_wanted(name)) {
-        for table in run(&arguments) {
+        for table in run(&arguments).into_iter().filter(|_| arguments.is_whole()) {
             match table.write(&arguments.machine) {
                 Ok(path) => println!("written to {}", path.display()),
                 Err(error) => eprintln!("the table could not be written: {error}"),
@@ -55,8 +89,14 @@ fn main() {
 }
 
 fn arguments() -> Arguments {
-    let mut arguments =
-        Arguments { objects: 10_000, steps: 100, machine: "local".to_owned(), suites: Vec::new() };
+    let mut arguments = Arguments {
+        objects: 10_000,
+        steps: 100,
+        machine: "local".to_owned(),
+        suites: Vec::new(),
+        only: String::new(),
+        case: String::new(),
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().unwrap_or_else(|| usage(&word));
@@ -65,6 +105,8 @@ fn arguments() -> Arguments {
             "--objects" => arguments.objects = number(value()) as usize,
             "--steps" => arguments.steps = number(value()),
             "--machine" => arguments.machine = value(),
+            "--only" => arguments.only = value(),
+            "--case" => arguments.case = value(),
             name if name == "all" || SUITES.iter().any(|suite| suite.0 == name) => {
                 arguments.suites.push(word);
             }
@@ -81,6 +123,7 @@ fn usage(word: &str) -> ! {
     let suites: Vec<_> = SUITES.iter().map(|suite| suite.0).collect();
     eprintln!("{word} is not understood");
     eprintln!("usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]");
+    eprintln!("                       [--only NAME] [--case TEXT]");
     eprintln!("       impinge-compare accuracy [samples]");
     eprintln!("suites: all {}", suites.join(" "));
     std::process::exit(2)
