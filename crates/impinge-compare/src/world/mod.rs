@@ -11,9 +11,14 @@
 //! and solids on a ground of 100 triangles (in the plane 10 segments) each, given as a mesh and as a
 //! height field. Their size follows `--objects`.
 mod contender;
+#[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
+mod engines;
 mod ours;
 mod rapier2;
 mod rapier3;
+
+#[cfg(any(feature = "box2d", feature = "box3d"))]
+use impinge_compare_c::Recycling;
 
 use contender::{Contender, Entrant, KINDS, race};
 use impinge_scenes::{
@@ -36,16 +41,26 @@ type Stage<const D: usize> = (&'static str, fn(usize) -> Scene<D>, usize);
 /// Runs all scenes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("world", "ms");
-    let plane: [(&str, Maker<2>); 2] = [
+    let plane: &[(&str, Maker<2>)] = &[
         ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
         ("rapier", |scene| Some(Box::new(rapier2::Rapier::new(scene)))),
+        #[cfg(feature = "box2d")]
+        ("box2d", |scene| engines::box2d(scene, Recycling::Off)),
+        #[cfg(feature = "box2d")]
+        ("box2d recycling", |scene| engines::box2d(scene, Recycling::On)),
     ];
-    let space: [(&str, Maker<3>); 2] = [
+    let space: &[(&str, Maker<3>)] = &[
         ("impinge", |scene| Some(Box::new(ours::space(scene)))),
         ("rapier", |scene| Some(Box::new(rapier3::Rapier::new(scene)))),
+        #[cfg(feature = "box3d")]
+        ("box3d", |scene| engines::box3d(scene, Recycling::Off)),
+        #[cfg(feature = "box3d")]
+        ("box3d recycling", |scene| engines::box3d(scene, Recycling::On)),
+        #[cfg(feature = "jolt")]
+        ("jolt", engines::jolt),
     ];
-    run_stages(&plane, arguments, &mut table);
-    run_stages(&space, arguments, &mut table);
+    run_stages(plane, arguments, &mut table);
+    run_stages(space, arguments, &mut table);
     vec![table]
 }
 
