@@ -16,6 +16,9 @@ fn table() -> MutexGuard<'static, ()> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// By how much Box3D says that points on a ground are deeper than they are.
+const REST_OFFSET: f32 = 0.005;
+
 /// A world of Box3D.
 ///
 /// Its bodies are dynamic, as two others never touch, without sleep; the ground is static. A step sets
@@ -23,12 +26,13 @@ fn table() -> MutexGuard<'static, ()> {
 /// but solves and integrates nothing, and keeps the list of touching contacts by the events.
 ///
 /// Its prediction is 0.02 and its boxes are loosened by up to 0.07: they are constants of it. Depths
-/// on a ground are greater by 0.005, another one. The cells of its height field have the other
-/// diagonal, and heights have 16 bits.
+/// on a ground are greater by 0.005, another one. The heights of its height field have 16 bits.
 #[derive(Debug)]
 pub struct Box3d {
     world: ffi::b3WorldId,
     bodies: Vec<ffi::b3BodyId>,
+    /// Of each object, what to add to the separation of its points.
+    offsets: Vec<f32>,
     moved: Vec<(ffi::b3BodyId, ffi::b3Vec3, ffi::b3Quat)>,
     contacts: Contacts<ffi::b3ContactId>,
     meshes: Vec<*mut ffi::b3MeshData>,
@@ -68,20 +72,24 @@ impl Box3d {
             // SAFETY: the world was just made.
             unsafe { ffi::b3World_SetContactRecycleDistance(world, 0.0) };
         }
-        let (bodies, moved, contacts) = (Vec::new(), Vec::new(), Contacts::new());
-        let (meshes, fields, thread) = (Vec::new(), Vec::new(), PhantomData);
-        let mut made = Self { world, bodies, moved, contacts, meshes, fields, thread };
+        let (bodies, offsets, moved) = (Vec::new(), Vec::new(), Vec::new());
+        let (contacts, meshes, fields) = (Contacts::new(), Vec::new(), Vec::new());
+        let thread = PhantomData;
+        let mut made = Self { world, bodies, offsets, moved, contacts, meshes, fields, thread };
         (0..scene.objects.len()).for_each(|n| made.add(scene, n));
         Some(made)
     }
 
     fn add(&mut self, scene: &Scene<3>, index: usize) {
         let shape = &scene.objects[index].shape;
-        let (mut position, rotation) = pose(&scene.placement(index, 0));
+        let (mut position, mut rotation) = pose(&scene.placement(index, 0));
         if let SceneShape::HeightField { extents, .. } = shape {
-            // Its first height is at its origin; that of the scene is centred, and is not turned.
+            // A quarter of a turn about y, which has the diagonals of its cells run as in the scene.
+            let half = 0.5_f64.sqrt();
+            rotation = ffi::b3Quat { v: vector(&[0.0, half, 0.0]), s: half as f32 };
+            // Its first height is at its origin; that of the scene is centred.
             position.x -= 0.5 * extents[0] as f32;
-            position.z -= 0.5 * extents[2] as f32;
+            position.z += 0.5 * extents[2] as f32;
         }
         // SAFETY: the world lives; definitions are plain data; the engine copies what they point to.
         let body = unsafe {
@@ -94,6 +102,7 @@ impl Box3d {
         };
         self.add_shape(body, index, shape);
         self.bodies.push(body);
+        self.offsets.push(if is_ground(shape) { REST_OFFSET } else { 0.0 });
     }
 
     /// Converts the new placements of some objects.
@@ -147,9 +156,10 @@ impl Box3d {
             // SAFETY: the shapes of a contact live.
             let index = |shape| unsafe { ffi::b3Shape_GetUserData(shape) }.addr();
             let pair = (index(data.shapeIdA), index(data.shapeIdB));
+            let offset = self.offsets[pair.0] + self.offsets[pair.1];
             let points = |manifold: &ffi::b3Manifold| {
                 let points = &manifold.points[..manifold.pointCount as usize];
-                points.iter().any(|point| point.separation <= distance)
+                points.iter().any(|point| point.separation + offset <= distance)
             };
             manifolds.iter().any(points).then_some(pair)
         });
@@ -274,6 +284,8 @@ unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut ffi::b3Mes
     mesh
 }
 
+/// The field turned back by a quarter about y: its x axis is −z of the scene, its z axis is x.
+///
 /// # Safety
 /// There are as many heights as the counts say.
 unsafe fn field(
@@ -281,7 +293,9 @@ unsafe fn field(
     heights: &[f64],
     extents: &[f64; 3],
 ) -> *mut ffi::b3HeightFieldData {
-    let mut heights: Vec<_> = heights.iter().map(|height| *height as f32).collect();
+    let height = |z: usize, x: usize| heights[(rows - 1 - x) * columns + z] as f32;
+    let turned = (0..columns).flat_map(|z| (0..rows).map(move |x| height(z, x)));
+    let mut heights: Vec<_> = turned.collect();
     let bounds = (f32::INFINITY, f32::NEG_INFINITY);
     let (low, high) = heights.iter().fold(bounds, |(low, high), h| (low.min(*h), high.max(*h)));
     let mut materials = vec![0; (rows - 1) * (columns - 1)];
@@ -289,9 +303,9 @@ unsafe fn field(
     let def = ffi::b3HeightFieldDef {
         heights: heights.as_mut_ptr(),
         materialIndices: materials.as_mut_ptr(),
-        scale: vector(&[width(extents[0], columns), extents[1], width(extents[2], rows)]),
-        countX: columns as i32,
-        countZ: rows as i32,
+        scale: vector(&[width(extents[2], rows), extents[1], width(extents[0], columns)]),
+        countX: rows as i32,
+        countZ: columns as i32,
         globalMinimumHeight: low,
         globalMaximumHeight: high,
         clockwiseWinding: false,

@@ -23,8 +23,7 @@ const LAYERS: u32 = 1;
 /// the listener of contacts but not to the solver. What remains of the dynamics is a pass over the
 /// bodies, which moves none, and one that brings their boxes up to date.
 ///
-/// Contacts can be read in the listener alone, so it keeps the depth of each point, and the pair. Boxes
-/// and hulls have their usual convex radius, by which their edges are rounded.
+/// Contacts can be read in the listener alone, so it keeps each point, its depth, and the pair.
 #[derive(Debug)]
 pub struct Jolt {
     system: *mut JPH_PhysicsSystem,
@@ -97,10 +96,16 @@ unsafe extern "C" fn hear(
 }
 
 impl Jolt {
+    /// What Jolt rounds edges by if it is not told otherwise.
+    pub const CONVEX_RADIUS: f32 = 0.05;
+
     /// A world with the objects of a scene as they are at step 0, whose contacts are predicted up to a
     /// distance; none if Jolt lacks a shape of it.
+    ///
+    /// The edges of boxes and hulls are rounded by a radius, by default [`Self::CONVEX_RADIUS`]: within
+    /// it a search for the closest points will do. With 0 they are those of the scene.
     #[must_use]
-    pub fn new(scene: &Scene<3>, prediction: f32) -> Option<Self> {
+    pub fn new(scene: &Scene<3>, prediction: f32, convex_radius: f32) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
             return None;
         }
@@ -123,13 +128,13 @@ impl Jolt {
                 thread: PhantomData,
             }
         };
-        (0..scene.objects.len()).for_each(|n| made.add(scene, n));
+        (0..scene.objects.len()).for_each(|n| made.add(scene, n, convex_radius));
         // SAFETY: the world lives. Asked for once after many bodies have been added.
         unsafe { JPH_PhysicsSystem_OptimizeBroadPhase(made.system) };
         Some(made)
     }
 
-    fn add(&mut self, scene: &Scene<3>, index: usize) {
+    fn add(&mut self, scene: &Scene<3>, index: usize, convex_radius: f32) {
         let shape = &scene.objects[index].shape;
         let (position, rotation) = pose(&scene.placement(index, 0));
         let (motion, activation) = if is_ground(shape) {
@@ -139,7 +144,7 @@ impl Jolt {
         };
         // SAFETY: the world lives; the body holds its shape, which can be released here.
         let body = unsafe {
-            let shape = shape_of(shape);
+            let shape = shape_of(shape, convex_radius);
             assert!(!shape.is_null(), "object {index} has no shape");
             let settings = JPH_BodyCreationSettings_Create3(
                 shape,
@@ -253,7 +258,7 @@ unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
             objectVsBroadPhaseLayerFilter: filter,
         };
         let system = JPH_PhysicsSystem_Create(&raw const settings);
-        JPH_PhysicsSystem_SetGravity(system, &raw const NOWHERE);
+        JPH_PhysicsSystem_SetGravity(system, &raw const NO_GRAVITY);
         let mut physics = std::mem::MaybeUninit::<JPH_PhysicsSettings>::zeroed();
         JPH_PhysicsSystem_GetPhysicsSettings(system, physics.as_mut_ptr());
         let mut physics = physics.assume_init();
@@ -263,14 +268,13 @@ unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
     }
 }
 
-const NOWHERE: JPH_Vec3 = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
-/// What Jolt rounds edges by.
-const CONVEX_RADIUS: f32 = 0.05;
+static NO_GRAVITY: JPH_Vec3 = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
 
-/// Whether Jolt has the shape; its half-spaces have borders, its segments a radius.
+/// Whether Jolt has the shape; its half-spaces have borders, its segments a radius, and its cylinders
+/// and cones run in no scene without these.
 const fn has(shape: &SceneShape<3>) -> bool {
-    use SceneShape::{Ball, Capsule, Convex, Cuboid, Cylinder};
-    matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. } | Cylinder { .. })
+    use SceneShape::{Ball, Capsule, Convex, Cuboid};
+    matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })
         || is_ground(shape)
 }
 
@@ -290,26 +294,23 @@ fn pose(placement: &Placement<3>) -> (JPH_Vec3, JPH_Quat) {
 
 /// # Safety
 /// The engine runs.
-unsafe fn shape_of(shape: &SceneShape<3>) -> *mut JPH_Shape {
+unsafe fn shape_of(shape: &SceneShape<3>, convex_radius: f32) -> *mut JPH_Shape {
     // SAFETY: the engine copies what it is given.
     unsafe {
         match shape {
             SceneShape::Ball { radius } => JPH_SphereShape_Create(*radius as f32).cast(),
             SceneShape::Cuboid { half_extents } => {
                 let half_extents = vector(half_extents);
-                JPH_BoxShape_Create(&raw const half_extents, CONVEX_RADIUS).cast()
+                JPH_BoxShape_Create(&raw const half_extents, convex_radius).cast()
             }
             SceneShape::Capsule { half_height, radius } => {
                 JPH_CapsuleShape_Create(*half_height as f32, *radius as f32).cast()
-            }
-            SceneShape::Cylinder { half_height, radius } => {
-                JPH_CylinderShape_Create(*half_height as f32, *radius as f32).cast()
             }
             SceneShape::Convex { points } => {
                 let points: Vec<_> = points.iter().map(vector).collect();
                 let count = points.len() as u32;
                 let hull =
-                    JPH_ConvexHullShapeSettings_Create(points.as_ptr(), count, CONVEX_RADIUS);
+                    JPH_ConvexHullShapeSettings_Create(points.as_ptr(), count, convex_radius);
                 let shape = JPH_ConvexHullShapeSettings_CreateShape(hull).cast();
                 JPH_ShapeSettings_Destroy(hull.cast());
                 shape

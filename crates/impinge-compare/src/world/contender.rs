@@ -31,6 +31,9 @@ pub struct Entrant<const D: usize> {
 /// What is timed, in the order of the three cases of a scene.
 pub const KINDS: [&str; 3] = ["step and reading", "step alone", "reading alone"];
 
+/// The kind whose answers are points, those of the last step, instead of pairs.
+const READING: usize = 2;
+
 /// A digest of all contact points: they have to be read, and should be about the same.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading {
@@ -45,6 +48,7 @@ pub struct Reading {
 struct Lane {
     /// By the kinds of [`KINDS`].
     times: [Times; 3],
+    points: usize,
     touching: usize,
     differ: usize,
 }
@@ -86,6 +90,7 @@ impl Lane {
         let (update, ()) = timed(|| contender.step());
         let (read, reading) = timed(|| contender.read());
         assert!(reading.depth.is_finite(), "{} points of no depth", reading.points);
+        self.points = reading.points;
         if is_kept {
             let times = [update + read, update, read];
             self.times.iter_mut().zip(times).for_each(|(kept, time)| kept.push(time * 1e-6));
@@ -96,7 +101,7 @@ impl Lane {
         Row {
             case: case.to_owned(),
             contender: name.to_owned(),
-            answers: self.touching,
+            answers: if kind == READING { self.points } else { self.touching },
             differ: self.differ,
             times: self.times[kind].clone(),
         }

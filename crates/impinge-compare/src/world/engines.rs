@@ -23,10 +23,10 @@ pub fn box3d(
     Some(Box::new(impinge_compare_c::Box3d::new(scene, recycling)?))
 }
 
-/// A world of Jolt, if it has all shapes of the scene.
+/// A world of Jolt, whose edges are rounded by a radius, if it has all shapes of the scene.
 #[cfg(feature = "jolt")]
-pub fn jolt(scene: &Scene<3>) -> Option<Box<dyn Contender<3>>> {
-    Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION)?))
+pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>>> {
+    Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION, convex_radius)?))
 }
 
 /// All engines have the same methods.

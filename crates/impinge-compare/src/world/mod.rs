@@ -10,6 +10,29 @@
 //! many boxes drifting apart, boxes of which one in a hundred moves, all kinds of shapes above a plane,
 //! and solids on a ground of 100 triangles (in the plane 10 segments) each, given as a mesh and as a
 //! height field. Their size follows `--objects`.
+//!
+//! # Rivals
+//! rapier's `CollisionPipeline`, made for the same purpose as our world, runs everywhere.
+//!
+//! The rest are engines with dynamics, each behind a feature of its name, all of them behind `c`.
+//! `impinge-compare-c` says how each is driven and what of its dynamics is left: of Box2D and Box3D
+//! nothing but their lists of islands and constraints, of Jolt two passes over the bodies. They lack
+//! planes, single triangles or segments and are absent from the mixed shapes.
+//!
+//! - Box2D and Box3D (through `boxdd-sys`, `boxddd-sys`): compiled with `-O3 -DNDEBUG`. They run twice:
+//!   computing each contact anew, as we do, and, called recycling, as by default, where the points of a
+//!   pair stay as they are on both objects until these have moved by 0.05 against one another. Their
+//!   prediction is ten times ours, and there is no rest but sleep, which is off: where few objects move,
+//!   they look at all contacts still.
+//! - Jolt (through `oxijolt-sys`): its own build asks for AVX2, also where we do not. Its contacts are
+//!   read in a callback, so its reading is part of the step. All of its bodies stay awake, likewise. It
+//!   runs twice: with the edges of the scene, and rounded by 0.05, as by default, where it has another
+//!   answer but need not search for depths as often.
+//!
+//! # Rivals left out
+//! `joltc-sys`, another way to Jolt, has no listener of contacts: no point could be read. The safe crates
+//! above `boxdd-sys` and `boxddd-sys` look up each name in registries of their own, which would be
+//! charged to the engines. `box3d-sys` needs libclang, and has what `boxddd-sys` has.
 mod contender;
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 mod engines;
@@ -17,6 +40,8 @@ mod ours;
 mod rapier2;
 mod rapier3;
 
+#[cfg(feature = "jolt")]
+use impinge_compare_c::Jolt;
 #[cfg(any(feature = "box2d", feature = "box3d"))]
 use impinge_compare_c::Recycling;
 
@@ -57,7 +82,9 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         #[cfg(feature = "box3d")]
         ("box3d recycling", |scene| engines::box3d(scene, Recycling::On)),
         #[cfg(feature = "jolt")]
-        ("jolt", engines::jolt),
+        ("jolt", |scene| engines::jolt(scene, 0.0)),
+        #[cfg(feature = "jolt")]
+        ("jolt rounded", |scene| engines::jolt(scene, Jolt::CONVEX_RADIUS)),
     ];
     run_stages(plane, arguments, &mut table);
     run_stages(space, arguments, &mut table);

@@ -15,7 +15,7 @@ const HILL: usize = 16;
 /// the ground is a line of 10 segments for each.
 ///
 /// All move by 0.01 to 0.03 per step along the ground, to and fro by up to half their size, and up and
-/// down by 0.05; about half of them touch the ground at any time, mostly 8 to 20 triangles of it, and
+/// down by 0.05. At any time about two thirds of them touch the ground, with a few of its triangles, and
 /// few touch one another. No centre is ever below the ground.
 #[must_use]
 pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
