@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn names_come_and_go() {
         let mut contacts = Contacts::new();
-        [Name(3, 1), Name(0, 1), Name(2, 1)].map(|name| contacts.begin(name));
+        [Name(3, 1), Name(0, 1), Name(2, 1)].into_iter().for_each(|name| contacts.begin(name));
         contacts.end(Name(3, 1));
         contacts.end(Name(7, 1));
         assert_eq!(contacts.iter().collect::<Vec<_>>(), [Name(2, 1), Name(0, 1)], "the last fills");
