@@ -1,7 +1,7 @@
 //! Rivals side by side: the same scenes, the same questions, alternately in one process on one
 //! thread.
 //!
-//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
+//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME] [--alone]` prints the tables of the
 //! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
 //! Before it prints a time it compares the answers: each row says by how many they differ from ours.
 //! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
@@ -9,17 +9,26 @@
 //! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
 
 mod accuracy;
+mod broad;
+mod build;
 mod measure;
+mod scale;
 mod table;
 mod world;
 
 use table::Table;
 
+/// Counts the bytes of the suite `build`.
+#[cfg(feature = "bytes")]
+#[global_allocator]
+static ALLOCATOR: &stats_alloc::StatsAlloc<std::alloc::System> = &stats_alloc::INSTRUMENTED_SYSTEM;
+
 /// A suite, by name.
 type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
 
 /// The suites, in the order in which `all` runs them.
-const SUITES: &[Suite] = &[("world", world::run)];
+const SUITES: &[Suite] =
+    &[("world", world::run), ("broad", broad::run), ("build", build::run), ("scale", scale::run)];
 
 /// What the command line asks for.
 #[derive(Clone, Debug)]
@@ -30,6 +39,8 @@ pub struct Arguments {
     steps: u32,
     /// The folder below `bench/`.
     machine: String,
+    /// Whether impinge runs alone, for profilers; only `broad` and `scale` know how to.
+    is_alone: bool,
     /// The suites asked for.
     suites: Vec<String>,
 }
@@ -55,8 +66,13 @@ fn main() {
 }
 
 fn arguments() -> Arguments {
-    let mut arguments =
-        Arguments { objects: 10_000, steps: 100, machine: "local".to_owned(), suites: Vec::new() };
+    let mut arguments = Arguments {
+        objects: 10_000,
+        steps: 100,
+        machine: "local".to_owned(),
+        is_alone: false,
+        suites: Vec::new(),
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().unwrap_or_else(|| usage(&word));
@@ -64,6 +80,7 @@ fn arguments() -> Arguments {
         match word.as_str() {
             "--objects" => arguments.objects = number(value()) as usize,
             "--steps" => arguments.steps = number(value()),
+            "--alone" => arguments.is_alone = true,
             "--machine" => arguments.machine = value(),
             name if name == "all" || SUITES.iter().any(|suite| suite.0 == name) => {
                 arguments.suites.push(word);
@@ -80,7 +97,9 @@ fn arguments() -> Arguments {
 fn usage(word: &str) -> ! {
     let suites: Vec<_> = SUITES.iter().map(|suite| suite.0).collect();
     eprintln!("{word} is not understood");
-    eprintln!("usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]");
+    eprintln!(
+        "usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME] [--alone]"
+    );
     eprintln!("       impinge-compare accuracy [samples]");
     eprintln!("suites: all {}", suites.join(" "));
     std::process::exit(2)
