@@ -1,7 +1,7 @@
 //! Rivals side by side: the same scenes, the same questions, alternately in one process on one
 //! thread.
 //!
-//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME] [--alone]` prints the tables of the
+//! `impinge-compare SUITE... [--from N] [--objects N] [--steps N] [--machine NAME] [--alone]` prints the tables of the
 //! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
 //! Before it prints a time it compares the answers: each row says by how many they differ from ours.
 //! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
@@ -33,8 +33,10 @@ const SUITES: &[Suite] =
 /// What the command line asks for.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// How many objects there are in scenes whose size is not part of the case.
+    /// How many objects there are in scenes whose size is not part of the case, and at most where it is.
     objects: usize,
+    /// Cases of fewer objects are left out, where the size is part of the case.
+    least: usize,
     /// How many steps or rounds make a run.
     steps: u32,
     /// The folder below `bench/`.
@@ -43,6 +45,13 @@ pub struct Arguments {
     is_alone: bool,
     /// The suites asked for.
     suites: Vec<String>,
+}
+
+impl Arguments {
+    /// Whether a case of so many objects is among those asked for.
+    fn includes(&self, objects: usize) -> bool {
+        (self.least..=self.objects).contains(&objects)
+    }
 }
 
 fn main() {
@@ -68,6 +77,7 @@ fn main() {
 fn arguments() -> Arguments {
     let mut arguments = Arguments {
         objects: 10_000,
+        least: 0,
         steps: 100,
         machine: "local".to_owned(),
         is_alone: false,
@@ -79,6 +89,7 @@ fn arguments() -> Arguments {
         let number = |text: String| text.parse().unwrap_or_else(|_| usage(&text));
         match word.as_str() {
             "--objects" => arguments.objects = number(value()) as usize,
+            "--from" => arguments.least = number(value()) as usize,
             "--steps" => arguments.steps = number(value()),
             "--alone" => arguments.is_alone = true,
             "--machine" => arguments.machine = value(),

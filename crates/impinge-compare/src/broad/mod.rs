@@ -31,10 +31,13 @@ use swarm::{Cell, Kind, Plan, Swarm};
 pub const FAST: Plan =
     Plan { kind: Kind::Alike, count: 0, stride: 1, pace: 0.05, is_sorted: false, replaced: 0 };
 
+/// The slow rivals take part where there are at most so many boxes.
+const FEW: usize = 10_000;
+
 /// Runs all cases of at most so many boxes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("broad", "ms");
-    let fits = |plan: &Plan| plan.count <= arguments.objects;
+    let fits = |plan: &Plan| arguments.includes(plan.count);
     for (words, plan) in cases_of_space().into_iter().filter(|(_, plan)| fits(plan)) {
         run_case::<3>(&format!("3D {words}"), plan, in_space, arguments, &mut table);
     }
@@ -112,8 +115,8 @@ fn in_plane(cells: &[Cell<2>]) -> Contenders<2> {
         Box::new(plane::Parry::new(cells)),
         Box::new(Obvhs::new(cells)),
     ];
-    rivals.extend(slow_ones(cells));
-    if cells.len() < 200_000 {
+    if cells.len() <= FEW {
+        rivals.extend(rebuilt_ones(cells));
         rivals.push(Box::new(plane::Ncollide::new(cells)));
     }
     rivals
@@ -126,17 +129,13 @@ fn in_space(cells: &[Cell<3>]) -> Contenders<3> {
         Box::new(Parry::new(cells)),
         Box::new(Obvhs::new(cells)),
     ];
-    rivals.extend(slow_ones(cells));
-    if cells.len() < 200_000 {
+    if cells.len() <= FEW {
+        rivals.extend(rebuilt_ones(cells));
         rivals.push(Box::new(Ncollide::new(cells)));
     }
     rivals
 }
 
-/// Those that take part only where there are few boxes.
-fn slow_ones<const D: usize>(cells: &[Cell<D>]) -> Contenders<D> {
-    if cells.len() > 10_000 {
-        return Vec::new();
-    }
+fn rebuilt_ones<const D: usize>(cells: &[Cell<D>]) -> Contenders<D> {
     vec![Box::new(Rebuilt::rstar(cells)), Box::new(Rebuilt::bvh(cells))]
 }

@@ -30,6 +30,18 @@ impl<const D: usize> Cell<D> {
     }
 }
 
+/// Whether rounding decides if two boxes are within a distance of each other. Contenders compute with
+/// `f32` too, each in its own order: where the numbers round differently, so may the answers.
+pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) -> bool {
+    let apart = (0..D).map(|axis| {
+        let between = f64::from(a.center[axis]) - f64::from(b.center[axis]);
+        (between.abs() - f64::from(a.half[axis]) - f64::from(b.half[axis])).max(0.0)
+    });
+    let apart = apart.map(|gap| gap * gap).sum::<f64>().sqrt();
+    let size = a.center.iter().fold(1.0_f32, |size, x| size.max(x.abs()));
+    (apart - distance).abs() <= 4.0 * f64::from(f32::EPSILON * size)
+}
+
 /// How large the boxes are, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

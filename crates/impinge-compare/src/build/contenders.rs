@@ -11,7 +11,7 @@ use parry3d::partitioning::{Bvh as ParryBvh, BvhBuildStrategy};
 use rstar::{AABB, RTree};
 
 use super::measure::{Answer, Maker};
-use super::world::{self, World};
+use super::world::{self, World, certainly_touching};
 use crate::broad::swarm::{Cell, Change};
 use crate::broad::{Contender, Impinge, Ncollide, Rapier, aabb, leaves, obvhs_aabb};
 
@@ -147,10 +147,10 @@ pub fn worlds(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     makers
 }
 
-fn filled<'a>(cells: &[Cell<3>], mut world: impl World + 'a) -> Answer<'a> {
+fn filled<'a>(cells: &'a [Cell<3>], mut world: impl World + 'a) -> Answer<'a> {
     for cell in cells {
         world.add(cell);
     }
     world.step(&[]);
-    Box::new(move || world.touching())
+    Box::new(move || certainly_touching(&world, cells))
 }

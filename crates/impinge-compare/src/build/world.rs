@@ -7,7 +7,7 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 use ncollide3d::pipeline as ncollide;
 use rapier3d::prelude as rapier;
 
-use crate::broad::swarm::Cell;
+use crate::broad::swarm::{Cell, is_borderline};
 use crate::broad::{MARGIN, key};
 
 /// The sum over a pair of the distances at which boxes have contact points.
@@ -26,6 +26,19 @@ pub trait World: Send {
 
     /// The pairs with contact points, by [`key`].
     fn touching(&self) -> Vec<u64>;
+}
+
+/// The touching pairs of a world, sorted, but for those of which rounding decides whether they touch.
+pub fn certainly_touching(world: &dyn World, cells: &[Cell<3>]) -> Vec<u64> {
+    let mut pairs = world.touching();
+    let ends = |key: &u64| [key >> 32, key & 0xffff_ffff].map(|n| &cells[n as usize]);
+    pairs.retain(|key| {
+        let [a, b] = ends(key);
+        !is_borderline(a, b, f64::from(PREDICTION))
+    });
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 /// A world of impinge.

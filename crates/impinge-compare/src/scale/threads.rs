@@ -12,7 +12,7 @@ use crate::table::Table;
 pub fn run(arguments: &Arguments) -> Table {
     let mut table = Table::new("threads", "ms");
     for count in [1_000, 10_000, 100_000, 1_000_000] {
-        if count > arguments.objects {
+        if !arguments.includes(count) {
             continue;
         }
         let mut lanes = vec![
