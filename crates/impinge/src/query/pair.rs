@@ -38,14 +38,24 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = compare(pose1, shape1, pose2, shape2);
-    let swapped = order == Ordering::Greater;
+    let swapped = is_swapped(pose1, shape1, pose2, shape2);
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
     } else {
         Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
     };
     (pair, swapped)
+}
+
+/// The order of [`canonical`] is the opposite of that of the arguments.
+#[inline]
+pub(crate) fn is_swapped<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> bool {
+    compare(pose1, shape1, pose2, shape2) == Ordering::Greater
 }
 
 /// The solids are the same at the same place, as far as [`canonical`] can tell.
