@@ -155,7 +155,7 @@ where
 
     fn read(&self) -> Reading {
         let mut reading = Reading::default();
-        for (_, _, manifold) in self.world.contact_manifolds() {
+        for (_, _, manifold) in self.world.contact_views() {
             for tracked in manifold.contacts() {
                 reading.points += 1;
                 reading.depth += f64::from(tracked.contact.depth);
