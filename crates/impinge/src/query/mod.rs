@@ -30,7 +30,7 @@ pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{
-    contacts2, contacts3, tangents2, tangents3, witness_features2, witness_features3,
+    BoxJob, contacts2, contacts3, tangents2, tangents3, update_box_pairs2, update_box_pairs3, witness_features2, witness_features3,
 };
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};

@@ -26,7 +26,7 @@ mod reduce;
 pub(super) mod tests;
 mod witness;
 
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs3};
+pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 pub(super) use self::along::{Along, build_along, build_between};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
