@@ -127,14 +127,16 @@ impl<N: Real, S> ContactEntry<N, S> {
     /// Brings the contacts up to date.
     pub(crate) fn update<const D: usize>(
         &mut self,
-        view: &mut ContactView<S::Manifolds>,
+        view: Option<&mut ContactView<S::Manifolds>>,
         posed: &Posed<'_, N, D>,
     ) -> Option<Change>
     where
         S: KeptContacts<N, D>,
     {
         self.due = false;
-        view.expire();
+        if let Some(view) = view {
+            view.expire();
+        }
         self.state.update(posed, &self.request);
         self.touch.set(self.state.len() > 0)
     }

@@ -3,8 +3,8 @@
 use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
 use crate::query::{
-    CompositeContacts, ContactManifold, ManifoldRequest, Pair, Placed, Placement, Proximity,
-    RawManifold, canonical, materialise, own_distance,
+    CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, Placed, Placement,
+    Proximity, RawManifold, canonical, materialise, own_distance,
 };
 use crate::shape::{Geometry, Shape};
 
@@ -108,6 +108,33 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         }
         let (pair, is_swapped) = posed.canonical();
         materialise(&pair, &self.raw, &posed.placement(pair_number, is_swapped), old)
+    }
+}
+
+impl<N: Space<D>, const D: usize> ContactState<N, D> {
+    /// The contacts, which are not none, read in place; the poses are those of the last update.
+    #[inline]
+    pub(crate) fn view<'a>(
+        &'a self,
+        poses: [&'a Pose<N, D>; 2],
+        pair_number: u64,
+    ) -> ManifoldView<'a, N, D> {
+        let pose1 = poses[usize::from(self.swapped)];
+        let placement = Placement { pose1, pair: pair_number, is_swapped: self.swapped };
+        ManifoldView::of_convex(&self.raw, placement)
+    }
+}
+
+impl<N: Space<D>, const D: usize> CompositeState<N, D> {
+    /// As [`ContactState::view`], one for each patch.
+    pub(crate) fn views<'a>(
+        &'a self,
+        poses: [&'a Pose<N, D>; 2],
+        pair_number: u64,
+    ) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
+        let pose1 = poses[usize::from(self.swapped)];
+        let placement = Placement { pose1, pair: pair_number, is_swapped: self.swapped };
+        self.contacts.views(placement)
     }
 }
 

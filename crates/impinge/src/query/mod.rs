@@ -8,6 +8,7 @@ mod impact;
 mod kinematic;
 mod manifold;
 mod manifold_build;
+mod manifold_view;
 pub(crate) mod pair;
 pub(crate) mod point;
 mod proximity;
@@ -32,6 +33,7 @@ pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{
     BoxJob, contacts2, contacts3, tangents2, tangents3, update_box_pairs2, update_box_pairs3, witness_features2, witness_features3,
 };
+pub use manifold_view::{ContactPoint, ManifoldView};
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
