@@ -237,7 +237,11 @@ mod tests {
             for [a, b] in [[0, 1], [1, 0], [1, 1]].map(|pick| pick.map(|index| cuboids[index])) {
                 for (from, to) in [(pose1, pose2), (pose2, pose1)] {
                     let expected = canonical(&from, a.geometry(), &to, b.geometry()).1;
-                    assert_eq!(exchanges_boxes((&from, &a), (&to, &b)), expected, "{from:?} {to:?}");
+                    assert_eq!(
+                        exchanges_boxes((&from, &a), (&to, &b)),
+                        expected,
+                        "{from:?} {to:?}"
+                    );
                 }
             }
         }

@@ -26,8 +26,8 @@ mod reduce;
 pub(super) mod tests;
 mod witness;
 
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 pub(super) use self::along::{Along, build_along, build_between};
+pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};

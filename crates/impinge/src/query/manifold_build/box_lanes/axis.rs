@@ -76,8 +76,7 @@ impl<V> Boxes<V> {
         let (half1, half2, t) = (&self.half1, &self.half2, &self.translation);
         let sizes = (half1[0] + half1[1] + half1[2]) + (half2[0] + half2[1] + half2[2]);
         let farthest = t[2].abs().larger(t[1].abs().larger(t[0].abs()));
-        lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON)
-            * (sizes + farthest)
+        lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * (sizes + farthest)
     }
 
     /// The direction of the largest gap, as `Boxes::best_axis` has it for one pair.
@@ -179,11 +178,8 @@ impl<V> Boxes<V> {
         let is1 = which(simd, ends[0]);
         let a = [is1[0].select(one, zero), is1[1].select(one, zero), is1[2].select(one, zero)];
         let b = of_three(&which(simd, ends[1]), self.rotation.each_ref());
-        let across = [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ];
+        let across =
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         let norm = dot(&across, &across).sqrt();
         let direction = by_axis(
             #[inline(always)]

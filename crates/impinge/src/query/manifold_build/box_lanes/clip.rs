@@ -16,7 +16,8 @@ pub(super) const SLOTS: usize = 24;
 pub(super) const CORNERS: usize = 8;
 
 /// Whether each of the two coordinates of a corner is positive, in the order of the slots.
-pub(super) const SIGNS: [[bool; 2]; 4] = [[true, true], [false, true], [false, false], [true, false]];
+pub(super) const SIGNS: [[bool; 2]; 4] =
+    [[true, true], [false, true], [false, false], [true, false]];
 
 /// The places of eight pairs, and for each of them a bit of a mask.
 pub(super) struct Slots<N: Real> {
@@ -141,8 +142,7 @@ where
         let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
         let x = center[0] + signed(arms[0][0], signs[0]) + signed(arms[1][0], signs[1]);
         let y = center[1] + signed(arms[0][1], signs[0]) + signed(arms[1][1], signs[1]);
-        let height =
-            self.faces.height + signed(climbs[0], signs[0]) + signed(climbs[1], signs[1]);
+        let height = self.faces.height + signed(climbs[0], signs[0]) + signed(climbs[1], signs[1]);
         ([x, y], height)
     }
 
@@ -163,10 +163,8 @@ where
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
         let along =
             [cross(&arm, &faces.arms[1]) / faces.area, cross(&faces.arms[0], &arm) / faces.area];
-        let inside = [
-            (one - along[0].abs()) * faces.widths[0],
-            (one - along[1].abs()) * faces.widths[1],
-        ];
+        let inside =
+            [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
         self.place((flat, height), inside, along)
     }
@@ -174,7 +172,12 @@ where
     /// A place that is `inside` the ends of the other face by this much along each of its axes, and
     /// at `coordinates` on them.
     #[inline(always)]
-    fn place(&self, (flat, height): ([V; 2], V), inside: [V; 2], coordinates: [V; 2]) -> Place<V, M> {
+    fn place(
+        &self,
+        (flat, height): ([V; 2], V),
+        inside: [V; 2],
+        coordinates: [V; 2],
+    ) -> Place<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
         Place {
             flat,

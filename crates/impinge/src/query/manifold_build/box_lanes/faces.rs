@@ -171,11 +171,8 @@ impl<V, M> Faces<V, M> {
         let [x, y, z] = &rotation;
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
-        let from_plane = [
-            shift[0] + up[0] * outward,
-            shift[1] + up[1] * outward,
-            shift[2] + up[2] * outward,
-        ];
+        let from_plane =
+            [shift[0] + up[0] * outward, shift[1] + up[1] * outward, shift[2] + up[2] * outward];
         let [w, u, v] = in_turn(&below.is_w, &from_plane);
         let upward: V = sign(simd, below.is_upward);
         let level = upward * below.half[0];

@@ -1,6 +1,6 @@
 //! Eight pairs of boxes side by side, and where the second of each lies in the frame of the first.
 
-use fearless_simd::{Simd};
+use fearless_simd::Simd;
 
 use super::axis::by_axis;
 use super::{BoxJob, LANES};
@@ -53,11 +53,7 @@ impl<N: Real> Inputs<N> {
 
     #[inline(always)]
     fn rotation<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, first: usize) -> [[V; 3]; 3] {
-        [
-            self.load(simd, first),
-            self.load(simd, first + 3),
-            self.load(simd, first + 6),
-        ]
+        [self.load(simd, first), self.load(simd, first + 3), self.load(simd, first + 6)]
     }
 
     #[inline(always)]

@@ -273,7 +273,8 @@ impl Sides {
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
-        let side = |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+        let side =
+            |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
         Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
     }
 }

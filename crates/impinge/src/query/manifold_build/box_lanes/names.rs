@@ -157,11 +157,7 @@ pub(super) struct Naming {
 impl Naming {
     /// For a rectangle of the second box or the first.
     #[inline(always)]
-    pub(super) fn new(
-        [rectangle, parallelogram]: [Side; 2],
-        is_second: bool,
-        parts: u64,
-    ) -> Self {
+    pub(super) fn new([rectangle, parallelogram]: [Side; 2], is_second: bool, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],

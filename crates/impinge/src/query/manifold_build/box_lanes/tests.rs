@@ -76,7 +76,11 @@ fn compare<N: Real>(steps: &[Vec<Case<N>>], what: &str) -> usize {
             one_by_one(cases, &mut expected);
             in_lanes(level, cases, &mut found);
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
-                assert_eq!(facts(one), facts(other), "{what}, {level:?}, {step}, {index}: {one:?} {other:?}");
+                assert_eq!(
+                    facts(one),
+                    facts(other),
+                    "{what}, {level:?}, {step}, {index}: {one:?} {other:?}"
+                );
                 points += one.points.len();
             }
         }
