@@ -106,8 +106,9 @@ where
         limits: Limits<V>,
         slots: &'a mut Slots<N>,
     ) -> Self {
-        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
         let infinity = V::all(simd, N::INFINITY);
+        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
+        let level = limits.prediction.simd_le(level).select(infinity, level);
         Self { simd, faces, limits, slots, lowest: infinity, most, level }
     }
 
@@ -239,11 +240,10 @@ where
         flat[1].store(&mut self.slots.flat[1][slot]);
         height.store(&mut self.slots.height[slot]);
         self.lowest = (is_there & height.simd_lt(self.lowest)).select(height, self.lowest);
-        let no_nearer = height.larger(self.limits.gap);
-        let is_admitted = is_there & no_nearer.simd_le(self.most);
-        let distance = no_nearer.smaller(self.limits.prediction);
+        // Distances are never less than the gap nor more than the prediction: both pass anyway.
+        let is_admitted = is_there & !height.simd_gt(self.most);
         self.slots.valid[slot] = bits(is_admitted);
-        self.slots.level[slot] = bits(is_admitted & distance.simd_le(self.level));
+        self.slots.level[slot] = bits(is_admitted & !height.simd_gt(self.level));
     }
 }
 
