@@ -38,8 +38,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = compare(pose1, shape1, pose2, shape2);
-    let swapped = order == Ordering::Greater;
+    let swapped = is_swapped(pose1, shape1, pose2, shape2);
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
     } else {
@@ -48,6 +47,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     (pair, swapped)
 }
 
+<<<<<<< HEAD
 /// Whether [`canonical`] exchanges two boxes.
 #[cfg_attr(not(test), expect(dead_code, reason = "for those who hand over pairs of boxes"))]
 pub(crate) fn exchanges_boxes<N: Real, const D: usize>(
@@ -58,6 +58,17 @@ pub(crate) fn exchanges_boxes<N: Real, const D: usize>(
     let order = compare_poses(pose1, pose2)
         .then_with(|| compare_numbers(sizes[0].as_slice(), sizes[1].as_slice()));
     order == Ordering::Greater
+=======
+/// The order of [`canonical`] is the opposite of that of the arguments.
+#[inline]
+pub(crate) fn is_swapped<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> bool {
+    compare(pose1, shape1, pose2, shape2) == Ordering::Greater
+>>>>>>> main
 }
 
 /// The solids are the same at the same place, as far as [`canonical`] can tell.

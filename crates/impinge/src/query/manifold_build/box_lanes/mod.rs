@@ -43,7 +43,7 @@ pub(crate) struct BoxJob<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> BoxJob<'a, N, D> {
-    fn pair(&self) -> Pair<'a, N, D> {
+    pub(super) fn pair(&self) -> Pair<'a, N, D> {
         let [first, second] = self.cuboids.map(Kind::Cuboid);
         Pair { first, second, pose12: Pose::relative(self.poses[0], self.poses[1]) }
     }
