@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::Candidate;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, noise, tolerance};
 use super::newton::settles;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
@@ -39,8 +39,6 @@ struct Search<N: Real, const D: usize> {
     last: Candidate<N, D>,
     /// The length of the nearest point so far: an upper bound.
     upper: N,
-    /// The last support point, if the simplex has not taken it.
-    spare: Vertex<N, D>,
     /// The gap between the bounds at which the search stops.
     gap: N,
     /// The lower bound that counts is that of the last normal, across which the points lie, not that
@@ -96,7 +94,6 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             best: first,
             last: first,
             upper: N::INFINITY,
-            spare: first.vertex,
             gap: gap(),
             for_points: true,
         }
@@ -113,7 +110,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             self.upper = nearest.squared.sqrt();
             let candidate = Candidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
-            (self.last, self.spare) = (candidate, candidate.vertex);
+            self.last = candidate;
             if self.best.height > limit {
                 return Outcome::Beyond;
             }
@@ -131,17 +128,16 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         Outcome::Apart
     }
 
-    /// Takes the spare point into the simplex; `None`, and nothing done, if that brings the origin
-    /// no nearer: the arithmetic is at its end.
+    /// Takes the last support point into the simplex; `None`, and nothing done, if that brings the
+    /// origin no nearer: the arithmetic is at its end.
     fn advanced(&mut self, nearest: &Nearest<N, D>) -> Option<Nearest<N, D>> {
-        let mut grown = self.simplex;
-        grown.push(self.spare);
-        let next = N::nearest(grown.points());
+        self.simplex.push(self.last.vertex);
+        let next = N::nearest(self.simplex.points());
         if next.squared >= nearest.squared {
+            self.simplex.pop();
             return None;
         }
-        grown.keep(&next.weights);
-        self.simplex = grown;
+        self.simplex.keep(&next.weights);
         Some(next)
     }
 
@@ -169,7 +165,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             bundle.push(self.best.vertex);
             return locate(difference, &self.best, &bundle);
         }
-        bundle.extend([self.best.vertex, self.spare]);
+        bundle.extend([self.best.vertex, self.last.vertex]);
         refine(difference, &mut bundle, &mut self.best);
         let near = lowest(&bundle, &self.best.normal);
         let apart = match polish(difference, &mut self.best, &near) {

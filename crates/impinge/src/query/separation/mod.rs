@@ -20,6 +20,7 @@ pub(super) mod ball_tapered;
 mod ball_triangle;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
+mod flat_core;
 mod general;
 mod outline;
 mod plane_any;

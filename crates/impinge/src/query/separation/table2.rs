@@ -20,7 +20,7 @@ impl<N: Real> Plane<N> {
         let be: Algorithm<N, 2> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 2> = ball_tapered::separation;
         let rr: Algorithm<N, 2> = rounded::separation;
-        let gg: Algorithm<N, 2> = general::plane;
+        let gg: Algorithm<N, 2> = general::separation;
         let gp: Algorithm<N, 2> = plane_any::separation;
         let pp: Algorithm<N, 2> = plane_any::plane_plane;
         let gx: Algorithm<N, 2> = composite::separation;
