@@ -37,13 +37,17 @@ pub(super) fn known_part<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: &Separation<N, D>,
 ) -> Option<FeatureId> {
+    let point = || pair.pose12.inverse_point(&found.point2);
+    let outward = || -pair.pose12.inverse_vector(&found.normal);
     match pair.second {
         Kind::Ball(_) | Kind::Ellipsoid(_) | Kind::Plane(_) => Some(WHOLE),
         Kind::Segment(segment) => Some(part_of_segment(pair, segment)),
         Kind::Capsule(capsule) => Some(part_of_segment(pair, capsule.segment())),
-        Kind::Cuboid(cuboid) => {
-            cuboid.part_at(&pair.pose12.inverse_point(&found.point2), rounding(pair))
-        }
+        Kind::Cuboid(cuboid) => cuboid.part_at(&point(), rounding(pair)),
+        Kind::Triangle(triangle) => triangle.part_at(&point(), &outward(), rounding(pair)),
+        Kind::Polytope(solid) => Some(solid.part_at(&point(), &outward(), rounding(pair))),
+        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point(), rounding(pair)),
+        Kind::Cone(cone, _) => cone.part_at(&point(), rounding(pair)),
         _ => None,
     }
 }
@@ -66,9 +70,9 @@ fn part_of_segment<N: Real, const D: usize>(
 ) -> FeatureId {
     let center = pair.pose12.inverse_point(&Point::origin());
     let along = segment.b() - segment.a();
-    let (squared, noise) = (along.norm_squared(), N::TWO * rounding(pair));
-    let is_near = |reach: N| reach <= N::ZERO || reach * reach <= noise * noise * squared;
-    if squared <= noise * noise {
+    let (length, noise) = (along.norm(), N::TWO * rounding(pair));
+    let is_near = |reach: N| reach <= noise * length;
+    if length <= noise {
         FeatureId::Edge(0)
     } else if is_near((center - segment.a()).dot(&along)) {
         FeatureId::Vertex(0)

@@ -51,7 +51,7 @@ fn part_at<N: Real>(
     noise: N,
 ) -> Option<FeatureId> {
     let (squared, reached) = (along.norm_squared(), (point - from).dot(along));
-    let is_near = |reach: N| reach <= N::ZERO || reach * reach <= noise * noise * squared;
+    let is_near = |reach: N| reach <= noise * squared.sqrt();
     match (is_near(reached), is_near(squared - reached)) {
         (true, true) => None,
         (true, false) => Some(FeatureId::Vertex(0)),
