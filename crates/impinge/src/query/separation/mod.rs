@@ -14,6 +14,7 @@ mod ball_cone;
 mod ball_cuboid;
 mod ball_cylinder;
 pub(super) mod ball_ellipsoid;
+mod ball_polygon;
 mod ball_polytope;
 mod ball_segment;
 pub(super) mod ball_tapered;
