@@ -104,6 +104,7 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) refit: RefitFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
+    pub(crate) near_first: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
@@ -119,6 +120,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
             refit: BoxTree::refit_to,
             each: BoxTree::answer,
             by_time: BoxTree::by_time,
+            near_first: BoxTree::near_first,
             by_distance: BoxTree::by_distance,
         }
     }

@@ -26,11 +26,14 @@ mod bounds;
 mod farthest;
 mod join;
 mod kernel;
+mod near_first;
 mod order;
 mod ordered;
 mod query;
 mod schedule;
+mod slabs;
 mod tree;
+mod triangles;
 mod validate;
 mod visit;
 
@@ -41,8 +44,11 @@ pub use block::{Block, LANES};
 pub use bounds::Bounds;
 pub use join::Joiner;
 pub use kernel::Lanes;
+pub(crate) use near_first::RayProbe;
 pub use ordered::{Frontier, Keys};
+pub(crate) use slabs::Slabs;
 pub use tree::{NONE, Tree};
+pub(crate) use triangles::{ShearedLine, Triangles};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
 #[cfg(feature = "parallel")]

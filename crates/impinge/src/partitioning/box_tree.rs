@@ -432,6 +432,26 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_time(sweep, max_time, found);
     }
 
+    /// [`Self::by_time`] in no exact order, which is faster.
+    pub(crate) fn near_first(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().near_first(sweep, max_time, found);
+    }
+
+    /// What stands beside the list of [`Self::unbounded`].
+    pub(crate) const fn packed(&self) -> &Tree<D> {
+        &self.tree
+    }
+
+    /// The boxes that no finite `f32` box encloses.
+    pub(crate) fn unbounded(&self) -> &[u32] {
+        &self.unbounded
+    }
+
     pub(crate) fn by_distance(
         &self,
         aabb: &Aabb<N, D>,
