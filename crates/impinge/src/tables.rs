@@ -108,7 +108,7 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
-type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type BuildFn<N, const D: usize> = fn(Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError>;
 type RefitFn<N, const D: usize> = fn(&mut BoxTree<N, D>, &[Aabb<N, D>]) -> Result<(), BoxTreeError>;
 type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
 type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);

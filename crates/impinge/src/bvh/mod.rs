@@ -32,6 +32,7 @@ mod ordered;
 mod query;
 mod schedule;
 mod slabs;
+mod still;
 mod tree;
 mod triangles;
 mod validate;

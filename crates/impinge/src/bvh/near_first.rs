@@ -26,28 +26,41 @@ struct Entry {
     number: u32,
 }
 
-/// What a search has put off, the nearest on top of those of one block.
+impl Entry {
+    #[inline(always)]
+    fn rank(self) -> u64 {
+        u64::from(self.key.to_bits()) << 32 | u64::from(self.number)
+    }
+}
+
+/// What a search has put off, the nearest on top of those of one block: arrays of the members of
+/// [`Entry`], which are emptied faster.
 struct Pending {
-    entries: [Entry; STACK],
+    /// The keys, whose bits order as they do, and below them the numbers.
+    ranks: [u64; STACK],
+    /// The trees and layers.
+    places: [[u8; 2]; STACK],
     len: usize,
 }
 
 impl Pending {
     #[inline(always)]
     fn new() -> Self {
-        Self { entries: [Entry { key: 0.0, tree: 0, layer: 0, number: 0 }; STACK], len: 0 }
+        Self { ranks: [0; STACK], places: [[0; 2]; STACK], len: 0 }
     }
 
     #[inline(always)]
     fn push(&mut self, entry: Entry) {
-        self.entries[self.len] = entry;
+        (self.ranks[self.len], self.places[self.len]) = (entry.rank(), [entry.tree, entry.layer]);
         self.len += 1;
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the two halves of the rank")]
     fn pop(&mut self) -> Option<Entry> {
         self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len])
+        let (rank, [tree, layer]) = (self.ranks[self.len], self.places[self.len]);
+        Some(Entry { key: f32::from_bits((rank >> 32) as u32), tree, layer, number: rank as u32 })
     }
 
     /// Adds the lanes of the mask, those with the least keys last; `first` is the entry of lane 0.
@@ -58,27 +71,28 @@ impl Pending {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let entry = Entry { key: keys[lane as usize], number: first.number + lane, ..first };
-            let mut at = self.len;
-            while at > start && self.entries[at - 1].key < entry.key {
-                self.entries[at] = self.entries[at - 1];
+            let (rank, mut at) = (entry.rank(), self.len);
+            while at > start && self.ranks[at - 1] < rank {
+                self.ranks[at] = self.ranks[at - 1];
                 at -= 1;
             }
-            self.entries[at] = entry;
+            self.ranks[at] = rank;
+            self.places[self.len] = [first.tree, first.layer];
             self.len += 1;
         }
     }
 }
 
 impl Lanes {
-    /// Calls `found` with each object of the trees that the moving box may touch by `limit` and a lower
-    /// bound of the time, near ones first but in no exact order; `found` returns the new limit, which
+    /// Calls `found` with each object of the trees that the moving box may touch by `limit` near
+    /// ones first but in no exact order; `found` returns the new limit, which
     /// never grows. Both are in the units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_near_first<const D: usize>(
         self,
         trees: &[&Tree<D>],
         slabs: &Slabs<D>,
         limit: f32,
-        mut found: impl FnMut(u32, f32) -> f32,
+        mut found: impl FnMut(u32) -> f32,
     ) {
         with_kernel!(self, kernel => near_first(kernel, trees, slabs, limit, &mut found));
     }
@@ -90,7 +104,7 @@ fn near_first<K: Kernel, const D: usize>(
     trees: &[&Tree<D>],
     slabs: &Slabs<D>,
     mut limit: f32,
-    found: &mut impl FnMut(u32, f32) -> f32,
+    found: &mut impl FnMut(u32) -> f32,
 ) {
     let (mut pending, mut keys) = (Pending::new(), [0.0; LANES]);
     for (tree, number) in trees.iter().zip(0..).filter(|(tree, _)| !tree.is_empty()) {
@@ -105,7 +119,7 @@ fn near_first<K: Kernel, const D: usize>(
         let tree = trees[usize::from(entry.tree)];
         let Some(layer) = entry.layer.checked_sub(1) else {
             if let Some(id) = tree.id_in(entry.number) {
-                limit = found(id, entry.key);
+                limit = found(id);
             }
             continue;
         };

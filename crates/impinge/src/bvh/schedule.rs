@@ -62,6 +62,11 @@ impl<const D: usize> Tree<D> {
         let mut items = self.items_from(0);
         sort(&mut items);
         self.rearrange(0, items.iter().map(|item| item.id));
+        self.declare_ordered();
+    }
+
+    /// All objects are in order; those that come are new.
+    pub(super) fn declare_ordered(&mut self) {
         self.schedule = Schedule { ordered: self.end, fresh: self.end, ..Schedule::default() };
     }
 

@@ -63,12 +63,6 @@ impl<const D: usize> Slabs<D> {
         if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
     }
 
-    /// A time of this, or a little less, in the caller's units.
-    pub(crate) fn time<N: Real>(&self, key: f32) -> N {
-        let earlier = f64::from(key) * f64::from(1.0 - QUOTIENT * f32::EPSILON);
-        N::lit(earlier / self.unit)
-    }
-
     /// The faces of a block that the box meets first on an axis, and the others.
     #[inline(always)]
     fn faces<'a>(&self, block: &'a Block<D>, axis: usize) -> [&'a [f32; LANES]; 2] {
@@ -134,7 +128,7 @@ impl<S: Simd> Wide<S> {
 #[cfg(test)]
 mod tests {
     use super::super::Bounds;
-    use super::super::kernel::{Lanes, with_kernel};
+    use super::super::kernel::{Kernel, Lanes, with_kernel};
     use super::*;
     use crate::math::Point;
 
@@ -188,7 +182,7 @@ mod tests {
                 let hit = exact.sweep_interval(&moving, &dir).filter(|&(enter, _)| enter <= limit);
                 if let Some((enter, _)) = hit {
                     assert!(padded >> lane & 1 == 1, "{origin} {dir} {exact:?}");
-                    assert!(slabs.time::<f32>(keys[lane]) <= enter, "a bound of the time");
+                    assert!(keys[lane] <= slabs.limit(enter), "a bound of the time");
                     hits += 1;
                 }
             }

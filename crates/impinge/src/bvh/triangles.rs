@@ -43,13 +43,13 @@ impl Triangles {
 /// What rounding does to the position of a corner beside the line, in units of `f32`'s rounding and
 /// of how far the corner is from the origin of the line along it and across it.
 ///
-/// Here: one for each difference, three for the run along, one for the sum, times two for an axis
-/// that is not the longest; as much again in the exact test. The sides of a triangle seen edge on, and
-/// solids that start on a triangle, are met within eight units of a distance, or of the coordinates.
-/// Together, and with an area of two such positions, 419; the rest is reserve.
-const NEAR: f32 = 512.0;
+/// In halves of that unit: 12 here and 16 in the exact test, for differences, runs along the line and
+/// sums, which make 112 in an area of two such positions; and 83 within which the sides of a triangle
+/// seen edge on are met, which make 235. The rest is reserve.
+const NEAR: f32 = 256.0;
 
-/// The same, in units of all coordinates: those of `f64` are rounded to be here.
+/// The same, in units of all coordinates: those of `f64` are rounded to be here, which makes 8, and a ray
+/// starts on a triangle that is within eight units, which makes 40.
 const FAR: f32 = 64.0;
 
 /// A line, sheared so that it runs along the third of its axes.
@@ -134,11 +134,9 @@ impl<S: Simd> Wide<S> {
         line: &ShearedLine,
         limit: f32,
     ) -> u32 {
-        let seen = triangles.corners.each_ref().map(
-            #[inline(always)]
-            |corner| seen(self.0, corner, line),
-        );
-        let [a, b, c] = seen;
+        // Spelled out: what arrays are mapped by is not compiled for the instruction set.
+        let [a, b, c] = &triangles.corners;
+        let (a, b, c) = (seen(self.0, a, line), seen(self.0, b, line), seen(self.0, c, line));
         let areas = [area(b, c), area(c, a), area(a, b)];
         let width = wide(a).max(wide(b)).max(wide(c));
         let depth = a[2].abs().max(b[2].abs()).max(c[2].abs());

@@ -136,7 +136,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         let size = self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max);
         let slabs = Slabs::new(aabb, velocity, size);
         let first = slabs.limit(first);
-        self.lanes.visit_near_first(&self.trees, &slabs, first, |id, _| slabs.limit(decide(id)));
+        self.lanes.visit_near_first(&self.trees, &slabs, first, |id| slabs.limit(decide(id)));
     }
 
     fn best_first(

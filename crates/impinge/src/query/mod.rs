@@ -36,6 +36,6 @@ pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
-pub use ray::{RayCast, RayIntersection};
+pub use ray::{RayBatch, RayCast, RayIntersection};
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};

@@ -36,7 +36,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         check_parts(&triangles, vertices.len())?;
         let topology = Topology::new(&vertices, &triangles);
         let boxes = boxes_of(&vertices, &triangles);
-        let tree = BoxTree::try_from_boxes(&boxes).map_err(refused)?;
+        let tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
         let normals = normals_of(&vertices, &triangles);
         Ok(Self {
             is_cycle: topology.is_cycle,
