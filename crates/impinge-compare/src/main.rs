@@ -2,14 +2,17 @@
 //! thread.
 //!
 //! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
-//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
+//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`;
+//! `--case TEXT` and `--only TEXT` leave out cases and contenders whose names do not contain a text.
 //! Before it prints a time it compares the answers: each row says by how many they differ from ours.
 //! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
 //!
 //! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
+//! `impinge-compare kernels` is for instruction counters: see [`pairs`].
 
 mod accuracy;
 mod measure;
+mod pairs;
 mod table;
 mod world;
 
@@ -19,7 +22,7 @@ use table::Table;
 type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
 
 /// The suites, in the order in which `all` runs them.
-const SUITES: &[Suite] = &[("world", world::run)];
+const SUITES: &[Suite] = &[("world", world::run), ("pairs", pairs::run)];
 
 /// What the command line asks for.
 #[derive(Clone, Debug)]
@@ -30,6 +33,10 @@ pub struct Arguments {
     steps: u32,
     /// The folder below `bench/`.
     machine: String,
+    /// Only the cases whose name contains this.
+    case: String,
+    /// Only the contenders whose name contains this.
+    only: String,
     /// The suites asked for.
     suites: Vec<String>,
 }
@@ -42,6 +49,10 @@ fn main() {
         return;
     }
     let arguments = arguments();
+    if arguments.suites.iter().any(|suite| suite == "kernels") {
+        pairs::count(&arguments);
+        return;
+    }
     let is_wanted =
         |name: &str| arguments.suites.iter().any(|wanted| wanted == "all" || wanted == name);
     for (_, run) in SUITES.iter().filter(|(name, _)| is_wanted(name)) {
@@ -55,8 +66,14 @@ fn main() {
 }
 
 fn arguments() -> Arguments {
-    let mut arguments =
-        Arguments { objects: 10_000, steps: 100, machine: "local".to_owned(), suites: Vec::new() };
+    let mut arguments = Arguments {
+        objects: 10_000,
+        steps: 100,
+        machine: "local".to_owned(),
+        case: String::new(),
+        only: String::new(),
+        suites: Vec::new(),
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().unwrap_or_else(|| usage(&word));
@@ -65,6 +82,9 @@ fn arguments() -> Arguments {
             "--objects" => arguments.objects = number(value()) as usize,
             "--steps" => arguments.steps = number(value()),
             "--machine" => arguments.machine = value(),
+            "--case" => arguments.case = value(),
+            "--only" => arguments.only = value(),
+            "kernels" => arguments.suites.push(word),
             name if name == "all" || SUITES.iter().any(|suite| suite.0 == name) => {
                 arguments.suites.push(word);
             }
@@ -81,6 +101,8 @@ fn usage(word: &str) -> ! {
     let suites: Vec<_> = SUITES.iter().map(|suite| suite.0).collect();
     eprintln!("{word} is not understood");
     eprintln!("usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]");
+    eprintln!("           [--case TEXT] [--only TEXT]");
+    eprintln!("       impinge-compare kernels --case TEXT --only CONTENDER");
     eprintln!("       impinge-compare accuracy [samples]");
     eprintln!("suites: all {}", suites.join(" "));
     std::process::exit(2)

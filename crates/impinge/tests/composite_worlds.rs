@@ -1,6 +1,8 @@
 //! Composites in worlds: manifolds per patch, names, events, one side and two, prediction of motion,
 //! shapes that touch themselves or are deformed.
 
+#[path = "scene_stage/mod.rs"]
+mod scene_stage;
 mod slides;
 
 use impinge::dim2::shape::Polyline as Polyline2;
@@ -10,6 +12,7 @@ use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, GeometricQueryT
 use impinge::query::{ContactManifold, Proximity, TrackedContact};
 use impinge::shape::{Ball, Compound, Cuboid, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld, WorldError};
+use scene_stage::assert_views_agree;
 use slides::{PATTERNS, Pattern, Random, grid};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
@@ -60,6 +63,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         let (mut out, counted) = (Vec::new(), pair.num_contacts());
         pair.contacts(&mut out);
         assert_eq!(counted, out.iter().map(|one| one.len()).sum::<usize>(), "all are counted");
+        assert_views_agree(&self.world);
         let listed = self.world.contact_manifolds();
         let listed = listed.filter(|(first, second, _)| {
             [first.handle(), second.handle()] == [a, b]

@@ -142,6 +142,10 @@ pub mod query {
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 2>;
     /// A contact, how it moves, and its name.
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 2>;
+    /// A contact without its kinematic.
+    pub type ContactPoint<N> = crate::query::ContactPoint<N, 2>;
+    /// A manifold read where it is kept.
+    pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 2>;
     /// Points that delimit a flat area of contact.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 2>;
 }

@@ -10,6 +10,7 @@ use super::entry::{
 use super::generator::DefaultContactDispatcher;
 use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
+use super::update::Changes;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::math::Space;
 use crate::pairs::PairTable;
@@ -31,6 +32,9 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(crate) ids: IdAllocator,
     /// The pairs made due since the last update; some may be gone again.
     pub(super) due: Vec<(u32, u32)>,
+    /// Empty but for their memory, from update to update.
+    pub(super) changes: Changes,
+    pub(super) indices: Vec<usize>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
     /// Those of the pairs that touch; made when first needed after a change of either.
@@ -75,6 +79,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             lanes: Lanes::default(),
             ids: IdAllocator::new(),
             due: Vec::new(),
+            changes: Changes::new(),
+            indices: Vec::new(),
             order: OnceLock::new(),
             touching: OnceLock::new(),
         }

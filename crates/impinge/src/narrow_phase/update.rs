@@ -1,11 +1,15 @@
 //! The step: which pairs need a new query, and the batches that give it to them.
 
+use smallvec::SmallVec;
+
 use super::default_narrow_phase::push_change;
-use super::entry::{Change, posed};
-use super::group::Group;
-use super::lanes::{Lane, Location, needs_update};
+use super::entry::{Change, ContactEntry, ContactView, posed};
+use super::group::{Group, Rows};
+use super::lanes::{BOX_PAIRS, Lane, Location, needs_update};
+use super::state::{ContactState, KeptContacts};
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
+use crate::query::{BoxJob, ContactManifold};
 
 /// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
 /// constant, so that the order of results never depends on the number of threads.
@@ -15,11 +19,8 @@ const CHUNK: usize = 128;
 /// than by going through all of them.
 const SPARSE: usize = 8;
 
-/// Some pairs of a group side by side: keys and states, and views.
-type Chunk<'a, S, V> = ((&'a [(u32, u32)], &'a mut [S]), &'a mut [V]);
-
 /// What changed, pair by pair.
-type Changes = Vec<((u32, u32), Change)>;
+pub(super) type Changes = Vec<((u32, u32), Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Brings all pairs up to date with the rows of the table and reports what changed.
@@ -30,17 +31,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// [`Self::update_pairs`], compiled in this crate.
     pub(crate) fn update_pairs_here(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         let due = core::mem::take(&mut self.due);
-        let mut changes = Changes::new();
+        let mut changes = core::mem::take(&mut self.changes);
         let affected: usize = table.changed().iter().map(|&row| self.pairs.count(row)).sum();
         if (affected + due.len()) * SPARSE < self.pairs.len() {
             self.update_some(table, &due, &mut changes);
         } else {
             self.update_all(table, &mut changes);
         }
-        for (key, change) in changes {
+        for (key, change) in changes.drain(..) {
             self.note_change(key, change);
             push_change(table, key, Some(change), events);
         }
+        self.changes = changes;
         self.due = due;
         self.due.clear();
     }
@@ -56,20 +58,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
-        for group in &mut self.lanes.contacts {
-            update_group(group, changes, |key, entry, view| {
-                let needed = needs_update(entry.due, table, key);
-                if needed { entry.update(view, &posed(table, key)) } else { None }
-            });
+        for (number, group) in self.lanes.contacts.iter_mut().enumerate() {
+            let are_boxes = number == usize::from(BOX_PAIRS);
+            let update = if are_boxes { update_boxes } else { update_contacts };
+            update_group(group, changes, |rows, changes| update(rows, table, changes));
         }
-        update_group(&mut self.lanes.composites, changes, |key, entry, view| {
-            let needed = needs_update(entry.due, table, key);
-            if needed { entry.update(view, &posed(table, key)) } else { None }
+        update_group(&mut self.lanes.composites, changes, |rows, changes| {
+            update_contacts(rows, table, changes);
         });
         for group in &mut self.lanes.proximity {
-            update_group(group, changes, |key, entry, ()| {
-                let needed = needs_update(entry.due, table, key);
-                if needed { entry.update(&posed(table, key)) } else { None }
+            update_group(group, changes, |rows, changes| {
+                update_each(rows, changes, |key, entry, _| {
+                    let needed = needs_update(entry.due, table, key);
+                    if needed { entry.update(&posed(table, key)) } else { None }
+                });
             });
         }
         self.update_all_custom(table, changes);
@@ -77,16 +79,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// One by one: algorithms of the user's share one source of names.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
-        let (keys, entries, _) = self.lanes.custom_contacts.split_mut();
-        for (&key, entry) in keys.iter().zip(entries) {
+        for (key, entry, _) in self.lanes.custom_contacts.rows().each() {
             if needs_update(entry.due, table, key) {
                 let dispatcher = &*self.contact_dispatcher;
                 let change = entry.update(dispatcher, table, key, &mut self.ids);
                 changes.extend(change.map(|change| (key, change)));
             }
         }
-        let (keys, entries, _) = self.lanes.custom_proximity.split_mut();
-        for (&key, entry) in keys.iter().zip(entries) {
+        for (key, entry, _) in self.lanes.custom_proximity.rows().each() {
             if needs_update(entry.due, table, key) {
                 let change = entry.update(&*self.proximity_dispatcher, table, key);
                 changes.extend(change.map(|change| (key, change)));
@@ -101,7 +101,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         due: &[(u32, u32)],
         changes: &mut Changes,
     ) {
-        let mut indices = Vec::new();
+        let mut indices = core::mem::take(&mut self.indices);
         for &row in table.changed() {
             // A pair of two changed objects is taken from the end with the smaller index.
             let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
@@ -113,11 +113,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         indices.extend(due);
         indices.sort_unstable();
         indices.dedup();
-        for index in indices {
+        for index in indices.drain(..) {
             let key = self.pairs.pairs()[index];
             let change = self.update_one(table, key, self.locations[index]);
             changes.extend(change.map(|change| (key, change)));
         }
+        self.indices = indices;
     }
 
     fn update_one(
@@ -152,29 +153,72 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
+/// The contacts of some pairs of convex solids.
+type ContactRows<'a, N, const D: usize> =
+    Rows<'a, ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+
+/// Brings the contacts of some pairs of boxes up to date, several at a time.
+fn update_boxes<N: Space<D>, const D: usize>(
+    mut rows: ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+) {
+    let mut jobs = SmallVec::<[BoxJob<'_, N, D>; CHUNK]>::new();
+    for (key, entry, view) in rows.reborrow().each() {
+        if needs_update(entry.due, table, key) {
+            jobs.extend(entry.begin_boxes(view, &posed(table, key)));
+        }
+    }
+    (N::tables().box_contacts)(&mut jobs);
+    drop(jobs);
+    let noted = rows.each().map(|(key, entry, _)| (key, entry.note()));
+    changes.extend(noted.filter_map(|(key, change)| Some((key, change?))));
+}
+
+/// Brings the contacts of some pairs up to date.
+fn update_contacts<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
+    rows: Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+) {
+    update_each(rows, changes, |key, entry, view| {
+        let needed = needs_update(entry.due, table, key);
+        if needed { entry.update(view, &posed(table, key)) } else { None }
+    });
+}
+
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
 /// changed comes in the order of the group either way.
 fn update_group<S: Send + Sync, V: Default + Send + Sync>(
     group: &mut Group<S, V>,
     changes: &mut Changes,
-    update: impl Fn((u32, u32), &mut S, &mut V) -> Option<Change> + Sync,
+    update: impl Fn(Rows<'_, S, V>, &mut Changes) + Sync,
 ) {
-    let (keys, states, views) = group.split_mut();
-    let chunk = |((keys, states), views): Chunk<'_, S, V>| -> Changes {
-        let one = |((&key, state), view)| update(key, state, view).map(|change| (key, change));
-        keys.iter().zip(states).zip(views).filter_map(one).collect()
-    };
+    let rows = group.rows();
     #[cfg(feature = "parallel")]
-    if keys.len() >= 2 * CHUNK {
+    if rows.len() >= 2 * CHUNK {
         use rayon::prelude::*;
-        let chunks = keys.par_chunks(CHUNK).zip(states.par_chunks_mut(CHUNK));
-        let chunks = chunks.zip(views.par_chunks_mut(CHUNK));
-        let results: Vec<Changes> = chunks.map(chunk).collect();
+        let chunks: Vec<_> = rows.chunks(CHUNK).collect();
+        let chunk = |rows| {
+            let mut changes = Changes::new();
+            update(rows, &mut changes);
+            changes
+        };
+        let results: Vec<Changes> = chunks.into_par_iter().map(chunk).collect();
         changes.extend(results.into_iter().flatten());
         return;
     }
-    let chunks = keys.chunks(CHUNK).zip(states.chunks_mut(CHUNK));
-    for one in chunks.zip(views.chunks_mut(CHUNK)) {
-        changes.extend(chunk(one));
+    for rows in rows.chunks(CHUNK) {
+        update(rows, changes);
     }
+}
+
+/// Updates the pairs of a chunk that need it, one by one.
+fn update_each<S, V>(
+    rows: Rows<'_, S, V>,
+    changes: &mut Changes,
+    update: impl Fn((u32, u32), &mut S, Option<&mut V>) -> Option<Change>,
+) {
+    let one = |(key, state, view)| update(key, state, view).map(|change| (key, change));
+    changes.extend(rows.each().filter_map(one));
 }

@@ -3,13 +3,14 @@
 use core::fmt;
 
 use super::entry::posed;
+use super::group::Group;
 use super::lanes::{CompositeGroup, ContactGroup, Lane, Location};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;
 use crate::pairs::PairTable;
-use crate::query::{ContactManifold, Proximity};
+use crate::query::{ContactManifold, ManifoldView, Proximity};
 
 /// The contacts of a pair of objects, as of the last update.
 #[derive(Clone, Copy)]
@@ -185,6 +186,29 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let manifolds = pair.into_iter().flat_map(ContactPair::manifolds);
             manifolds.map(move |manifold| (first, second, manifold))
         })
+    }
+
+    /// All manifolds that hold a contact, read where they lie and in the order in which they do.
+    pub(crate) fn contact_views<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+    ) -> impl Iterator<Item = (u32, u32, ManifoldView<'a, N, D>)> + 'a {
+        let poses = |(first, second)| [table.pose(first), table.pose(second)];
+        let convex = self.lanes.contacts.iter().flat_map(Group::iter);
+        let convex = convex
+            .filter(|(_, entry)| entry.touch.touching)
+            .map(move |(key, entry)| (key.0, key.1, entry.state.view(poses(key), entry.number)));
+        let composites = self.lanes.composites.iter().flat_map(move |(key, entry)| {
+            let views = entry.state.views(poses(key), entry.number);
+            views.map(move |view| (key.0, key.1, view))
+        });
+        let custom = self.lanes.custom_contacts.iter();
+        let custom = custom.filter(|(_, entry)| entry.touch.touching).flat_map(|(key, entry)| {
+            let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
+            let views = manifolds.filter_map(ManifoldView::of_manifold);
+            views.map(move |view| (key.0, key.1, view))
+        });
+        convex.chain(composites).chain(custom)
     }
 
     /// All pairs whose proximity is asked for, sorted by handle index.

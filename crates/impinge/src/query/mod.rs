@@ -8,6 +8,7 @@ mod impact;
 mod kinematic;
 mod manifold;
 mod manifold_build;
+mod manifold_view;
 pub(crate) mod pair;
 pub(crate) mod point;
 mod proximity;
@@ -30,8 +31,10 @@ pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{
-    contacts2, contacts3, tangents2, tangents3, witness_features2, witness_features3,
+    BoxJob, box_contacts2, contacts2, contacts3, tangents2, tangents3, update_box_pairs3,
+    witness_features2, witness_features3,
 };
+pub use manifold_view::{ContactPoint, ManifoldView};
 pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};

@@ -38,14 +38,24 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = compare(pose1, shape1, pose2, shape2);
-    let swapped = order == Ordering::Greater;
+    let swapped = is_swapped(pose1, shape1, pose2, shape2);
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
     } else {
         Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
     };
     (pair, swapped)
+}
+
+/// The order of [`canonical`] is the opposite of that of the arguments.
+#[inline]
+pub(crate) fn is_swapped<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> bool {
+    compare(pose1, shape1, pose2, shape2) == Ordering::Greater
 }
 
 /// The solids are the same at the same place, as far as [`canonical`] can tell.
@@ -56,18 +66,31 @@ pub(crate) fn indistinguishable<N: Real, const D: usize>(
     compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) == Ordering::Equal
 }
 
-/// The order of [`canonical`].
+/// The order of [`canonical`]. Nearly always the first coordinates of solids of one kind tell.
+#[inline]
 fn compare<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
     shape1: Geometry<'_, N, D>,
     pose2: &Pose<N, D>,
     shape2: Geometry<'_, N, D>,
 ) -> Ordering {
-    shape1
-        .kind()
-        .cmp(&shape2.kind())
-        .then_with(|| compare_poses(pose1, pose2))
-        .then_with(|| compare_solids(&shape1.0, &shape2.0))
+    let by_kind = shape1.kind().cmp(&shape2.kind());
+    if by_kind.is_ne() {
+        return by_kind;
+    }
+    match pose1.translation[0].partial_cmp(&pose2.translation[0]) {
+        Some(order @ (Ordering::Less | Ordering::Greater)) => order,
+        _ => compare_at_length((pose1, shape1), (pose2, shape2)),
+    }
+}
+
+/// [`compare`] for solids of one kind.
+#[cold]
+fn compare_at_length<N: Real, const D: usize>(
+    (pose1, shape1): (&Pose<N, D>, Geometry<'_, N, D>),
+    (pose2, shape2): (&Pose<N, D>, Geometry<'_, N, D>),
+) -> Ordering {
+    compare_poses(pose1, pose2).then_with(|| compare_solids(&shape1.0, &shape2.0))
 }
 
 /// By translation, then by rotation.

@@ -5,7 +5,7 @@ use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
 };
-use crate::query::ContactManifold;
+use crate::query::{ContactManifold, ManifoldView};
 
 /// Pairs with their contacts, in canonical order.
 pub type ContactPairs<'a, N, const D: usize> = Box<
@@ -19,6 +19,12 @@ pub type ProximityPairs<'a> =
 /// Manifolds that hold a contact, in the canonical order of their pairs.
 pub type ContactManifolds<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, &'a ContactManifold<N, D>)>
+        + 'a,
+>;
+
+/// Manifolds that hold a contact, read in place, in no particular order.
+pub type ContactViews<'a, N, const D: usize> = Box<
+    dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
         + 'a,
 >;
 
@@ -100,6 +106,17 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     ) -> ContactManifolds<'a, N, D> {
         Box::new(self.contact_pairs(objects).flat_map(|(handle1, handle2, pair)| {
             pair.manifolds().map(move |manifold| (handle1, handle2, manifold))
+        }))
+    }
+
+    /// All manifolds that hold a contact, in whatever order is quickest; the same on every machine.
+    fn contact_views<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactViews<'a, N, D> {
+        let manifolds = self.contact_manifolds(objects);
+        Box::new(manifolds.filter_map(|(handle1, handle2, manifold)| {
+            Some((handle1, handle2, ManifoldView::of_manifold(manifold)?))
         }))
     }
 
@@ -191,6 +208,17 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
             manifolds.map(|(first, second, manifold)| {
                 (table.handle(first), table.handle(second), manifold)
             }),
+        )
+    }
+
+    fn contact_views<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+    ) -> ContactViews<'a, N, D> {
+        let table = objects.table();
+        let views = Self::contact_views(self, table);
+        Box::new(
+            views.map(|(first, second, view)| (table.handle(first), table.handle(second), view)),
         )
     }
 

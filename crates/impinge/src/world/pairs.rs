@@ -6,7 +6,7 @@ use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactEvent, ContactPair, ProximityEvent, ProximityPair,
 };
-use crate::query::ContactManifold;
+use crate::query::{ContactManifold, ManifoldView};
 
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
@@ -77,6 +77,41 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let manifolds = self.narrow_phase.contact_manifolds(&self.objects);
         manifolds.filter_map(|(handle1, handle2, manifold)| {
             Some((self.objects.get(handle1)?, self.objects.get(handle2)?, manifold))
+        })
+    }
+
+    /// All manifolds that hold a contact, read where they are kept: the quick way to read every
+    /// contact once, for those who need no [`ContactKinematic`](crate::query::ContactKinematic).
+    ///
+    /// The order is that of the library's memory: no particular one, but the same for the same
+    /// history, on every machine and number of threads.
+    ///
+    /// ```
+    /// use impinge::math::{Isometry2, Vector};
+    /// use impinge::narrow_phase::GeometricQueryType;
+    /// use impinge::shape::{Ball, ShapeHandle};
+    /// use impinge::world::{CollisionGroups, CollisionWorld};
+    ///
+    /// let mut world = CollisionWorld::<f64, 2, &str>::new(0.02);
+    /// let contacts = GeometricQueryType::Contacts(0.0, 0.0);
+    /// for (x, name) in [(0.0, "left"), (1.5, "right")] {
+    ///     let ball = ShapeHandle::new(Ball::new(1.0));
+    ///     world.add(Isometry2::translation(x, 0.0), ball, CollisionGroups::new(), contacts, name);
+    /// }
+    /// world.update();
+    /// for (first, second, manifold) in world.contact_views() {
+    ///     assert_eq!((*first.data(), *second.data()), ("left", "right"));
+    ///     let depths: Vec<_> = manifold.contacts().map(|point| point.contact.depth).collect();
+    ///     assert_eq!(depths, [0.5]);
+    /// }
+    /// # assert_eq!(world.contact_views().count(), 1);
+    /// ```
+    pub fn contact_views(
+        &self,
+    ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> {
+        let views = self.narrow_phase.contact_views(&self.objects);
+        views.filter_map(|(handle1, handle2, view)| {
+            Some((self.objects.get(handle1)?, self.objects.get(handle2)?, view))
         })
     }
 

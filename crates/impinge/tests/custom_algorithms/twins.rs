@@ -15,7 +15,7 @@ use super::dim::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase};
 use super::dim::query::ContactId;
 use super::generators::Policy;
 use super::plain_narrow_phase::PlainNarrowPhase;
-use crate::scene_stage::{Play, Player, World};
+use crate::scene_stage::{Play, Player, World, assert_views_agree};
 
 type Key = (CollisionObjectHandle, CollisionObjectHandle);
 
@@ -52,6 +52,7 @@ impl Exchange {
 
 /// The pairs that have contacts, with the largest depth of each.
 fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
+    assert_views_agree(world);
     let pairs = world.contact_manifolds().map(|(a, b, manifold)| {
         let deepest = manifold.deepest_contact().expect("not empty");
         ((a.handle(), b.handle()), deepest.contact.depth.as_f64())

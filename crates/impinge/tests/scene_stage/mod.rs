@@ -236,12 +236,36 @@ impl Hasher for Digest {
     }
 }
 
+/// Manifolds read in place are the manifolds, to the bit.
+pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) {
+    let views = world.contact_views();
+    let mut views: Vec<_> = views.map(|(a, b, view)| ((a.handle(), b.handle()), view)).collect();
+    views.sort_by_key(|(pair, _)| *pair);
+    let mut views = views.into_iter();
+    for (object1, object2, manifold) in world.contact_manifolds() {
+        let (pair, view) = views.next().expect("as many views as manifolds");
+        assert_eq!(pair, (object1.handle(), object2.handle()), "the same pairs");
+        assert_eq!(view.len(), manifold.len(), "of {pair:?}");
+        assert_eq!(view.normal(), manifold.contacts()[0].contact.normal, "of {pair:?}");
+        let deepest = manifold.deepest_contact().expect("not empty");
+        assert_eq!(view.deepest_contact().id, deepest.id, "of {pair:?}");
+        for (point, tracked) in view.contacts().zip(manifold.contacts()) {
+            assert_eq!((point.contact, point.id), (tracked.contact, tracked.id), "of {pair:?}");
+            let features = [tracked.kinematic.feature1(), tracked.kinematic.feature2()];
+            assert_eq!([point.feature1, point.feature2], features, "of {pair:?}");
+            assert_eq!([point.part1, point.part2], [tracked.part1, tracked.part2], "of {pair:?}");
+        }
+    }
+    assert!(views.next().is_none(), "as many views as manifolds");
+}
+
 /// Everything that a world says after an update: contacts with features and names, proximities and
 /// events, in order.
 pub(crate) fn digest_state<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     digest: &mut Digest,
 ) {
+    assert_views_agree(world);
     for (object1, object2, manifold) in world.contact_manifolds() {
         (object1.handle(), object2.handle()).hash(digest);
         digest_manifold(manifold, digest);

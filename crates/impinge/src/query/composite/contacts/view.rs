@@ -5,13 +5,21 @@ use crate::math::{Pose, Space, Vector};
 use crate::query::kinematic::{ContactKinematic, Sides};
 use crate::query::manifold::{TrackedContact, placed};
 use crate::query::manifold_build::{Patch, PatchPoint};
-use crate::query::{ContactId, ContactManifold, Pair, Placement};
+use crate::query::{ContactId, ContactManifold, ManifoldView, Pair, Placement};
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 
 /// Normals that differ by no more than so many rounding units are the same.
 const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
+    /// The manifolds, read in place.
+    pub(crate) fn views<'a>(
+        &'a self,
+        placement: Placement<'a, N, D>,
+    ) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
+        self.patches.iter().map(move |patch| ManifoldView::of_patch(patch, placement))
+    }
+
     /// One manifold for each patch; `pair` is that of the last update. They are written over the
     /// memory of old ones.
     pub(crate) fn manifolds(

@@ -1,0 +1,145 @@
+//! Manifolds read where they are kept.
+
+use super::manifold::placed;
+use super::manifold_build::Patch;
+use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
+use crate::math::{Real, Unit, Vector};
+use crate::shape::FeatureId;
+
+/// A contact as [`ManifoldView`] gives it: a [`TrackedContact`](super::TrackedContact) without its
+/// kinematic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint<N: Real, const D: usize> {
+    /// The geometry at the last update, in the world frame.
+    pub contact: Contact<N, D>,
+    /// The name, kept while the contact lives.
+    pub id: ContactId,
+    /// The feature of the first solid that touches.
+    pub feature1: FeatureId,
+    /// The feature of the second solid that touches.
+    pub feature2: FeatureId,
+    /// The part of the first shape that touches; 0 if the shape is not a composite.
+    pub part1: u32,
+    /// The part of the second shape that touches; 0 if the shape is not a composite.
+    pub part2: u32,
+}
+
+/// A [`ContactManifold`] read where the narrow phase keeps it: each contact is placed in the world
+/// when it is asked for, and nothing is stored.
+///
+/// It gives the same contacts, to the bit and in the same order, as the manifold that it stands for,
+/// but not their kinematics. To read every contact of a world once, as a solver does, it is
+/// several times faster: it moves a fifth of the memory. It always holds a contact.
+#[derive(Clone, Copy, Debug)]
+pub struct ManifoldView<'a, N: Real, const D: usize>(Kept<'a, N, D>);
+
+/// What a view looks at.
+#[derive(Clone, Copy, Debug)]
+enum Kept<'a, N: Real, const D: usize> {
+    /// The contacts of two convex solids.
+    Convex(&'a RawManifold<N, D>, Placement<'a, N, D>),
+    /// Some of the contacts of a composite.
+    Patch(&'a Patch<N, D>, Placement<'a, N, D>),
+    /// What an algorithm of the user's own has found.
+    Made(&'a ContactManifold<N, D>),
+}
+
+impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
+    pub(crate) fn of_convex(raw: &'a RawManifold<N, D>, placement: Placement<'a, N, D>) -> Self {
+        Self(Kept::Convex(raw, placement))
+    }
+
+    pub(super) fn of_patch(patch: &'a Patch<N, D>, placement: Placement<'a, N, D>) -> Self {
+        Self(Kept::Patch(patch, placement))
+    }
+
+    /// A view of a manifold; `None` if it is empty.
+    #[must_use]
+    pub fn of_manifold(manifold: &'a ContactManifold<N, D>) -> Option<Self> {
+        (!manifold.is_empty()).then_some(Self(Kept::Made(manifold)))
+    }
+
+    /// How many contacts it holds: at least one.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
+    pub fn len(&self) -> usize {
+        match self.0 {
+            Kept::Convex(raw, _) => raw.points.len(),
+            Kept::Patch(patch, _) => patch.points.len(),
+            Kept::Made(manifold) => manifold.len(),
+        }
+    }
+
+    /// The unit vector from the first solid to the second, in the world frame: that of the first
+    /// contact, which all contacts of a manifold share.
+    #[must_use]
+    pub fn normal(&self) -> Unit<Vector<N, D>> {
+        let world = |own: &Vector<N, D>, placement: &Placement<'_, N, D>| {
+            let normal = placement.pose1.vector(own);
+            Unit::new_unchecked(if placement.is_swapped { -normal } else { normal })
+        };
+        match self.0 {
+            Kept::Convex(raw, placement) => world(&raw.normal, &placement),
+            Kept::Patch(patch, placement) => world(&patch.normal, &placement),
+            Kept::Made(manifold) => manifold.contacts()[0].contact.normal,
+        }
+    }
+
+    /// The contacts, in the order in which they began.
+    pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
+        (0..self.len()).map(move |index| self.contact(index))
+    }
+
+    /// The contact of the largest depth, the first of equals.
+    #[must_use]
+    pub fn deepest_contact(&self) -> ContactPoint<N, D> {
+        let depth = |index: usize| match self.0 {
+            Kept::Convex(raw, _) => -raw.points[index].distance,
+            Kept::Patch(patch, _) => -patch.points[index].raw.distance,
+            Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
+        };
+        let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
+        self.contact((1..self.len()).fold(0, deeper))
+    }
+
+    fn contact(&self, index: usize) -> ContactPoint<N, D> {
+        match self.0 {
+            Kept::Convex(raw, placement) => {
+                point(&raw.normal, &raw.points[index], [0; 2], &placement)
+            }
+            Kept::Patch(patch, placement) => {
+                let found = &patch.points[index];
+                point(&patch.normal, &found.raw, found.parts, &placement)
+            }
+            Kept::Made(manifold) => {
+                let made = &manifold.contacts()[index];
+                ContactPoint {
+                    contact: made.contact,
+                    id: made.id,
+                    feature1: made.kinematic.feature1(),
+                    feature2: made.kinematic.feature2(),
+                    part1: made.part1,
+                    part2: made.part2,
+                }
+            }
+        }
+    }
+}
+
+/// A point in the world, as the user's order of the solids has it.
+fn point<N: Real, const D: usize>(
+    normal: &Vector<N, D>,
+    raw: &RawPoint<N, D>,
+    [part1, part2]: [u32; 2],
+    placement: &Placement<'_, N, D>,
+) -> ContactPoint<N, D> {
+    let contact = placed(normal, raw, placement.pose1, placement.pose1.vector(normal));
+    let id = ContactId { pair: placement.pair, number: raw.id };
+    let (feature1, feature2) = (raw.feature1, raw.feature2);
+    if placement.is_swapped {
+        let contact = contact.flipped();
+        let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
+        return ContactPoint { contact, id, feature1, feature2, part1, part2 };
+    }
+    ContactPoint { contact, id, feature1, feature2, part1, part2 }
+}
