@@ -29,11 +29,7 @@ pub(super) mod tests;
 mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between};
-<<<<<<< HEAD
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
-=======
 pub(crate) use self::box_lanes::{BoxJob, update_box_pairs3};
->>>>>>> main
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};

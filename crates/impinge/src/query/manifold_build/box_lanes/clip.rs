@@ -107,24 +107,9 @@ where
         slots: &'a mut Slots<N>,
     ) -> Self {
         let infinity = V::all(simd, N::INFINITY);
-<<<<<<< HEAD
         let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
         let level = limits.prediction.simd_le(level).select(infinity, level);
         Self { simd, faces, limits, slots, lowest: infinity, most, level }
-=======
-        let deepest = V::all(simd, N::ZERO);
-        Self {
-            simd,
-            faces,
-            limits,
-            slots,
-            lowest: infinity,
-            nearest: infinity,
-            deepest,
-            most,
-            level,
-        }
->>>>>>> main
     }
 
     /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for

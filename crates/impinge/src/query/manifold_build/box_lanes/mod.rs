@@ -25,7 +25,7 @@ use self::clip::{Clip, Limits, SLOTS, Slots};
 use self::faces::Faces;
 use self::gather::{Boxes, Inputs};
 use self::names::{Naming, Side, parts_at};
-use super::{ManifoldRequest, Pair, RawManifold, contacts2, contacts3};
+use super::{ManifoldRequest, Pair, RawManifold, contacts3};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::RawPoint;
 use crate::shape::{Cuboid, Kind};
@@ -46,15 +46,6 @@ impl<'a, N: Real, const D: usize> BoxJob<'a, N, D> {
     pub(super) fn pair(&self) -> Pair<'a, N, D> {
         let [first, second] = self.cuboids.map(Kind::Cuboid);
         Pair { first, second, pose12: Pose::relative(self.poses[0], self.poses[1]) }
-    }
-}
-
-/// Brings the manifolds of pairs of boxes of the plane up to date, as [`update_box_pairs3`].
-///
-/// One by one: such a pair is so little work that putting eight side by side costs as much.
-pub(crate) fn update_box_pairs2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
-    for job in jobs {
-        contacts2(&job.pair(), job.request, job.raw);
     }
 }
 

@@ -156,11 +156,7 @@ pub(super) struct Naming {
 
 impl Naming {
     /// For a rectangle of the second box or the first.
-<<<<<<< HEAD
     #[inline(always)]
-=======
-    #[inline]
->>>>>>> main
     pub(super) fn new([rectangle, parallelogram]: [Side; 2], is_second: bool, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
         let own = u64::from_le_bytes([
