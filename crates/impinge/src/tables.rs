@@ -23,10 +23,15 @@ use crate::query::separation::{
     Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+    BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
+<<<<<<< HEAD
     Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
-    impact_of_flight, impact_of_pair, tangents2, tangents3, witness_features2, witness_features3,
-    witness_in_world,
+    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
+=======
+    Proximity, RawManifold, RayIntersection, Witness, box_contacts2, contact_in_world, contacts2,
+    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs3,
+>>>>>>> main
+    witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
@@ -55,6 +60,14 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+<<<<<<< HEAD
+    /// The contact points of many pairs of boxes.
+    #[expect(dead_code, reason = "the narrow phase is to hand its pairs of boxes over")]
+    pub(crate) update_box_pairs: fn(&mut [BoxJob<'_, N, D>]),
+=======
+    /// Those of many pairs of boxes.
+    pub(crate) box_contacts: fn(&mut [BoxJob<'_, N, D>]),
+>>>>>>> main
     /// Two directions across a normal; the second is zero in the plane.
     pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
@@ -171,6 +184,11 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     contacts: ContactsFn<N, D>,
+<<<<<<< HEAD
+    update_box_pairs: fn(&mut [BoxJob<'_, N, D>]),
+=======
+    box_contacts: fn(&mut [BoxJob<'_, N, D>]),
+>>>>>>> main
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
@@ -183,6 +201,11 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
+<<<<<<< HEAD
+        update_box_pairs: update_box_pairs2,
+=======
+        box_contacts: box_contacts2,
+>>>>>>> main
         tangents: tangents2,
         witness_features: witness_features2,
         ray_span: ray2::span,
@@ -196,6 +219,11 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         contacts: contacts3,
+<<<<<<< HEAD
+        update_box_pairs: update_box_pairs3,
+=======
+        box_contacts: update_box_pairs3,
+>>>>>>> main
         tangents: tangents3,
         witness_features: witness_features3,
         ray_span: ray3::span,
@@ -222,6 +250,11 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             nearest_part,
             each_hit,
             contacts: particular.contacts,
+<<<<<<< HEAD
+            update_box_pairs: particular.update_box_pairs,
+=======
+            box_contacts: particular.box_contacts,
+>>>>>>> main
             tangents: particular.tangents,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifolds,

@@ -91,10 +91,10 @@ fn run_case<const D: usize>(
 {
     let mut swarm = Swarm::new(plan);
     let mut contenders: Contenders<D> = vec![Box::new(Impinge::new(&swarm.cells))];
-    if !arguments.is_alone {
+    if !arguments.is_alone() {
         contenders.extend(rivals(&swarm.cells));
     }
-    let steps = arguments.steps.min(steps(plan.count, arguments.is_alone));
+    let steps = arguments.steps.min(steps(plan.count, arguments.is_alone()));
     table.add(race(case, &mut swarm, &mut contenders, steps));
 }
 

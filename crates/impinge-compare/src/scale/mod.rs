@@ -56,11 +56,11 @@ fn broad_phase(count: usize, arguments: &Arguments) -> Vec<Row> {
     let mut swarm = Swarm::<3>::new(Plan { count, ..FAST });
     let cells = &swarm.cells;
     let mut contenders: Contenders<3> = vec![Box::new(Impinge::new(cells))];
-    if !arguments.is_alone {
+    if !arguments.is_alone() {
         contenders.push(Box::new(Rapier::new(cells, false)));
         contenders.push(Box::new(Parry::new(cells)));
     }
-    if !arguments.is_alone && count <= 31_623 {
+    if !arguments.is_alone() && count <= 31_623 {
         contenders.push(Box::new(Ncollide::new(cells)));
     }
     let case = format!("broad phase, {count}");
@@ -69,10 +69,10 @@ fn broad_phase(count: usize, arguments: &Arguments) -> Vec<Row> {
 
 fn whole_world(count: usize, arguments: &Arguments) -> Vec<Row> {
     let mut lanes = vec![Lane::new("impinge", world::Ours::new())];
-    if !arguments.is_alone {
+    if !arguments.is_alone() {
         lanes.push(Lane::new("rapier", world::Rapier::new()));
     }
-    if !arguments.is_alone && count <= 31_623 {
+    if !arguments.is_alone() && count <= 31_623 {
         lanes.push(Lane::new("ncollide", world::Ncollide::new()));
     }
     race_worlds(&format!("world, {count}"), count, lanes, steps(count, arguments))

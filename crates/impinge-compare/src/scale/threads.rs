@@ -19,7 +19,7 @@ pub fn run(arguments: &Arguments) -> Table {
             lane("impinge, 1 thread", 1, world::Ours::new()),
             lane("impinge, 2 threads", 2, world::Ours::new()),
         ];
-        if !arguments.is_alone {
+        if !arguments.is_alone() {
             lanes.push(lane("rapier, 1 thread", 1, world::Rapier::new()));
             lanes.push(lane("rapier, 2 threads", 2, world::Rapier::new()));
         }

@@ -7,6 +7,7 @@
 //! Arithmetic here keeps the rule "the same bits everywhere": no fused multiply-add, no library
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.
 
+mod eight;
 mod pose;
 mod real;
 mod space;
@@ -15,6 +16,7 @@ mod vector;
 pub use nalgebra as na;
 pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
 
+pub(crate) use eight::Wide;
 pub use pose::Pose;
 pub use real::Real;
 pub use space::Space;

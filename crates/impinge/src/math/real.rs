@@ -1,5 +1,6 @@
 //! The scalar: `f32` and, with the feature `f64`, `f64`. Nobody else.
 
+use super::eight::Eight;
 use super::max;
 use super::na::{RealField, Scalar};
 use crate::tables::Compiled;
@@ -7,7 +8,7 @@ use crate::tables::Compiled;
 /// A floating-point scalar of the library: `f32` or `f64`.
 ///
 /// Sealed: the kernels are compiled in this crate for these two types and no other.
-pub trait Real: RealField + Scalar + Copy + Default + Compiled {
+pub trait Real: RealField + Scalar + Copy + Default + Compiled + Eight {
     /// 0.
     const ZERO: Self;
     /// 1/2.

@@ -3,13 +3,13 @@
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::state::{KeptContacts, Posed, proximity_of};
+use super::state::{ContactState, KeptContacts, Posed, proximity_of};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
 };
 use super::{IdAllocator, ObjectTable};
 use crate::math::{Real, Space};
-use crate::query::{ManifoldRequest, Proximity};
+use crate::query::{BoxJob, ContactManifold, ManifoldRequest, Proximity};
 
 /// What an update, or the end, of a pair means to the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,12 +133,36 @@ impl<N: Real, S> ContactEntry<N, S> {
     where
         S: KeptContacts<N, D>,
     {
+        self.begin(view);
+        self.state.update(posed, &self.request);
+        self.note()
+    }
+
+    fn begin<M: Default>(&mut self, view: Option<&mut ContactView<M>>) {
         self.due = false;
         if let Some(view) = view {
             view.expire();
         }
-        self.state.update(posed, &self.request);
+    }
+
+    /// What the contacts, as they are now, mean to the outside.
+    pub(crate) fn note<const D: usize>(&mut self) -> Option<Change>
+    where
+        S: KeptContacts<N, D>,
+    {
         self.touch.set(self.state.len() > 0)
+    }
+}
+
+impl<N: Space<D>, const D: usize> ContactEntry<N, ContactState<N, D>> {
+    /// Begins an update of a pair of boxes, which ends with [`Self::note`].
+    pub(crate) fn begin_boxes<'a>(
+        &'a mut self,
+        view: Option<&mut ContactView<ContactManifold<N, D>>>,
+        posed: &Posed<'a, N, D>,
+    ) -> Option<BoxJob<'a, N, D>> {
+        self.begin(view);
+        self.state.box_job(posed, &self.request)
     }
 }
 

@@ -60,10 +60,14 @@ impl Events {
         self.removed = (self.contacts.len(), self.proximities.len());
     }
 
-    /// Brings the events after the removals' into canonical order.
+    /// Brings the events after the removals' into canonical order. What a pair was ends before what
+    /// it is now begins, so of the two events that a pair may have the one that begins is the later.
     pub(crate) fn sort(&mut self) {
-        self.contacts[self.removed.0..].sort_by_key(ContactEvent::handles);
-        self.proximities[self.removed.1..].sort_by_key(|e| (e.collider1, e.collider2));
+        let begins = |event: &ContactEvent| matches!(event, ContactEvent::Started(..));
+        self.contacts[self.removed.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
+        let begins = |event: &ProximityEvent| event.prev_status == Proximity::Disjoint;
+        self.proximities[self.removed.1..]
+            .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
     }
 
     /// Adds a contact event.

@@ -97,6 +97,11 @@ impl<'a, S, V> Rows<'a, S, V> {
         self.keys.len()
     }
 
+    /// The same rows, to be used once more afterwards.
+    pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V> {
+        Rows { keys: self.keys, states: self.states, views: self.views }
+    }
+
     /// The rows in pieces of a constant size, the last one perhaps shorter.
     pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Rows<'a, S, V>> {
         let mut views = self.views.chunks_mut(size);

@@ -2,11 +2,12 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
+use crate::query::pair::is_swapped;
 use crate::query::{
-    CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, Placed, Placement,
-    Proximity, RawManifold, canonical, materialise, own_distance,
+    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, Placed,
+    Placement, Proximity, RawManifold, canonical, materialise, own_distance,
 };
-use crate::shape::{Geometry, Shape};
+use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -90,10 +91,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
-        if swapped != self.swapped {
-            self.raw.flip_names();
-            self.swapped = swapped;
-        }
+        self.turn(swapped);
         (N::tables().contacts)(&pair, request, &mut self.raw);
     }
 
@@ -112,6 +110,33 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
+    /// What it takes to bring the contacts of two boxes up to date; `None` for other solids.
+    pub(super) fn box_job<'a>(
+        &'a mut self,
+        posed: &Posed<'a, N, D>,
+        request: &'a ManifoldRequest<N>,
+    ) -> Option<BoxJob<'a, N, D>> {
+        let (shape1, shape2) = (posed.shape1.geometry(), posed.shape2.geometry());
+        self.turn(is_swapped(posed.pose1, shape1, posed.pose2, shape2));
+        let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (shape1.0, shape2.0) else {
+            return None;
+        };
+        let (mut poses, mut cuboids) = ([posed.pose1, posed.pose2], [cuboid1, cuboid2]);
+        if self.swapped {
+            poses.reverse();
+            cuboids.reverse();
+        }
+        Some(BoxJob { poses, cuboids, request, raw: &mut self.raw })
+    }
+
+    /// The canonical order is this one now.
+    fn turn(&mut self, swapped: bool) {
+        if swapped != self.swapped {
+            self.raw.flip_names();
+            self.swapped = swapped;
+        }
+    }
+
     /// The contacts, which are not none, read in place; the poses are those of the last update.
     #[inline]
     pub(crate) fn view<'a>(

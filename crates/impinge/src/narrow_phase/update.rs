@@ -1,12 +1,15 @@
 //! The step: which pairs need a new query, and the batches that give it to them.
 
+use smallvec::SmallVec;
+
 use super::default_narrow_phase::push_change;
 use super::entry::{Change, ContactEntry, ContactView, posed};
 use super::group::{Group, Rows};
-use super::lanes::{Lane, Location, needs_update};
-use super::state::KeptContacts;
+use super::lanes::{BOX_PAIRS, Lane, Location, needs_update};
+use super::state::{ContactState, KeptContacts};
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
+use crate::query::{BoxJob, ContactManifold};
 
 /// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
 /// constant, so that the order of results never depends on the number of threads.
@@ -55,8 +58,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
-        for group in &mut self.lanes.contacts {
-            update_group(group, changes, |rows, changes| update_contacts(rows, table, changes));
+        for (number, group) in self.lanes.contacts.iter_mut().enumerate() {
+            let are_boxes = number == usize::from(BOX_PAIRS);
+            let update = if are_boxes { update_boxes } else { update_contacts };
+            update_group(group, changes, |rows, changes| update(rows, table, changes));
         }
         update_group(&mut self.lanes.composites, changes, |rows, changes| {
             update_contacts(rows, table, changes);
@@ -146,6 +151,28 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             Lane::Nothing => None,
         }
     }
+}
+
+/// The contacts of some pairs of convex solids.
+type ContactRows<'a, N, const D: usize> =
+    Rows<'a, ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+
+/// Brings the contacts of some pairs of boxes up to date, several at a time.
+fn update_boxes<N: Space<D>, const D: usize>(
+    mut rows: ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+) {
+    let mut jobs = SmallVec::<[BoxJob<'_, N, D>; CHUNK]>::new();
+    for (key, entry, view) in rows.reborrow().each() {
+        if needs_update(entry.due, table, key) {
+            jobs.extend(entry.begin_boxes(view, &posed(table, key)));
+        }
+    }
+    (N::tables().box_contacts)(&mut jobs);
+    drop(jobs);
+    let noted = rows.each().map(|(key, entry, _)| (key, entry.note()));
+    changes.extend(noted.filter_map(|(key, change)| Some((key, change?))));
 }
 
 /// Brings the contacts of some pairs up to date.

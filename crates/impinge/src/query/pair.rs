@@ -3,7 +3,7 @@
 use core::cmp::Ordering;
 
 use crate::math::{Point, Pose, Real, Vector};
-use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
+use crate::shape::{CompositeShape, Cuboid, Geometry, Kind, SupportMap};
 
 /// Two solids, the first at the origin of the frame that the answer is given in.
 ///
@@ -38,14 +38,37 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'a, N, D>,
 ) -> (Pair<'a, N, D>, bool) {
-    let order = compare(pose1, shape1, pose2, shape2);
-    let swapped = order == Ordering::Greater;
+    let swapped = is_swapped(pose1, shape1, pose2, shape2);
     let pair = if swapped {
         Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
     } else {
         Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
     };
     (pair, swapped)
+}
+
+<<<<<<< HEAD
+/// Whether [`canonical`] exchanges two boxes.
+#[cfg_attr(not(test), expect(dead_code, reason = "for those who hand over pairs of boxes"))]
+pub(crate) fn exchanges_boxes<N: Real, const D: usize>(
+    (pose1, cuboid1): (&Pose<N, D>, &Cuboid<N, D>),
+    (pose2, cuboid2): (&Pose<N, D>, &Cuboid<N, D>),
+) -> bool {
+    let sizes = [cuboid1, cuboid2].map(Cuboid::half_extents);
+    let order = compare_poses(pose1, pose2)
+        .then_with(|| compare_numbers(sizes[0].as_slice(), sizes[1].as_slice()));
+    order == Ordering::Greater
+=======
+/// The order of [`canonical`] is the opposite of that of the arguments.
+#[inline]
+pub(crate) fn is_swapped<N: Real, const D: usize>(
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
+) -> bool {
+    compare(pose1, shape1, pose2, shape2) == Ordering::Greater
+>>>>>>> main
 }
 
 /// The solids are the same at the same place, as far as [`canonical`] can tell.
@@ -189,7 +212,7 @@ fn probed<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Vec<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Ball, Cuboid, Shape, ShapeKind};
+    use crate::shape::{Ball, Shape, ShapeKind};
 
     fn at(x: f32, y: f32) -> Pose<f32, 2> {
         Pose::from_translation(Vector::<f32, 2>::new(x, y))
@@ -216,5 +239,22 @@ mod tests {
         assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by place, turned round");
         assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one place");
         assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one place");
+    }
+
+    #[test]
+    fn boxes_are_exchanged_as_any_two_solids() {
+        let cuboids = [1.0, 2.0].map(|x| Cuboid::new(Vector::<f32, 2>::new(x, 1.0)));
+        for (pose1, pose2) in [(at(0.0, 1.0), at(0.0, 2.0)), (at(3.0, 0.0), at(3.0, 0.0))] {
+            for [a, b] in [[0, 1], [1, 0], [1, 1]].map(|pick| pick.map(|index| cuboids[index])) {
+                for (from, to) in [(pose1, pose2), (pose2, pose1)] {
+                    let expected = canonical(&from, a.geometry(), &to, b.geometry()).1;
+                    assert_eq!(
+                        exchanges_boxes((&from, &a), (&to, &b)),
+                        expected,
+                        "{from:?} {to:?}"
+                    );
+                }
+            }
+        }
     }
 }

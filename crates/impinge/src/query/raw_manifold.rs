@@ -44,6 +44,13 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) id: u32,
 }
 
+impl<N: Real, const D: usize> Default for RawPoint<N, D> {
+    fn default() -> Self {
+        let (feature1, feature2) = (FeatureId::Vertex(0), FeatureId::Vertex(0));
+        Self { point1: Point::origin(), distance: N::ZERO, feature1, feature2, id: 0 }
+    }
+}
+
 /// A set of points with one normal, in the frame of the first solid.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {

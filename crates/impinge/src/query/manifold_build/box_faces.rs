@@ -183,21 +183,20 @@ fn signed<N: Real>(value: N, is_positive: bool) -> N {
 }
 
 /// The number of the vertex with these positive coordinates.
-fn vertex(coordinates: [(usize, bool); 3]) -> FeatureId {
-    let bits = coordinates.iter().map(|&(axis, is_positive)| u32::from(is_positive) << axis);
-    FeatureId::Vertex(bits.sum())
+pub(super) const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
+    FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
 }
 
 /// The number of the edge along an axis, given the signs of the next axis and the one after.
-fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
+pub(super) const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 4, 8];
-    FeatureId::Edge(FIRST[axis] + u32::from(next) + 2 * u32::from(after))
+    FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
 }
 
 /// The number of the face on one side of an axis.
-fn face(axis: usize, is_positive: bool) -> FeatureId {
+pub(super) const fn face(axis: usize, is_positive: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 2, 4];
-    FeatureId::Face(FIRST[axis] + u32::from(!is_positive))
+    FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
 impl<N: Real> Rectangle<N> {

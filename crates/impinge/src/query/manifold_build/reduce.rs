@@ -6,9 +6,9 @@ use super::frame::Candidate;
 use crate::math::{Real, Vector, cross2};
 
 /// A new point must span this much more than one that the previous manifold held.
-const NEW_POINT_WEIGHT: f64 = 0.95;
+pub(super) const NEW_POINT_WEIGHT: f64 = 0.95;
 /// Of points that span almost the same, the deeper one wins.
-const ALMOST: f64 = 1.0 + 1.0 / 1024.0;
+pub(super) const ALMOST: f64 = 1.0 + 1.0 / 1024.0;
 
 /// The indices of at most `limit` candidates: the deepest, which is given, then the farthest from it,
 /// then whatever adds most to the area seen along the normal, for as long as it adds anything.

@@ -1,0 +1,194 @@
+//! The separating axis test of eight pairs of boxes: `query/separation/cuboid_axes.rs` in lanes.
+
+use fearless_simd::{Select, Simd};
+
+use super::gather::{Boxes, dot};
+use crate::math::{Real, Wide};
+
+/// The axis of the largest gap of eight pairs.
+pub(super) struct BestAxis<V, M> {
+    /// The number of the axis that the face is perpendicular to.
+    pub(super) face: V,
+    /// The face belongs to the second box, and no edges are better.
+    pub(super) is_second: M,
+    /// Edges are better than any face.
+    pub(super) is_edges: M,
+    /// A unit vector from the first box to the second.
+    pub(super) normal: [V; 3],
+    pub(super) gap: V,
+    pub(super) noise: V,
+    /// All numbers of the pose are finite, and so is their sum.
+    pub(super) is_finite: M,
+}
+
+#[inline(always)]
+pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
+    V::all(simd, N::lit(value))
+}
+
+/// What there is for each of three axes.
+#[inline(always)]
+pub(super) fn by_axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
+/// The sum of the magnitudes.
+#[inline(always)]
+fn sizes<S: Simd, V: Wide<S>>(v: &[V; 3]) -> V {
+    v[0].abs() + v[1].abs() + v[2].abs()
+}
+
+/// The vector whose number each lane names, of three.
+#[inline(always)]
+pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 3]) -> [V; 3] {
+    by_axis(
+        #[inline(always)]
+        |axis| is[0].select(three[0][axis], is[1].select(three[1][axis], three[2][axis])),
+    )
+}
+
+/// The lanes that hold 0, 1 and 2.
+#[inline(always)]
+pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> [V::Mask; 3] {
+    [
+        number.simd_eq(V::all(simd, N::ZERO)),
+        number.simd_eq(V::all(simd, N::ONE)),
+        number.simd_eq(V::all(simd, N::TWO)),
+    ]
+}
+
+/// The rotation without signs.
+#[inline(always)]
+fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
+    by_axis(
+        #[inline(always)]
+        |j| [rotation[j][0].abs(), rotation[j][1].abs(), rotation[j][2].abs()],
+    )
+}
+
+impl<V> Boxes<V> {
+    /// What arithmetic on these numbers cannot resolve.
+    #[inline(always)]
+    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (half1, half2, t) = (&self.half1, &self.half2, &self.translation);
+        let sizes = (half1[0] + half1[1] + half1[2]) + (half2[0] + half2[1] + half2[2]);
+        let farthest = t[2].abs().larger(t[1].abs().larger(t[0].abs()));
+        lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * (sizes + farthest)
+    }
+
+    /// The direction of the largest gap, as `Boxes::best_axis` has it for one pair.
+    #[inline(always)]
+    pub(super) fn best_axis<S: Simd, N: Real>(&self, simd: S) -> BestAxis<V, V::Mask>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let leans = leans(&self.rotation);
+        let (face, is_second, gap) = self.best_face(simd, &leans);
+        let noise = self.noise(simd);
+        let (edges, bound) = self.best_edges(simd, &leans, (gap + noise).larger(gap));
+        let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
+        let is_second = is_second & !is_edges;
+        let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
+        let normal = self.direction(simd, ends, (is_second, is_edges));
+        let all = sizes(&leans[0]) + sizes(&leans[1]) + sizes(&leans[2]) + sizes(&self.translation);
+        let is_finite = all.simd_lt(V::all(simd, N::INFINITY));
+        let gap = is_edges.select(bound, gap);
+        BestAxis { face, is_second, is_edges, normal, gap, noise, is_finite }
+    }
+
+    /// The face that leaves the largest gap: its axis, whether it is the second box's, the gap.
+    #[inline(always)]
+    fn best_face<S: Simd, N: Real>(&self, simd: S, leans: &[[V; 3]; 3]) -> (V, V::Mask, V)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (t, number) = (&self.translation, [N::ZERO, N::ONE, N::TWO]);
+        let (mut best, mut gap) = (V::all(simd, N::ZERO), V::all(simd, N::ZERO));
+        for i in 0..3 {
+            let row = [leans[0][i], leans[1][i], leans[2][i]];
+            let found = t[i].abs() - self.half1[i] - dot(&row, &self.half2);
+            let is_better = found.simd_gt(gap);
+            best = is_better.select(V::all(simd, number[i]), best);
+            gap = if i == 0 { found } else { is_better.select(found, gap) };
+        }
+        let mut is_second = V::all(simd, N::ONE).simd_lt(V::all(simd, N::ZERO));
+        for j in 0..3 {
+            let along = dot(&self.rotation[j], t);
+            let found = along.abs() - dot(&leans[j], &self.half1) - self.half2[j];
+            let is_better = found.simd_gt(gap);
+            best = is_better.select(V::all(simd, number[j]), best);
+            gap = is_better.select(found, gap);
+            is_second |= is_better;
+        }
+        (best, is_second, gap)
+    }
+
+    /// The pair of edges that leaves the largest gap, if that is more than `bound`: the axis of each
+    /// box, negative where no pair does, and the gap.
+    #[inline(always)]
+    fn best_edges<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        leans: &[[V; 3]; 3],
+        mut bound: V,
+    ) -> ([V; 2], V)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
+        let least = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
+        let number = [N::ZERO, N::ONE, N::TWO];
+        let mut best = [V::all(simd, -N::ONE); 2];
+        for i in 0..3 {
+            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
+            for j in 0..3 {
+                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
+                let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
+                let reach1 = self.half1[i1] * leans[j][i2] + self.half1[i2] * leans[j][i1];
+                let reach2 = self.half2[j1] * leans[j2][i] + self.half2[j2] * leans[j1][i];
+                let slack = along.abs() - reach1 - reach2;
+                let sine = (r[j][i1] * r[j][i1] + r[j][i2] * r[j][i2]).sqrt();
+                let is_better = !slack.simd_le(bound.smaller(zero))
+                    & sine.simd_gt(least)
+                    & slack.simd_gt(bound * sine);
+                best[0] = is_better.select(V::all(simd, number[i]), best[0]);
+                best[1] = is_better.select(V::all(simd, number[j]), best[1]);
+                bound = is_better.select(slack / sine, bound);
+            }
+        }
+        (best, bound)
+    }
+
+    /// The unit vector along the axes, turned to point from the first box to the second: `ends` are
+    /// the numbers of the edges, or twice that of the face.
+    #[inline(always)]
+    fn direction<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        ends: [V; 2],
+        (is_second, is_edges): (V::Mask, V::Mask),
+    ) -> [V; 3]
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let is1 = which(simd, ends[0]);
+        let a = [is1[0].select(one, zero), is1[1].select(one, zero), is1[2].select(one, zero)];
+        let b = of_three(&which(simd, ends[1]), self.rotation.each_ref());
+        let across =
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let norm = dot(&across, &across).sqrt();
+        let direction = by_axis(
+            #[inline(always)]
+            |axis| is_edges.select(across[axis] / norm, is_second.select(b[axis], a[axis])),
+        );
+        let is_away = dot(&direction, &self.translation).simd_lt(zero);
+        by_axis(
+            #[inline(always)]
+            |axis| is_away.select(-direction[axis], direction[axis]),
+        )
+    }
+}

@@ -1,0 +1,289 @@
+//! The corners of the common area of two faces, of eight pairs, each in a place of its own.
+//!
+//! A corner of the parallelogram, a corner of the rectangle and a crossing of two sides are told by
+//! their numbers, so there are places for 4 + 4 + 16 of them and a bit that says which there are:
+//! nothing is moved until all is known.
+
+use fearless_simd::{Select, Simd, SimdMask};
+
+use super::LANES;
+use super::faces::{Faces, cross};
+use crate::math::{Real, Wide};
+
+/// Corners of the parallelogram, of the rectangle, crossings.
+pub(super) const SLOTS: usize = 24;
+/// The first eight slots are corners, above which or below which the other face is to be named.
+pub(super) const CORNERS: usize = 8;
+
+/// Whether each of the two coordinates of a corner is positive, in the order of the slots.
+pub(super) const SIGNS: [[bool; 2]; 4] =
+    [[true, true], [false, true], [false, false], [true, false]];
+
+/// The places of eight pairs, and for each of them a bit of a mask.
+pub(super) struct Slots<N: Real> {
+    /// Seen along the normal.
+    pub(super) flat: [[[N; LANES]; SLOTS]; 2],
+    /// Above the rectangle.
+    pub(super) height: [[N; LANES]; SLOTS],
+    /// The lanes where the slot holds a candidate.
+    pub(super) valid: [u8; SLOTS],
+    /// Those where its distance is the smallest but for rounding.
+    pub(super) level: [u8; SLOTS],
+    /// Of each corner: it is at an end of the other face along its first or second axis.
+    pub(super) at_end: [[u8; CORNERS]; 2],
+    /// It is on the positive side of that axis.
+    pub(super) beyond: [[u8; CORNERS]; 2],
+}
+
+impl<N: Real> Slots<N> {
+    pub(super) const fn new() -> Self {
+        Self {
+            flat: [[[N::ZERO; LANES]; SLOTS]; 2],
+            height: [[N::ZERO; LANES]; SLOTS],
+            valid: [0; SLOTS],
+            level: [0; SLOTS],
+            at_end: [[0; CORNERS]; 2],
+            beyond: [[0; CORNERS]; 2],
+        }
+    }
+}
+
+/// What the candidates are held against.
+pub(super) struct Limits<V> {
+    /// The distance that the axis says, which the lowest candidate must have.
+    pub(super) gap: V,
+    pub(super) prediction: V,
+}
+
+/// A corner as the other face sees it.
+struct Place<V, M> {
+    flat: [V; 2],
+    height: V,
+    is_inside: M,
+    at_end: [M; 2],
+    beyond: [M; 2],
+}
+
+#[inline(always)]
+fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
+    if is_positive { value } else { -value }
+}
+
+#[inline(always)]
+fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+    mask.to_bitmask().to_le_bytes()[0]
+}
+
+/// The end of the side that lies at `sign` of `arm`: the lower or the upper one.
+const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
+    if arm == 0 { [sign, upper] } else { [upper, sign] }
+}
+
+/// The clipping of eight pairs under way.
+pub(super) struct Clip<'a, S, N: Real, V, M> {
+    pub(super) simd: S,
+    pub(super) faces: &'a Faces<V, M>,
+    pub(super) limits: Limits<V>,
+    pub(super) slots: &'a mut Slots<N>,
+    /// The lowest candidate so far.
+    lowest: V,
+    /// The largest distance that is admitted, and the largest that is level with the gap.
+    most: V,
+    level: V,
+}
+
+impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
+where
+    S: Simd,
+    N: Real,
+    V: Wide<S, Scalar = N, Mask = M>,
+    M: SimdMask<S> + Select<V>,
+{
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        faces: &'a Faces<V, M>,
+        limits: Limits<V>,
+        slots: &'a mut Slots<N>,
+    ) -> Self {
+        let infinity = V::all(simd, N::INFINITY);
+<<<<<<< HEAD
+        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
+        let level = limits.prediction.simd_le(level).select(infinity, level);
+        Self { simd, faces, limits, slots, lowest: infinity, most, level }
+=======
+        let deepest = V::all(simd, N::ZERO);
+        Self {
+            simd,
+            faces,
+            limits,
+            slots,
+            lowest: infinity,
+            nearest: infinity,
+            deepest,
+            most,
+            level,
+        }
+>>>>>>> main
+    }
+
+    /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
+    /// its height.
+    #[inline(always)]
+    pub(super) fn run(mut self) -> M {
+        let [tt, ft, ff, tf] = SIGNS;
+        let above = [self.above(tt), self.above(ft), self.above(ff), self.above(tf)];
+        let mut below = [self.below(tt), self.below(ft), self.below(ff), self.below(tf)];
+        drop_coincident(&above, &mut below);
+        let [a, b, c, d] = above;
+        self.corner(0, &a);
+        self.corner(1, &b);
+        self.corner(2, &c);
+        self.corner(3, &d);
+        let [a, b, c, d] = below;
+        self.corner(4, &a);
+        self.corner(5, &b);
+        self.corner(6, &c);
+        self.corner(7, &d);
+        self.crossings(CORNERS, 0, true);
+        self.crossings(CORNERS + 4, 0, false);
+        self.crossings(CORNERS + 8, 1, true);
+        self.crossings(CORNERS + 12, 1, false);
+        (self.lowest - self.limits.gap).abs().simd_le(self.faces.tolerance)
+    }
+
+    /// Where a corner of the parallelogram is seen, and its height.
+    #[inline(always)]
+    fn arm_end(&self, signs: [bool; 2]) -> ([V; 2], V) {
+        let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
+        let x = center[0] + signed(arms[0][0], signs[0]) + signed(arms[1][0], signs[1]);
+        let y = center[1] + signed(arms[0][1], signs[0]) + signed(arms[1][1], signs[1]);
+        let height = self.faces.height + signed(climbs[0], signs[0]) + signed(climbs[1], signs[1]);
+        ([x, y], height)
+    }
+
+    /// A corner of the parallelogram as the rectangle sees it.
+    #[inline(always)]
+    fn above(&self, signs: [bool; 2]) -> Place<V, M> {
+        let (flat, height) = self.arm_end(signs);
+        let across = &self.faces.across;
+        let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
+        self.place((flat, height), inside, flat)
+    }
+
+    /// A corner of the rectangle as the parallelogram sees it.
+    #[inline(always)]
+    fn below(&self, signs: [bool; 2]) -> Place<V, M> {
+        let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
+        let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
+        let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
+        let along =
+            [cross(&arm, &faces.arms[1]) / faces.area, cross(&faces.arms[0], &arm) / faces.area];
+        let inside =
+            [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
+        let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
+        self.place((flat, height), inside, along)
+    }
+
+    /// A place that is `inside` the ends of the other face by this much along each of its axes, and
+    /// at `coordinates` on them.
+    #[inline(always)]
+    fn place(
+        &self,
+        (flat, height): ([V; 2], V),
+        inside: [V; 2],
+        coordinates: [V; 2],
+    ) -> Place<V, M> {
+        let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
+        Place {
+            flat,
+            height,
+            is_inside: !inside[0].smaller(inside[1]).simd_lt(-tolerance),
+            at_end: [inside[0].simd_le(tolerance), inside[1].simd_le(tolerance)],
+            beyond: [coordinates[0].simd_gt(zero), coordinates[1].simd_gt(zero)],
+        }
+    }
+
+    #[inline(always)]
+    fn corner(&mut self, slot: usize, place: &Place<V, M>) {
+        for axis in 0..2 {
+            self.slots.at_end[axis][slot] = bits(place.at_end[axis]);
+            self.slots.beyond[axis][slot] = bits(place.beyond[axis]);
+        }
+        self.admit(slot, (&place.flat, place.height), place.is_inside);
+    }
+
+    /// Crossings of a side of the parallelogram with all sides of the rectangle.
+    #[inline(always)]
+    fn crossings(&mut self, slot: usize, arm: usize, sign: bool) {
+        let (from, low) = self.arm_end(ends(arm, sign, false));
+        let (to, high) = self.arm_end(ends(arm, sign, true));
+        let side = [to[0] - from[0], to[1] - from[1]];
+        let (from, side) = ((&from, low), (&side, high - low));
+        let to = (&to, high);
+        self.crossing(slot, [from, side, to], (0, true));
+        self.crossing(slot + 1, [from, side, to], (0, false));
+        self.crossing(slot + 2, [from, side, to], (1, true));
+        self.crossing(slot + 3, [from, side, to], (1, false));
+    }
+
+    /// The crossing with the side of the rectangle that is at one end of an axis, away from the ends
+    /// of both.
+    #[inline(always)]
+    fn crossing(
+        &mut self,
+        slot: usize,
+        [from, side, to]: [(&[V; 2], V); 3],
+        (axis, is_positive): (usize, bool),
+    ) {
+        let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
+        let at = signed(across[axis], is_positive);
+        let (before, after) = (from.0[axis] - at, to.0[axis] - at);
+        let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
+        let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
+        let along = before / (before - after);
+        let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
+        let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
+        let height = from.1 + side.1 * along;
+        self.admit(slot, (&flat, height), (leaves | enters) & is_within);
+    }
+
+    /// Stores a candidate where it is and the prediction admits it.
+    #[inline(always)]
+    fn admit(&mut self, slot: usize, (flat, height): (&[V; 2], V), is_there: M) {
+        flat[0].store(&mut self.slots.flat[0][slot]);
+        flat[1].store(&mut self.slots.flat[1][slot]);
+        height.store(&mut self.slots.height[slot]);
+        self.lowest = (is_there & height.simd_lt(self.lowest)).select(height, self.lowest);
+        // Distances are never less than the gap nor more than the prediction: both pass anyway.
+        let is_admitted = is_there & !height.simd_gt(self.most);
+        self.slots.valid[slot] = bits(is_admitted);
+        self.slots.level[slot] = bits(is_admitted & !height.simd_gt(self.level));
+    }
+}
+
+/// Leaves out corners of the rectangle that are corners of the parallelogram, which are there already.
+#[inline(always)]
+fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
+    above: &[Place<V, M>; 4],
+    below: &mut [Place<V, M>; 4],
+) {
+    for (lower, lower_signs) in below.iter_mut().zip(SIGNS) {
+        let at_corner = lower.is_inside & lower.at_end[0] & lower.at_end[1];
+        if !at_corner.any_true() {
+            continue;
+        }
+        for (upper, upper_signs) in above.iter().zip(SIGNS) {
+            let faces = upper.is_inside & upper.at_end[0] & upper.at_end[1];
+            let is_same = at_corner & faces & is_at(lower, upper_signs) & is_at(upper, lower_signs);
+            lower.is_inside = lower.is_inside & !is_same;
+        }
+    }
+}
+
+/// The signs of a place's coordinates are these.
+#[inline(always)]
+fn is_at<S: Simd, V, M: SimdMask<S>>(place: &Place<V, M>, signs: [bool; 2]) -> M {
+    let [x, y] = place.beyond;
+    (if signs[0] { x } else { !x }) & (if signs[1] { y } else { !y })
+}

@@ -1,0 +1,217 @@
+//! The two faces that meet, of eight pairs: those of `box_faces.rs`, side by side.
+
+use fearless_simd::{Select, Simd, SimdMask};
+
+use super::axis::{BestAxis, by_axis, lit, of_three, which};
+use super::gather::{Boxes, dot, seen_from};
+use crate::math::{Real, Wide};
+use crate::query::manifold_build::frame::ROUNDING_ERRORS;
+use crate::shape::FACING_SINE_SQUARED;
+
+/// A face of a box, and the face of the other above it, in the frame of the first of these.
+pub(super) struct Faces<V, M> {
+    /// The axis across the rectangle is the first, the second.
+    pub(super) is_w: [M; 3],
+    pub(super) is_upward: M,
+    /// Half of the rectangle's box across, and of its sides.
+    pub(super) half: V,
+    pub(super) across: [V; 2],
+    /// The axis across the parallelogram, in its own box; its normal is on the positive side.
+    pub(super) is_m: [M; 3],
+    pub(super) is_positive: M,
+    pub(super) center: [V; 2],
+    pub(super) arms: [[V; 2]; 2],
+    pub(super) height: V,
+    pub(super) climbs: [V; 2],
+    pub(super) area: V,
+    pub(super) widths: [V; 2],
+    pub(super) tolerance: V,
+    /// Neither face leans too far or is too narrow.
+    pub(super) is_fit: M,
+}
+
+/// The component on the axis that each lane names, on the next and on the one after.
+#[inline(always)]
+fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
+    by_axis(
+        #[inline(always)]
+        |turn| is[0].select(v[turn], is[1].select(v[(turn + 1) % 3], v[(turn + 2) % 3])),
+    )
+}
+
+/// The lanes whose first, second or third component is the largest, the first of equals.
+#[inline(always)]
+fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
+    let (first, second, third) = (v[0].abs(), v[1].abs(), v[2].abs());
+    let is_second = second.simd_gt(first);
+    let is_third = third.simd_gt(is_second.select(second, first));
+    [!(is_second | is_third), is_second & !is_third, is_third]
+}
+
+/// One with the sign of a mask.
+#[inline(always)]
+fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask) -> V {
+    is_positive.select(V::all(simd, N::ONE), V::all(simd, -N::ONE))
+}
+
+/// The rectangle's side of the two.
+struct Below<V, M> {
+    is_w: [M; 3],
+    /// By the axes of the box.
+    toward: [V; 3],
+    is_upward: M,
+    half: [V; 3],
+    lean: V,
+}
+
+#[inline(always)]
+fn below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    boxes: &Boxes<V>,
+    axis: &BestAxis<V, V::Mask>,
+) -> Below<V, V::Mask> {
+    let (zero, normal) = (V::all(simd, N::ZERO), &axis.normal);
+    let is_face = which(simd, axis.face);
+    let along1 = in_turn(&is_face, normal)[0];
+    let along2 = -dot(normal, &of_three(&is_face, boxes.rotation.each_ref()));
+    let straight = sign(simd, !axis.is_second.select(along2, along1).simd_lt(zero));
+    let most = largest(normal);
+    let is_w = by_axis(
+        #[inline(always)]
+        |a| (axis.is_edges & most[a]) | (!axis.is_edges & is_face[a]),
+    );
+    let toward = by_axis(
+        #[inline(always)]
+        |a| axis.is_edges.select(normal[a], is_face[a].select(straight, zero)),
+    );
+    let [w, u, v] = in_turn(&is_w, &toward);
+    Below {
+        is_w,
+        toward,
+        is_upward: !w.simd_lt(zero),
+        half: in_turn(&is_w, &either(axis.is_second, &boxes.half2, &boxes.half1)),
+        lean: u * u + v * v,
+    }
+}
+
+#[inline(always)]
+fn either<S: Simd, V: Wide<S>>(is: V::Mask, one: &[V; 3], other: &[V; 3]) -> [V; 3] {
+    by_axis(
+        #[inline(always)]
+        |axis| is.select(one[axis], other[axis]),
+    )
+}
+
+/// The axis that each lane names, of three, times a length.
+#[inline(always)]
+fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) -> [V; 3] {
+    let [x, y, z] = of_three(is, axes);
+    [x * length, y * length, z * length]
+}
+
+#[inline(always)]
+fn norm2<S: Simd, V: Wide<S>>(v: &[V; 2]) -> V {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+#[inline(always)]
+fn norm3<S: Simd, V: Wide<S>>(v: &[V; 3]) -> V {
+    dot(v, v).sqrt()
+}
+
+/// The other box, seen from the rectangle's.
+#[inline(always)]
+fn other<S: Simd, V: Wide<S>>(boxes: &Boxes<V>, is_second: V::Mask) -> ([[V; 3]; 3], [V; 3]) {
+    let (r, t) = (&boxes.rotation, &boxes.translation);
+    let inverse = seen_from(r, t);
+    let rotation = by_axis(
+        #[inline(always)]
+        |j| either(is_second, &[r[0][j], r[1][j], r[2][j]], &r[j]),
+    );
+    let shift = by_axis(
+        #[inline(always)]
+        |a| is_second.select(-inverse[a], t[a]),
+    );
+    (rotation, shift)
+}
+
+/// Where a vector, by the axes in turn, ends when seen along the normal, and how far along.
+#[inline(always)]
+fn seen<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
+    let height = w / toward[0];
+    ([u - toward[1] * height, v - toward[2] * height], height)
+}
+
+#[inline(always)]
+pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+impl<V, M> Faces<V, M> {
+    /// The faces that meet along the axes.
+    #[inline(always)]
+    pub(super) fn meeting<S: Simd, N: Real>(
+        simd: S,
+        boxes: &Boxes<V>,
+        axis: &BestAxis<V, M>,
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let below = below(simd, boxes, axis);
+        let (rotation, shift) = other::<S, V>(boxes, axis.is_second);
+        let toward = in_turn(&below.is_w, &below.toward);
+        let facing = seen_from(&rotation, &below.toward);
+        let facing = [-facing[0], -facing[1], -facing[2]];
+        let is_m = largest(&facing);
+        let [f0, f1, f2] = in_turn(&is_m, &facing);
+        let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
+        let half = in_turn(&is_m, &either(axis.is_second, &boxes.half1, &boxes.half2));
+        let [x, y, z] = &rotation;
+        let up = arm(&is_m, [x, y, z], half[0]);
+        let outward: V = sign(simd, is_positive);
+        let from_plane =
+            [shift[0] + up[0] * outward, shift[1] + up[1] * outward, shift[2] + up[2] * outward];
+        let [w, u, v] = in_turn(&below.is_w, &from_plane);
+        let upward: V = sign(simd, below.is_upward);
+        let level = upward * below.half[0];
+        let (center, height) = seen([w - level, u, v], &toward);
+        let arm1 = in_turn(&below.is_w, &arm(&is_m, [y, z, x], half[1]));
+        let arm2 = in_turn(&below.is_w, &arm(&is_m, [z, x, y], half[2]));
+        let ((arm1, climb1), (arm2, climb2)) = (seen(arm1, &toward), seen(arm2, &toward));
+        let area = cross(&arm1, &arm2);
+        let widths = [area.abs() / norm2(&arm2), area.abs() / norm2(&arm1)];
+        let across = [below.half[1], below.half[2]];
+        let tolerance = tolerance(simd, boxes);
+        let narrow = lit::<S, N, V>(simd, 4.0) * tolerance;
+        let limit = lit::<S, N, V>(simd, FACING_SINE_SQUARED);
+        let is_fit = below.lean.simd_le(limit)
+            & !(f1 * f1 + f2 * f2).simd_gt(limit)
+            & across[0].smaller(across[1]).simd_gt(narrow)
+            & widths[0].smaller(widths[1]).simd_gt(narrow);
+        Self {
+            is_w: below.is_w,
+            is_upward: below.is_upward,
+            half: below.half[0],
+            across,
+            is_m,
+            is_positive,
+            center,
+            arms: [arm1, arm2],
+            height,
+            climbs: [climb1, climb2],
+            area,
+            widths,
+            tolerance,
+            is_fit,
+        }
+    }
+}
+
+/// Lengths below this are rounding errors, as for the general builder.
+#[inline(always)]
+fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, boxes: &Boxes<V>) -> V {
+    let size = norm3(&boxes.half1) + norm3(&boxes.half2) + norm3(&boxes.translation);
+    lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
+}

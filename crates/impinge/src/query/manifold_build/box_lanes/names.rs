@@ -1,0 +1,225 @@
+//! Names of the slots of one pair, and the slots of names.
+
+use super::clip::{CORNERS, SIGNS, SLOTS};
+use crate::query::manifold_build::box_faces::{edge, face, vertex};
+use crate::shape::FeatureId;
+
+/// The parts of a face: three times the place along its first axis plus that along its second, where
+/// a place is at the negative end, between, at the positive end.
+const PARTS: usize = 9;
+/// A box has fewer features of each kind than that.
+const NUMBERS: usize = 12;
+/// What is no part, and no slot.
+const NONE: u8 = u8::MAX;
+
+/// A face of a box.
+struct FaceNames {
+    parts: [FeatureId; PARTS],
+    /// The part of each feature by kind and number.
+    part_of: [u8; 3 * NUMBERS],
+}
+
+/// By axis, and whether the face is on its positive side.
+static FACES: [[FaceNames; 2]; 3] = [
+    [FaceNames::new(0, false), FaceNames::new(0, true)],
+    [FaceNames::new(1, false), FaceNames::new(1, true)],
+    [FaceNames::new(2, false), FaceNames::new(2, true)],
+];
+
+impl FaceNames {
+    const fn new(axis: usize, is_positive: bool) -> Self {
+        let mut parts = [face(axis, is_positive); PARTS];
+        let mut part_of = [NONE; 3 * NUMBERS];
+        let mut part: u8 = 0;
+        while (part as usize) < PARTS {
+            let id = part_of_face(axis, is_positive, [part / 3, part % 3]);
+            parts[part as usize] = id;
+            part_of[index_of(id)] = part;
+            part += 1;
+        }
+        Self { parts, part_of }
+    }
+
+    /// The part that bears a name; [`NONE`] for another face's.
+    #[inline(always)]
+    fn part(&self, id: FeatureId) -> u8 {
+        self.part_of.get(index_of(id)).copied().unwrap_or(NONE)
+    }
+}
+
+/// Where a feature stands in a list by kind and number; beyond it for what is no part of a box.
+#[inline(always)]
+const fn index_of(id: FeatureId) -> usize {
+    let (kind, number) = match id {
+        FeatureId::Vertex(number) => (0, number as usize),
+        FeatureId::Edge(number) => (1, number as usize),
+        FeatureId::Face(number) => (2, number as usize),
+    };
+    if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
+}
+
+const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
+    let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+    match (first, second) {
+        (1, 1) => face(w, is_positive),
+        (_, 1) => edge(v, is_positive, first == 2),
+        (1, _) => edge(u, second == 2, is_positive),
+        _ => vertex([(u, first == 2), (v, second == 2), (w, is_positive)]),
+    }
+}
+
+/// The four sides in the order of the slots: at the ends of the first axis, then of the second.
+const SIDES: [u8; 4] = [7, 1, 5, 3];
+/// The part that a corner is of its own face.
+const OWN: [u8; 4] = own_parts();
+/// Two parts, of rectangle and parallelogram, in one number: that many of the first, and the second.
+const PAIRS: usize = PARTS * PARTS;
+
+const fn own_parts() -> [u8; 4] {
+    let mut own = [0; 4];
+    let mut corner = 0;
+    while corner < 4 {
+        let [x, y] = SIGNS[corner];
+        own[corner] = 6 * x as u8 + 2 * y as u8;
+        corner += 1;
+    }
+    own
+}
+
+/// The pairs of parts that the slots stand for; of a corner only what its own part adds.
+const OWN_PAIRS: [u8; SLOTS] = own_pairs();
+
+const fn own_pairs() -> [u8; SLOTS] {
+    let mut pairs = [0; SLOTS];
+    let mut slot = 0;
+    while slot < SLOTS {
+        pairs[slot] = if slot < 4 {
+            OWN[slot]
+        } else if slot < CORNERS {
+            9 * OWN[slot - 4]
+        } else {
+            9 * SIDES[(slot - CORNERS) % 4] + SIDES[(slot - CORNERS) / 4]
+        };
+        slot += 1;
+    }
+    pairs
+}
+
+/// The two parts of a pair.
+static PARTS_OF: [[u8; 2]; PAIRS] = parts_of();
+
+const fn parts_of() -> [[u8; 2]; PAIRS] {
+    let mut all = [[0; 2]; PAIRS];
+    let mut pair: u8 = 0;
+    while (pair as usize) < PAIRS {
+        all[pair as usize] = [pair / 9, pair % 9];
+        pair += 1;
+    }
+    all
+}
+
+/// The slots that may stand for two parts: of a corner of the parallelogram or a crossing, and of a
+/// corner of the rectangle.
+static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
+
+const fn slots_of() -> [[u8; 2]; PAIRS] {
+    let mut all = [[NONE; 2]; PAIRS];
+    let mut slot: u8 = 0;
+    while (slot as usize) < SLOTS {
+        let own = OWN_PAIRS[slot as usize] as usize;
+        let mut part = 0;
+        while part < PARTS {
+            if slot < 4 {
+                all[own + PARTS * part][0] = slot;
+            } else if (slot as usize) < CORNERS {
+                all[own + part][1] = slot;
+            } else {
+                all[own][0] = slot;
+            }
+            part += 1;
+        }
+        slot += 1;
+    }
+    all
+}
+
+/// One in each byte.
+const ONES: u64 = 0x0101_0101_0101_0101;
+
+/// How the slots of one pair are named.
+pub(super) struct Naming {
+    rectangle: &'static FaceNames,
+    parallelogram: &'static FaceNames,
+    is_second: bool,
+    pairs: [u8; SLOTS],
+}
+
+impl Naming {
+    /// For a rectangle of the second box or the first.
+<<<<<<< HEAD
+    #[inline(always)]
+=======
+    #[inline]
+>>>>>>> main
+    pub(super) fn new([rectangle, parallelogram]: [Side; 2], is_second: bool, parts: u64) -> Self {
+        let mut pairs = OWN_PAIRS;
+        let own = u64::from_le_bytes([
+            pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
+        ]);
+        let below = parts & 0xffff_ffff;
+        let corners = own + 9 * below + (parts - below);
+        pairs[..CORNERS].copy_from_slice(&corners.to_le_bytes());
+        let names = |side: Side| &FACES[side.axis][usize::from(side.is_positive)];
+        Self { rectangle: names(rectangle), parallelogram: names(parallelogram), is_second, pairs }
+    }
+
+    /// The names of a candidate, of the first and the second box.
+    #[inline(always)]
+    pub(super) fn features(&self, slot: usize) -> [FeatureId; 2] {
+        let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];
+        let below = self.rectangle.parts[usize::from(below)];
+        let above = self.parallelogram.parts[usize::from(above)];
+        if self.is_second { [above, below] } else { [below, above] }
+    }
+
+    /// The candidate of these names, among those that there are.
+    #[inline(always)]
+    pub(super) fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
+        let (below, above) = if self.is_second { (second, first) } else { (first, second) };
+        let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
+        if below == NONE || above == NONE {
+            return None;
+        }
+        let pair = 9 * below + above;
+        let is_it = |slot: u8| {
+            let slot = usize::from(slot);
+            slot < SLOTS && self.pairs[slot] == pair && valid >> slot & 1 == 1
+        };
+        let [one, other] = SLOTS_OF[usize::from(pair)];
+        let slot = if is_it(one) { one } else { other };
+        is_it(slot).then_some(usize::from(slot))
+    }
+}
+
+/// A face of a box.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    pub(super) axis: usize,
+    pub(super) is_positive: bool,
+}
+
+/// The part of the other face that each of eight corners lies on, a byte for each: from the bits of
+/// one lane, of which `at_end` and `beyond` have a byte for each corner.
+#[inline(always)]
+pub(super) fn parts_at(
+    lane: usize,
+    at_end: &[[u8; CORNERS]; 2],
+    beyond: &[[u8; CORNERS]; 2],
+) -> u64 {
+    let third = |axis: usize| {
+        let at_end = u64::from_le_bytes(at_end[axis]) >> lane & ONES;
+        let beyond = u64::from_le_bytes(beyond[axis]) >> lane;
+        ONES - at_end + 2 * (at_end & beyond)
+    };
+    3 * third(0) + third(1)
+}

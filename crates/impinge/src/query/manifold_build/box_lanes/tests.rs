@@ -1,0 +1,227 @@
+//! Eight at a time against one by one, bit for bit, on every instruction set.
+
+use fearless_simd::Level;
+
+use super::super::contacts3;
+use super::super::tests::scene::Random;
+use super::{BoxJob, update_at};
+use crate::math::{Isometry3, Pose, Real, Vector};
+use crate::query::{ManifoldRequest, Pair, RawManifold};
+use crate::shape::{Cuboid, Kind};
+
+/// Everything that runs on this machine.
+fn levels() -> Vec<Level> {
+    let level = Level::new();
+    let mut all = vec![level];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        all.extend(level.as_avx2().map(Level::Avx2));
+        all.extend(level.as_sse4_2().map(Level::Sse4_2));
+        all.extend(level.as_sse2().map(Level::Sse2));
+    }
+    all
+}
+
+struct Case<N: Real> {
+    poses: [Pose<N, 3>; 2],
+    cuboids: [Cuboid<N, 3>; 2],
+    request: ManifoldRequest<N>,
+}
+
+/// Numbers as bits, but for NaN, which has many.
+fn bits<N: Real>(value: N) -> u64 {
+    if value.is_finite_number() || value == value { value.bits() } else { u64::MAX }
+}
+
+/// All that a manifold says.
+fn facts<N: Real>(raw: &RawManifold<N, 3>) -> Vec<u64> {
+    let mut facts: Vec<u64> = Vec::new();
+    for point in &raw.points {
+        facts.extend(point.point1.coords.iter().map(|&x| bits(x)));
+        facts.extend([bits(point.distance), u64::from(point.id)]);
+        for feature in [point.feature1, point.feature2] {
+            facts.extend(format!("{feature:?}").bytes().map(u64::from));
+        }
+    }
+    if !raw.points.is_empty() {
+        facts.extend(raw.normal.iter().map(|&x| bits(x)));
+    }
+    facts
+}
+
+fn one_by_one<N: Real>(cases: &[Case<N>], raws: &mut [RawManifold<N, 3>]) {
+    for (case, raw) in cases.iter().zip(raws) {
+        let [first, second] = [&case.cuboids[0], &case.cuboids[1]].map(Kind::Cuboid);
+        let pose12 = Pose::relative(&case.poses[0], &case.poses[1]);
+        contacts3(&Pair { first, second, pose12 }, &case.request, raw);
+    }
+}
+
+fn in_lanes<N: Real>(level: Level, cases: &[Case<N>], raws: &mut [RawManifold<N, 3>]) {
+    let mut jobs = Vec::new();
+    for (case, raw) in cases.iter().zip(raws) {
+        let (poses, cuboids) = (case.poses.each_ref(), case.cuboids.each_ref());
+        jobs.push(BoxJob { poses, cuboids, request: &case.request, raw });
+    }
+    update_at(level, &mut jobs);
+}
+
+/// Some steps of the same pairs, so that names are inherited; answers how many points there were.
+fn compare<N: Real>(steps: &[Vec<Case<N>>], what: &str) -> usize {
+    let mut points = 0;
+    for level in levels() {
+        let fresh = || vec![RawManifold::<N, 3>::default(); steps[0].len()];
+        let (mut expected, mut found) = (fresh(), fresh());
+        for (step, cases) in steps.iter().enumerate() {
+            one_by_one(cases, &mut expected);
+            in_lanes(level, cases, &mut found);
+            for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
+                assert_eq!(
+                    facts(one),
+                    facts(other),
+                    "{what}, {level:?}, {step}, {index}: {one:?} {other:?}"
+                );
+                points += one.points.len();
+            }
+        }
+    }
+    points / levels().len()
+}
+
+/// A draw of two boxes near each other.
+struct Draw {
+    halves: [Vector<f64, 3>; 2],
+    at: [Isometry3<f64>; 2],
+}
+
+impl Draw {
+    /// `snapped` boxes have sides and places on a grid and no turn; `lean` is the angle of others.
+    fn new(random: &mut Random, snapped: bool, lean: f64) -> Self {
+        let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
+        let mut half = || Vector::<f64, 3>::from_fn(|_, _| snap(random.between(0.2, 1.3)));
+        let halves = [half(), half()];
+        let lean = if snapped { 0.0 } else { lean };
+        let mut turn = || Vector::<f64, 3>::from_fn(|_, _| random.between(-lean, lean));
+        let turns = [turn(), turn()];
+        let mut shift = Vector::<f64, 3>::from_fn(|_, _| snap(random.between(-1.2, 1.2)));
+        let axis = usize::from(random.between(0.0, 1.0) < 0.5);
+        let side = if random.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+        shift[axis] = side * (halves[0][axis] + halves[1][axis] - snap(random.between(-0.1, 0.2)));
+        let place = Vector::<f64, 3>::from_fn(|_, _| random.between(-9.0, 9.0).round());
+        let first = Isometry3::new(place, turns[0]);
+        let second = Isometry3::new(place + shift, turns[1]);
+        Self { halves, at: [first, second] }
+    }
+
+    /// The same, shaken a little.
+    fn shaken(&self, random: &mut Random, by: f64) -> Self {
+        let mut shake = || Vector::<f64, 3>::from_fn(|_, _| random.between(-by, by));
+        let at = self.at.map(|at| at * Isometry3::new(shake(), shake()));
+        Self { halves: self.halves, at }
+    }
+
+    /// In another unit of length.
+    fn case<N: Real>(&self, unit: f64, request: &ManifoldRequest<N>) -> Case<N> {
+        let pose = |at: &Isometry3<f64>| {
+            let exact = Pose::from_isometry(at);
+            let translation = exact.translation.map(|x| N::lit(x * unit));
+            Pose { rotation: exact.rotation.map(N::lit), translation }
+        };
+        let request = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
+        Case {
+            poses: [pose(&self.at[0]), pose(&self.at[1])],
+            cuboids: self.halves.map(|half| Cuboid::new(half.map(|x| N::lit(x * unit)))),
+            request,
+        }
+    }
+}
+
+fn request<N: Real>(prediction: f64, max_points: usize) -> ManifoldRequest<N> {
+    ManifoldRequest { prediction: N::lit(prediction), sine: N::ZERO, max_points }
+}
+
+/// 203 pairs of a kind, in three steps.
+fn drawn<N: Real>(seed: u64, unit: f64, points: usize, lean: f64) -> Vec<Vec<Case<N>>> {
+    let mut random = Random(seed);
+    let snaps: Vec<bool> = (0..203).map(|index| index % 3 == 0).collect();
+    let mut draws: Vec<_> = snaps.iter().map(|&snap| Draw::new(&mut random, snap, lean)).collect();
+    let mut steps = Vec::new();
+    for _ in 0..3 {
+        steps.push(draws.iter().map(|draw| draw.case(unit, &request(0.05, points))).collect());
+        draws = draws.iter().map(|draw| draw.shaken(&mut random, 0.002)).collect();
+    }
+    steps
+}
+
+fn ordinary<N: Real>() {
+    for (seed, points) in [(1, 4), (2, 4), (3, 1), (4, 2), (5, 3), (6, 16)] {
+        for lean in [0.005, 0.1, 3.0] {
+            let found = compare(&drawn::<N>(seed, 1.0, points, lean), "drawn");
+            assert!(found > 200, "{found} points, {points} at most, lean {lean}");
+        }
+    }
+    for unit in [1e-30, 1e-15, 1e12, 1e18, 1e30] {
+        compare(&drawn::<N>(7, unit, 4, 0.02), "in another unit");
+    }
+}
+
+#[test]
+fn eight_pairs_are_as_one() {
+    ordinary::<f32>();
+    #[cfg(feature = "f64")]
+    ordinary::<f64>();
+}
+
+/// Boxes without height, width or any size; poses that are no numbers, no rotations or far away.
+fn spoiled<N: Real>(case: &mut Case<N>, number: usize) {
+    let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
+    let value = strange[number / 7 % strange.len()];
+    let (which, axis) = (number % 2, number / 2 % 3);
+    match number % 7 {
+        0 => case.poses[which].translation[axis] = value,
+        1 => case.poses[which].rotation[(axis, number / 6 % 3)] = value,
+        2 => case.poses[which].rotation *= N::ZERO,
+        3 => {
+            let mut half = *case.cuboids[which].half_extents();
+            half[axis] = if value.is_finite_number() && value >= N::ZERO { value } else { N::ZERO };
+            case.cuboids[which] = Cuboid::new(half);
+        }
+        4 => case.cuboids[which] = Cuboid::new(Vector::<N, 3>::zeros()),
+        5 => case.poses[1] = case.poses[0],
+        _ => {
+            case.request.prediction = [N::ZERO, N::INFINITY, N::MAX][number / 7 % 3];
+            case.request.sine = if number % 4 == 0 { N::HALF } else { N::ZERO };
+        }
+    }
+}
+
+fn strange<N: Real>() {
+    for seed in 11..15 {
+        let mut steps = drawn::<N>(seed, 1.0, 4, 0.05);
+        for cases in &mut steps {
+            for (number, case) in cases.iter_mut().enumerate() {
+                spoiled(case, number + usize::try_from(seed).expect("small"));
+            }
+        }
+        compare(&steps, "spoiled");
+    }
+}
+
+#[test]
+fn strange_numbers_are_treated_as_one_by_one() {
+    strange::<f32>();
+    #[cfg(feature = "f64")]
+    strange::<f64>();
+}
+
+#[test]
+fn any_number_of_pairs() {
+    let steps = drawn::<f32>(21, 1.0, 4, 0.02);
+    for count in 0..20 {
+        let some: Vec<Vec<Case<f32>>> = steps
+            .iter()
+            .map(|cases| cases.iter().take(count).map(|case| Case { ..*case }).collect())
+            .collect();
+        compare(&some, "some");
+    }
+}

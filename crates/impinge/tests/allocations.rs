@@ -1,0 +1,127 @@
+//! A step of a world in which nothing is new takes no memory from the allocator.
+
+use impinge::dim2::shape::ConvexPolygon;
+use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionWorld};
+
+/// Steps after which everything is where it was.
+const PERIOD: u32 = 16;
+/// Objects along each axis.
+const ROW: usize = 6;
+
+/// What differs by dimension.
+trait Stage<const D: usize>: Space<D> {
+    fn place(at: Vector<Self, D>, turn: f64) -> Self::Isometry;
+    fn own_shapes() -> Vec<ShapeHandle<Self, D>>;
+}
+
+impl<N: Real> Stage<2> for N {
+    fn place(at: Vector<N, 2>, turn: f64) -> Isometry2<N> {
+        Isometry2::from_parts(Translation2::from(at), UnitComplex::new(N::lit(turn)))
+    }
+
+    fn own_shapes() -> Vec<ShapeHandle<N, 2>> {
+        let corners = [[0.5, 0.0], [0.0, 0.5], [-0.5, 0.1], [-0.2, -0.5]];
+        let corners = corners.map(|[x, y]| Point::<N, 2>::new(N::lit(x), N::lit(y)));
+        vec![ShapeHandle::new(ConvexPolygon::from_points(&corners))]
+    }
+}
+
+impl<N: Real> Stage<3> for N {
+    fn place(at: Vector<N, 3>, turn: f64) -> Isometry3<N> {
+        let axis = Vector::<N, 3>::new(N::lit(turn), N::lit(turn * 0.5), N::lit(turn * 0.25));
+        let turn = UnitQuaternion::from_scaled_axis(axis);
+        Isometry3::from_parts(Translation3::from(at), turn)
+    }
+
+    fn own_shapes() -> Vec<ShapeHandle<N, 3>> {
+        let corners = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [-0.5, 0.1, 0.3], [-0.2, -0.5, 0.2]];
+        let corners = corners
+            .map(|corner: [f64; 3]| Point::<N, 3>::from(Vector::<N, 3>::from(corner.map(N::lit))));
+        let hull = ShapeHandle::new(ConvexHull::from_points(&corners));
+        vec![hull, ShapeHandle::new(Cylinder::new(N::lit(0.4), N::lit(0.3)))]
+    }
+}
+
+fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
+    let half = Vector::<N, D>::repeat(N::lit(0.45));
+    let mut shapes = N::own_shapes();
+    shapes.push(ShapeHandle::new(Ball::new(N::lit(0.5))));
+    shapes.push(ShapeHandle::new(Cuboid::new(half)));
+    shapes.push(ShapeHandle::new(Capsule::new(N::lit(0.3), N::lit(0.25))));
+    shapes
+}
+
+/// Where the object of an index is, and how far it is turned: neighbours come and go.
+fn pose<N: Stage<D>, const D: usize>(index: usize, step: u32) -> N::Isometry {
+    let phase = (step as usize + index * 5) % PERIOD as usize;
+    let swing = (phase.min(PERIOD as usize - phase) as f64 - 4.0) * 0.06;
+    let at = Vector::<N, D>::from_fn(|axis, _| {
+        let place = index / ROW.pow(u32::try_from(axis).expect("0 to 2")) % ROW;
+        N::lit(place as f64 + if (index + axis) % 2 == 0 { swing } else { -swing })
+    });
+    N::place(at, swing)
+}
+
+struct Grid<N: Stage<D>, const D: usize> {
+    world: CollisionWorld<N, D, ()>,
+    handles: Vec<CollisionObjectHandle>,
+    step: u32,
+}
+
+impl<N: Stage<D>, const D: usize> Grid<N, D> {
+    fn new() -> Self {
+        let mut world = CollisionWorld::new(N::lit(0.02));
+        let shapes = shapes::<N, D>();
+        let add = |index: usize| {
+            let limit = N::lit(0.01);
+            let query = match index % 5 {
+                0 => GeometricQueryType::Proximity(limit),
+                _ => GeometricQueryType::Contacts(limit, N::ZERO),
+            };
+            let shape = shapes[index % shapes.len()].clone();
+            world.add(pose::<N, D>(index, 0), shape, CollisionGroups::new(), query, ())
+        };
+        let count = ROW.pow(u32::try_from(D).expect("2 or 3"));
+        let handles = (0..count).map(add).collect();
+        Self { world, handles, step: 0 }
+    }
+
+    /// One period; answers how many events and contacts there were.
+    fn play(&mut self) -> (usize, usize) {
+        let (mut events, mut contacts) = (0, 0);
+        for _ in 0..PERIOD {
+            self.step += 1;
+            for (index, handle) in self.handles.iter().enumerate() {
+                self.world.set_position(*handle, pose::<N, D>(index, self.step));
+            }
+            self.world.update();
+            events += self.world.contact_events().len() + self.world.proximity_events().len();
+            contacts += self.world.contact_views().map(|(_, _, view)| view.len()).sum::<usize>();
+        }
+        (events, contacts)
+    }
+}
+
+fn takes_nothing<N: Stage<D>, const D: usize>() {
+    let mut grid = Grid::<N, D>::new();
+    for _ in 0..4 {
+        grid.play();
+    }
+    let mut found = (0, 0);
+    let used = allocation_counter::measure(|| found = grid.play());
+    assert!(found.0 > 100 && found.1 > 200, "a lively period: {found:?}");
+    // The iterator over the views is a box: one for each step.
+    assert_eq!(used.count_total, u64::from(PERIOD), "{used:?}");
+}
+
+#[test]
+fn a_lively_step_takes_no_memory() {
+    takes_nothing::<f32, 2>();
+    takes_nothing::<f64, 2>();
+    takes_nothing::<f32, 3>();
+    takes_nothing::<f64, 3>();
+}
