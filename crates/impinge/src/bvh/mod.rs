@@ -27,12 +27,16 @@ mod bounds;
 mod farthest;
 mod join;
 mod kernel;
+mod near_first;
 mod order;
 mod ordered;
 mod query;
 mod refit;
 mod schedule;
+mod slabs;
+mod still;
 mod tree;
+mod triangles;
 mod validate;
 mod visit;
 
@@ -43,8 +47,11 @@ pub use block::{Block, LANES};
 pub use bounds::Bounds;
 pub use join::{Changes, Joiner};
 pub use kernel::Lanes;
+pub(crate) use near_first::RayProbe;
 pub use ordered::{Frontier, Keys};
+pub(crate) use slabs::Slabs;
 pub use tree::{NONE, Tree};
+pub(crate) use triangles::{ShearedLine, Triangles};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
 pub(crate) const PARALLEL_FROM: usize = 2000;

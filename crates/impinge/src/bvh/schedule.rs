@@ -120,6 +120,11 @@ impl<const D: usize> Tree<D> {
         }
     }
 
+    /// All objects are in order; those that come are new.
+    pub(super) fn declare_ordered(&mut self) {
+        self.schedule.begin(self.end, self.end);
+    }
+
     /// Does this step's share of keeping the order; call it after [`Self::settle`].
     pub fn maintain(&mut self) {
         debug_assert_eq!(self.changed, 0, "maintenance comes after settling");
