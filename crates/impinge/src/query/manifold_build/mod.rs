@@ -29,7 +29,7 @@ pub(super) mod tests;
 mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between};
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs3};
+pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
@@ -120,13 +120,6 @@ pub(crate) fn contacts2<N: Real>(
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
-    }
-}
-
-/// The manifolds of pairs of rectangles, one by one.
-pub(crate) fn box_contacts2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
-    for job in jobs {
-        contacts2(&job.pair(), job.request, job.raw);
     }
 }
 
