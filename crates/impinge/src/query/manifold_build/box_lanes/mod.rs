@@ -73,15 +73,17 @@ pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
 fn update_at<N: Real>(level: Level, jobs: &mut [BoxJob<'_, N, 3>]) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = level.as_avx2() {
-        return simd.vectorize(
+        simd.vectorize(
             #[inline(always)]
             || update::<_, N, N::Lanes<_>>(simd, jobs),
         );
     } else if let Some(simd) = level.as_sse2() {
-        return simd.vectorize(
+        simd.vectorize(
             #[inline(always)]
             || update::<_, N, N::Lanes<_>>(simd, jobs),
         );
+    } else {
+        jobs.iter_mut().for_each(|job| contacts3(&job.pair(), job.request, job.raw));
     }
     #[cfg(not(target_arch = "x86_64"))]
     fearless_simd::dispatch!(level, simd => update::<_, N, N::Lanes<_>>(simd, jobs));
