@@ -24,8 +24,8 @@ use crate::query::separation::{
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Witness, box_contacts2, contact_in_world, contacts2,
-    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs3,
+    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
+    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
     witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
@@ -188,7 +188,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
-        box_contacts: box_contacts2,
+        box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
         ray_span: ray2::span,

@@ -57,7 +57,7 @@ impl<const D: usize> Tree<D> {
             tree.touch(block);
         }
         tree.declare_ordered();
-        tree.refit_layers();
+        tree.refit_layers(&[]);
         tree.settle();
         tree
     }

@@ -29,7 +29,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.broad_phase.interferences_with_ray(&ray, &mut found);
         let probe = Probe::Ray(ray);
         self.candidates(found, &|body| probe.meets(&body.volume()), &groups.into()).filter_map(
-            move |object| Some((object, cast(self.body(object.handle), &ray, N::INFINITY, true)?)),
+            move |body| {
+                let hit = cast(body, &ray, N::INFINITY, true)?;
+                Some((self.record(body)?, hit))
+            },
         )
     }
 
