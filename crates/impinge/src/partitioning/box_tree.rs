@@ -444,12 +444,10 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().near_first(sweep, max_time, found);
     }
 
-    /// What stands beside the list of [`Self::unbounded`].
     pub(crate) const fn packed(&self) -> &Tree<D> {
         &self.tree
     }
 
-    /// The boxes that no finite `f32` box encloses.
     pub(crate) fn unbounded(&self) -> &[u32] {
         &self.unbounded
     }

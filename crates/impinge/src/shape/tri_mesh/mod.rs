@@ -43,7 +43,8 @@ use crate::partitioning::BoxTree;
 /// numbers: it acts as a segment or a point.
 ///
 /// Making a mesh costs O(n log n), a search O(log n + what it finds). A triangle with its share of
-/// vertices takes about 170 bytes in `f32`.
+/// vertices takes about 205 bytes in `f32`: 36 of them are a copy of its corners beside those of its
+/// neighbours, for rays.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
