@@ -57,6 +57,13 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     merging: &Merging<'_, N, D>,
     ids: &mut PairIds,
 ) -> Vec<Patch<N, D>> {
+    if let [Patch { points, .. }] = pieces.as_mut_slice()
+        && let [point] = points.as_mut_slice()
+    {
+        keep_alone(point, merging, ids);
+        pieces.retain(|piece| piece.points[0].raw.distance <= merging.request.prediction);
+        return pieces;
+    }
     for piece in &mut pieces {
         piece.points.sort_by(|a, b| by_depth(a, b));
     }
@@ -77,6 +84,19 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
         reduce_patch(patch, heirs.of_patch(index), merging, ids);
     }
     patches
+}
+
+/// Numbers the only point of all, if it is near enough.
+fn keep_alone<N: Real, const D: usize>(
+    point: &mut PatchPoint<N, D>,
+    merging: &Merging<'_, N, D>,
+    ids: &mut PairIds,
+) {
+    if point.raw.distance <= merging.request.prediction {
+        let mut old = merging.old.iter().flat_map(|patch| &patch.points);
+        let same = old.find(|old| old.name() == point.name());
+        point.raw.id = same.map_or_else(|| ids.next(), |old| old.raw.id);
+    }
 }
 
 /// Deepest first, then in the order of the parts.

@@ -86,7 +86,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// The first corner of a triangle that is at a joint.
-    fn corner_at(&self, triangle: u32, joint: u32) -> usize {
+    pub(super) fn corner_at(&self, triangle: u32, joint: u32) -> usize {
         (0..3).find(|&at| self.joint_ends(triangle, at)[0] == joint).unwrap_or(0)
     }
 
@@ -114,6 +114,28 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     let has_area = least > noise(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
+
+/// The direction of [`inward_of`] rises clearly along a unit vector: by more than what counts as
+/// rounding, however it is computed. False also where that is not certain.
+pub(in crate::shape) fn rises_clearly<N: Real, const D: usize>(
+    corners: &[Point<N, D>; 3],
+    normal: &Vector<N, D>,
+) -> bool {
+    let [a, b, c] = corners;
+    let (along, arm) = (b - a, c - a);
+    let (length, arm_length) = (along.norm_squared(), arm.norm_squared());
+    let across = arm * length - along * arm.dot(&along);
+    let (rise, across) = (across.dot(normal), across.norm_squared());
+    let clear = N::lit(CLEAR);
+    let is_tall = across > clear * length * length * max(length, arm_length);
+    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
+    let unsure = N::lit(1024.0) * N::EPSILON * farthest;
+    let is_certain = is_tall && clear * clear * length > unsure * unsure;
+    is_certain && rise > N::ZERO && rise * rise > clear * across
+}
+
+/// Squares of ratios above this are no rounding.
+const CLEAR: f64 = 1.0 / 1024.0;
 
 /// Whether a side is in the list, or the list is full.
 fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
