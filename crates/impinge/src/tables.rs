@@ -26,11 +26,9 @@ use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
     Proximity, RawManifold, RayIntersection, Witness, box_contacts2, contact_in_world, contacts2,
     contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs3,
-    witness_features2, witness_features3, witness_in_world,
+    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
-use crate::shape::{
-    CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle,
-};
+use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -44,6 +42,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_in_world: WitnessFn<N, D>,
     /// The features that the nearest points of two convex solids lie on.
     pub(crate) witness_features: FeaturesFn<N, D>,
+    /// The same of one of the solids alone, the second if that is said.
+    pub(crate) witness_feature: FeatureFn<N, D>,
     /// The feature of a triangle that a ball is over; the last argument is what counts as rounding.
     pub(crate) over: OverFn<N, D>,
     /// When two moving solids touch, and where.
@@ -82,6 +82,7 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
+type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
 type NearestPartFn<N, const D: usize> =
@@ -181,6 +182,7 @@ struct Particular<N: Space<D>, const D: usize> {
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
+    witness_feature: FeatureFn<N, D>,
     over: OverFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
@@ -195,6 +197,7 @@ impl<N: Real> Particular<N, 2> {
         box_contacts: box_contacts2,
         tangents: tangents2,
         witness_features: witness_features2,
+        witness_feature: witness_feature2,
         over: over2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
@@ -210,6 +213,7 @@ impl<N: Real> Particular<N, 3> {
         box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
+        witness_feature: witness_feature3,
         over: over3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
@@ -228,6 +232,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             touching_in_world,
             witness_in_world,
             witness_features: particular.witness_features,
+            witness_feature: particular.witness_feature,
             over: particular.over,
             impact: impact_of_pair,
             nonlinear_impact: impact_of_flight,

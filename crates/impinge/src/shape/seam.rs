@@ -49,7 +49,7 @@ pub(super) fn leads_up_clearly<N: Real, const D: usize>(
 }
 
 /// Squares of sines above this are no rounding.
-const CLEAR: f64 = 1.0 / 1024.0;
+const CLEAR: f64 = 1.0 / (512.0 * 512.0);
 
 /// What is known of a normal at a seam while its pieces are gone through.
 #[derive(Clone, Copy, Debug)]

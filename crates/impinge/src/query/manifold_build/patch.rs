@@ -133,7 +133,11 @@ impl Heirs {
     fn of<N: Real, const D: usize>(old: &[Patch<N, D>], new: &[Patch<N, D>]) -> Self {
         let mut kept: Vec<Vec<Option<u32>>> =
             new.iter().map(|patch| vec![None; patch.points.len()]).collect();
-        let mut names: Vec<(Name, usize, usize)> = Vec::new();
+        if old.iter().all(|patch| patch.points.is_empty()) {
+            return Self { kept };
+        }
+        let count = new.iter().map(|patch| patch.points.len()).sum();
+        let mut names: Vec<(Name, usize, usize)> = Vec::with_capacity(count);
         for (at, patch) in new.iter().enumerate() {
             names.extend(patch.points.iter().enumerate().map(|(i, point)| (point.name(), at, i)));
         }

@@ -23,23 +23,56 @@ pub(crate) fn features3<N: Real>(
     features(pair, separation, tangents3(&separation.normal))
 }
 
-/// As a manifold would name them: each is the smallest part of what a core shows along the normal that
-/// holds the point.
+/// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
+pub(crate) fn feature2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, &frame(pair, separation, tangents2(&separation.normal)), is_second)
+}
+
+/// The feature of one of two solids of space, the first or the second: one of [`features3`].
+pub(crate) fn feature3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, &frame(pair, separation, tangents3(&separation.normal)), is_second)
+}
+
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     tangents: [Vector<N, D>; 2],
 ) -> [FeatureId; 2] {
+    let frame = frame(pair, separation, tangents);
+    [false, true].map(|is_second| feature(pair, &frame, is_second))
+}
+
+fn frame<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+) -> Frame<N, D> {
     let request = ManifoldRequest::new(separation.distance, N::ZERO, 1);
-    let frame = Frame::new(pair, separation, &request, tangents);
-    [(pair.first, Which::First), (pair.second, Which::Second)].map(|(kind, which)| {
-        // A ball's only feature, and a half-space's.
-        if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
-            return FeatureId::Face(0);
-        }
-        let mut facet = Facet::boundary(which);
-        let pose = matches!(which, Which::Second).then_some(&pair.pose12);
-        face(&mut facet, kind, pose, &frame);
-        at_witness(&facet, &frame)
-    })
+    Frame::new(pair, separation, &request, tangents)
+}
+
+/// As a manifold would name it: the smallest part of what a core shows along the normal that holds
+/// the point.
+fn feature<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &Frame<N, D>,
+    is_second: bool,
+) -> FeatureId {
+    let (kind, which) =
+        if is_second { (pair.second, Which::Second) } else { (pair.first, Which::First) };
+    // A ball's only feature, and a half-space's.
+    if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
+        return FeatureId::Face(0);
+    }
+    let mut facet = Facet::boundary(which);
+    face(&mut facet, kind, is_second.then_some(&pair.pose12), frame);
+    at_witness(&facet, frame)
 }

@@ -4,7 +4,7 @@ use super::HeightField;
 use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::seam::{Seam, is_across, leads_up_clearly, slack};
-use crate::shape::tri_mesh::{inward_of, normal_of, rises_clearly};
+use crate::shape::tri_mesh::{Rise, inward_of, normal_of, rise_of};
 use crate::shape::{FeatureId, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
@@ -66,7 +66,7 @@ impl<N: Real> HeightField<N, 3> {
         let is_hollow = others().any(|other| {
             let opposite = other.iter().find(|corner| **corner != a && **corner != b);
             opposite.is_some_and(|&[row, column]| {
-                rises_clearly(&[start, end, self.grid.point(row, column)], normal)
+                rise_of(&[start, end, self.grid.point(row, column)], normal) == Rise::Clear
             })
         });
         if is_hollow {

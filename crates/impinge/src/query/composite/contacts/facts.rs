@@ -1,7 +1,5 @@
 //! What is to be said of each pair of parts.
 
-use core::cell::OnceCell;
-
 use super::judge::{Case, Verdict, faces, judge};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
@@ -118,13 +116,12 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         if !can_touch {
             return [Verdict::Nothing; 2];
         }
-        let both = OnceCell::new();
-        let features = || {
-            let find = || (N::tables().witness_features)(&self.placed.pair(), found);
-            self.placed.turned(*both.get_or_init(find))
-        };
+        let [is_second1, is_second2] = self.placed.turned([false, true]);
+        let feature =
+            |is_second| (N::tables().witness_feature)(&self.placed.pair(), found, is_second);
+        let (feature1, feature2) =
+            (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
         let normal = self.placed.outward(&found.normal);
-        let (feature1, feature2) = (|| features()[0], || over.unwrap_or_else(|| features()[1]));
         let (part, toward) = (self.parts[0], other1 - own1);
         let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
         let (part, toward) = (self.parts[1], other2 - own2);
@@ -205,7 +202,13 @@ fn of_ball<N: Real, const D: usize>(
 ) -> RawManifold<N, D> {
     let mut raw = RawManifold { normal: witness.normal, ..RawManifold::default() };
     let (point1, distance, id) = (witness.point1, witness.distance, raw.ids.next());
-    raw.points.push(RawPoint { point1, distance, feature1: FeatureId::Face(0), feature2: over, id });
+    raw.points.push(RawPoint {
+        point1,
+        distance,
+        feature1: FeatureId::Face(0),
+        feature2: over,
+        id,
+    });
     raw
 }
 

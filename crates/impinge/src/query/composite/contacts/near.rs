@@ -55,7 +55,9 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
     /// What is known of a part of a composite; nothing of one that is not given by its corners.
     pub(super) fn bound(&self, parts: &dyn CompositeShape<N, D>, part: u32) -> Bound<N> {
         let Part { pose, solid } = parts.part(part);
-        let placed = |corner: &Point<N, D>| pose.point(corner);
+        // Most composites that are given by corners give them in their own frame.
+        let is_own = pose == Pose::identity();
+        let placed = |corner: &Point<N, D>| if is_own { *corner } else { pose.point(corner) };
         match solid {
             PartSolid::Triangle(triangle) => {
                 let corners = triangle.corners().each_ref().map(placed);
@@ -75,16 +77,17 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
         corners: &[Point<N, D>; K],
         toward: &Vector<N, D>,
     ) -> Bound<N> {
-        let (mut least, mut farthest) = (N::INFINITY, self.size);
+        let (mut least, mut farthest) = (N::INFINITY, N::ZERO);
         for corner in corners {
             let arm = self.center - corner;
             least = min(least, toward.dot(&arm));
-            farthest = max(farthest, max_component(&corner.coords));
+            farthest = max(farthest, arm.norm_squared());
         }
         let length = toward.norm();
-        let slack = max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED)) * (farthest + self.size);
-        // Written so that what is no number bounds nothing.
-        let is_bound = length > slack && least > N::ZERO;
+        let relative = max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED));
+        let slack = relative * (farthest.sqrt() + self.size);
+        // Written so that what is no number bounds nothing, nor what has lost digits by being small.
+        let is_bound = length > slack && least > N::MIN_POSITIVE / N::EPSILON;
         if !is_bound {
             return Bound { from_middle: N::ZERO, is_beyond: false };
         }
@@ -130,4 +133,73 @@ fn to_triangle<N: Real, const D: usize>(
         if y.norm_squared() < x.norm_squared() { y } else { x }
     };
     sides.into_iter().reduce(nearer).unwrap_or(ap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::query::composite::Between;
+    use crate::shape::{Ball, Cuboid, Shape, TriMesh};
+
+    type P3 = Point<f64, 3>;
+
+    /// Numbers from -1 to 1.
+    fn noise(state: &mut u64) -> f64 {
+        *state ^= *state << 13;
+        *state ^= *state >> 7;
+        *state ^= *state << 17;
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// The least distance from a point to places all over a triangle: never below the true one.
+    fn sampled([a, b, c]: &[P3; 3], p: &P3) -> f64 {
+        const STEPS: u32 = 48;
+        let shares = (0..=STEPS).flat_map(|v| (0..=STEPS - v).map(move |w| (v, w)));
+        let distance = |(v, w): (u32, u32)| {
+            let [v, w] = [v, w].map(|share| f64::from(share) / f64::from(STEPS));
+            (a + (b - a) * v + (c - a) * w - p).norm()
+        };
+        shares.map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The bound that a solid at the origin has of a mesh of one triangle.
+    fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], reach: f64) -> Bound<f64> {
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
+        let geometries = (solid.geometry(), mesh.geometry());
+        let pose12 = Pose::identity();
+        let pair = Pair { first: geometries.0.0, second: geometries.1.0, pose12 };
+        let between = Between::of_pair(&pair);
+        let probe = Probe::new(&between, reach).expect("a convex solid");
+        probe.bound(&mesh, 0)
+    }
+
+    #[test]
+    fn bounds_are_below_the_distance_and_close_to_it() {
+        let (mut state, mut close, origin) = (1_u64, 0, P3::origin());
+        for round in 0..400 {
+            // Every other one is a sliver.
+            let thin = if round % 2 == 0 { 1.0 } else { 1e-9 };
+            let mut corner = || P3::from([0, 1, 2].map(|_| 2.0 * noise(&mut state)));
+            let [a, b, mut c] = [corner(), corner(), corner()];
+            c = a + (b - a) * 0.3 + (c - a) * thin;
+            let (found, truth) =
+                (bound(&Ball::new(0.25), [a, b, c], 0.1), sampled(&[a, b, c], &origin));
+            assert!(found.from_middle <= truth, "{a} {b} {c}: {} {truth}", found.from_middle);
+            assert!(!found.is_beyond || truth > 0.35, "{a} {b} {c}: {truth}");
+            close +=
+                u32::from(found.from_middle > 0.95 * truth && found.is_beyond == (truth > 0.36));
+        }
+        assert!(close > 350, "close in {close} cases of 400");
+    }
+
+    #[test]
+    fn a_box_is_told_from_triangles_below_it() {
+        let below = |y: f64| [P3::new(-3.0, y, -3.0), P3::new(3.0, y, -3.0), P3::new(0.0, y, 4.0)];
+        let cuboid = Cuboid::new(Vector::<f64, 3>::new(0.5, 0.5, 0.5));
+        let near = bound(&cuboid, below(-0.6), 0.2);
+        assert!(!near.is_beyond && (near.from_middle - 0.6).abs() < 1e-6, "within reach");
+        assert!(bound(&cuboid, below(-0.8), 0.2).is_beyond, "out of reach");
+        let through = bound(&cuboid, below(0.0), 0.2);
+        assert!(!through.is_beyond && through.from_middle == 0.0, "through the middle");
+    }
 }

@@ -37,8 +37,7 @@ pub(crate) fn over3<N: Real>(
         return None;
     }
     let front = normal / area;
-    let insides =
-        [0, 1, 2].map(|at: usize| cross(&sides[at], &arms[at]).dot(&front) / lengths[at]);
+    let insides = [0, 1, 2].map(|at: usize| cross(&sides[at], &arms[at]).dot(&front) / lengths[at]);
     if insides.iter().all(|&inside| inside > room) {
         let height = front.dot(&arms[0]);
         return (height.abs() > room).then_some(FeatureId::Face(u32::from(height < N::ZERO)));
@@ -99,10 +98,12 @@ mod tests {
         assert_eq!(over(-1.0, -1.0, 1.0), Some(FeatureId::Vertex(0)), "beyond a corner");
         assert_eq!(over(6.0, -1.0, 1.0), Some(FeatureId::Vertex(1)), "beyond the next");
         assert_eq!(over(-1.0, 7.0, 1.0), Some(FeatureId::Vertex(2)), "beyond the last");
-        for (x, y, z) in [(2.0, 0.0, 1.0), (0.0, -1.0, 1.0), (1.0, 1.0, 0.0), (f64::NAN, 0.0, 0.0)] {
+        for (x, y, z) in [(2.0, 0.0, 1.0), (0.0, -1.0, 1.0), (1.0, 1.0, 0.0), (f64::NAN, 0.0, 0.0)]
+        {
             assert_eq!(over(x, y, z), None, "on a border: {x} {y} {z}");
         }
-        let thin = Triangle::new(corner(0.0, 0.0, 0.0), corner(4.0, 0.0, 0.0), corner(2.0, 0.1, 0.0));
+        let thin =
+            Triangle::new(corner(0.0, 0.0, 0.0), corner(4.0, 0.0, 0.0), corner(2.0, 0.1, 0.0));
         assert_eq!(over3(&thin, &corner(2.0, 0.05, 1.0), 1e-9), None, "a thin one");
     }
 }

@@ -188,11 +188,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             return None;
         }
         let solid = Solid::Part(recentred(&part.solid, &usual.local)?);
-        let pose =
-            Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
+        let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
         let whole = Solid::Whole(self.between.pair.first);
-        let bodies =
-            [Body { pose: Pose::identity(), solid: whole }, Body { pose, solid }];
+        let bodies = [Body { pose: Pose::identity(), solid: whole }, Body { pose, solid }];
         Some(PartPair::of(bodies, usual.lying, usual.origins))
     }
 
