@@ -2,86 +2,76 @@
 //! thread.
 //!
 //! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
-//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`.
-//! Before it prints a time it compares the answers: each row says by how many they differ from ours.
-//! Times are those of the thread's processor, median, minimum and the ninetieth percentile.
+//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`. Before
+//! it prints a time it compares the answers: each row says by how many they differ from ours. Times
+//! are those of the thread's processor, median, minimum and the ninetieth percentile.
 //!
-//! `impinge-compare accuracy [samples]` measures errors instead of times: see [`accuracy`].
+//! `--only` leaves the contenders whose name contains a text, so that one can be profiled alone,
+//! `--case` the cases whose words do, `--from` those of so many objects at least. Such tables are not
+//! whole and are not written.
+//!
+//! To be run twice, for the processor that Rust assumes and for the one that is there:
+//!
+//! ```text
+//! cargo run --release --features c -- all --machine NAME
+//! RUSTFLAGS='-C target-cpu=native' cargo run --release --features c -- all --machine NAME-native
+//! ```
+//!
+//! The feature `c` adds the rivals in C and C++, see [`world`]; `bytes` counts memory, see [`build`];
+//! `parallel` adds the runs on two threads, see [`scale`]. `impinge-compare accuracy [samples]` measures
+//! errors instead of times, see [`accuracy`]; `impinge-compare kernels` is for instruction counters,
+//! see [`pairs`].
 
 mod accuracy;
+mod arguments;
+mod broad;
+mod build;
 mod measure;
+mod pairs;
+mod queries;
+mod scale;
 mod table;
 mod world;
 
+use arguments::{Arguments, usage};
 use table::Table;
+
+/// Counts the bytes of the suite `build`.
+#[cfg(feature = "bytes")]
+#[global_allocator]
+static ALLOCATOR: &stats_alloc::StatsAlloc<std::alloc::System> = &stats_alloc::INSTRUMENTED_SYSTEM;
 
 /// A suite, by name.
 type Suite = (&'static str, fn(&Arguments) -> Vec<Table>);
 
 /// The suites, in the order in which `all` runs them.
-const SUITES: &[Suite] = &[("world", world::run)];
-
-/// What the command line asks for.
-#[derive(Clone, Debug)]
-pub struct Arguments {
-    /// How many objects there are in scenes whose size is not part of the case.
-    objects: usize,
-    /// How many steps or rounds make a run.
-    steps: u32,
-    /// The folder below `bench/`.
-    machine: String,
-    /// The suites asked for.
-    suites: Vec<String>,
-}
+const SUITES: &[Suite] = &[
+    ("broad", broad::run),
+    ("world", world::run),
+    ("pairs", pairs::run),
+    ("queries", queries::run),
+    ("build", build::run),
+    ("scale", scale::run),
+];
 
 fn main() {
+    let names = SUITES.iter().map(|suite| suite.0);
+    let known: Vec<_> = names.chain(["all", "kernels", "accuracy"]).collect();
     if std::env::args().nth(1).as_deref() == Some("accuracy") {
         let samples = std::env::args().nth(2);
-        let samples = samples.map(|word| word.parse().unwrap_or_else(|_| usage(&word)));
-        accuracy::run(samples.unwrap_or(1000));
-        return;
+        let samples = samples.map(|word| word.parse().unwrap_or_else(|_| usage(&word, &known)));
+        return accuracy::run(samples.unwrap_or(1000));
     }
-    let arguments = arguments();
-    let is_wanted =
-        |name: &str| arguments.suites.iter().any(|wanted| wanted == "all" || wanted == name);
-    for (_, run) in SUITES.iter().filter(|(name, _)| is_wanted(name)) {
-        for table in run(&arguments) {
+    let arguments = Arguments::of_command_line(&known);
+    if arguments.suites.iter().any(|suite| suite == "kernels") {
+        return pairs::count(&arguments);
+    }
+    for (_, run) in SUITES.iter().filter(|(name, _)| arguments.wants_suite(name)) {
+        for table in run(&arguments).into_iter().filter(|_| arguments.is_whole()) {
             match table.write(&arguments.machine) {
                 Ok(path) => println!("written to {}", path.display()),
                 Err(error) => eprintln!("the table could not be written: {error}"),
             }
         }
     }
-}
-
-fn arguments() -> Arguments {
-    let mut arguments =
-        Arguments { objects: 10_000, steps: 100, machine: "local".to_owned(), suites: Vec::new() };
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().unwrap_or_else(|| usage(&word));
-        let number = |text: String| text.parse().unwrap_or_else(|_| usage(&text));
-        match word.as_str() {
-            "--objects" => arguments.objects = number(value()) as usize,
-            "--steps" => arguments.steps = number(value()),
-            "--machine" => arguments.machine = value(),
-            name if name == "all" || SUITES.iter().any(|suite| suite.0 == name) => {
-                arguments.suites.push(word);
-            }
-            other => usage(other),
-        }
-    }
-    if arguments.suites.is_empty() {
-        usage("nothing");
-    }
-    arguments
-}
-
-fn usage(word: &str) -> ! {
-    let suites: Vec<_> = SUITES.iter().map(|suite| suite.0).collect();
-    eprintln!("{word} is not understood");
-    eprintln!("usage: impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]");
-    eprintln!("       impinge-compare accuracy [samples]");
-    eprintln!("suites: all {}", suites.join(" "));
-    std::process::exit(2)
 }

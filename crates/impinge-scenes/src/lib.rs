@@ -25,7 +25,7 @@ pub use motion::{Motion, Wave};
 pub use placement::Placement;
 pub use scenes::{
     Area, Room, few_moving, mixed_shapes, mixed_sizes, pile, room, sparse_drift, spawn_and_despawn,
-    tower,
+    terrain_field, terrain_mesh, tower,
 };
 pub use shape::SceneShape;
 

@@ -56,12 +56,37 @@ pub enum SceneShape<const D: usize> {
         /// The radius of the base.
         radius: f64,
     },
+    /// A surface of triangles; in space only.
+    TriMesh {
+        /// The corners of the triangles.
+        vertices: Vec<[f64; D]>,
+        /// Three vertices each, counter-clockwise seen from outside.
+        triangles: Vec<[u32; 3]>,
+    },
+    /// A line from each vertex to the next; in the plane only.
+    Polyline {
+        /// The vertices.
+        vertices: Vec<[f64; D]>,
+    },
+    /// A surface over a grid that lies symmetrically around the second axis; in the plane, a line.
+    ///
+    /// Each cell is divided along the diagonal from its lower row and column to its higher ones.
+    HeightField {
+        /// The numbers of rows, along the third axis, and columns, along the first; in the plane there
+        /// is one row.
+        counts: [usize; 2],
+        /// The heights, row by row.
+        heights: Vec<f64>,
+        /// The extents of the whole field; by the second the heights are multiplied.
+        extents: [f64; D],
+    },
 }
 
 impl<const D: usize> SceneShape<D> {
     /// The least and the greatest corner of a box around the placed shape; `None` for a plane.
     ///
-    /// The smallest such box, but for cylinders and cones, whose local box is taken instead.
+    /// The smallest such box, but for cylinders, cones and height fields, whose local box is taken
+    /// instead.
     #[must_use]
     pub fn aabb(&self, placement: &Placement<D>) -> Option<([f64; D], [f64; D])> {
         match self {
@@ -80,8 +105,28 @@ impl<const D: usize> SceneShape<D> {
             Self::Segment { ends } => Some(hull(placement, ends)),
             Self::Triangle { corners } => Some(hull(placement, corners)),
             Self::Convex { points } => Some(hull(placement, points)),
+            Self::TriMesh { vertices, .. } | Self::Polyline { vertices } => {
+                Some(hull(placement, vertices))
+            }
+            Self::HeightField { heights, extents, .. } => {
+                Some(hull(placement, &corners(heights, extents)))
+            }
         }
     }
+}
+
+/// The corners of the local box of a height field, those of the plane twice.
+fn corners<const D: usize>(heights: &[f64], extents: &[f64; D]) -> [[f64; D]; 8] {
+    let bounds = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = heights.iter().fold(bounds, |(low, high), h| (low.min(*h), high.max(*h)));
+    std::array::from_fn(|corner| {
+        std::array::from_fn(|axis| match (axis, corner >> axis & 1) {
+            (1, 0) => low * extents[1],
+            (1, _) => high * extents[1],
+            (_, 0) => -0.5 * extents[axis],
+            (..) => 0.5 * extents[axis],
+        })
+    })
 }
 
 /// `height` along the second axis and `width` along the others.
@@ -129,6 +174,12 @@ mod tests {
         assert_eq!(capsule.aabb(&quarter), Some(([7.5, -0.5], [12.5, 0.5])), "so does this");
         let segment = SceneShape::Segment { ends: [[0.0, 0.0], [1.0, 0.0]] };
         assert_eq!(segment.aabb(&quarter), Some(([10.0, 0.0], [10.0, 1.0])), "x becomes y");
+        let field = SceneShape::HeightField {
+            counts: [1, 3],
+            heights: vec![0.0, 3.0, -1.0],
+            extents: [4.0, 0.5],
+        };
+        assert_eq!(field.aabb(&quarter), Some(([8.5, -2.0], [10.5, 2.0])), "up becomes left");
         assert_eq!(SceneShape::Plane { normal: [0.0, 1.0] }.aabb(&quarter), None, "no end");
     }
 }

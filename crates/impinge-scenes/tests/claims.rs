@@ -2,7 +2,7 @@
 
 use impinge_scenes::{
     Placement, Scene, SceneQuery, SceneShape, few_moving, mixed_shapes, mixed_sizes, pile, room,
-    sparse_drift, spawn_and_despawn, tower,
+    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, tower,
 };
 
 /// The pairs of living objects whose boxes meet, by sweeping along the first axis.
@@ -159,6 +159,62 @@ fn all_kinds_of_shapes_are_there_with_both_queries() {
     check::<3>(8);
 }
 
+/// The height of a field at the vertex nearest to a point, with the number of parts of the field.
+fn ground<const D: usize>(shape: &SceneShape<D>, at: &[f64; D]) -> (f64, usize) {
+    let SceneShape::HeightField { counts: [rows, columns], heights, extents } = shape else {
+        panic!("the ground is a field")
+    };
+    let nearest = |axis: usize, count: usize| {
+        let x = (at[axis] / extents[axis] + 0.5) * (count - 1) as f64;
+        (0..count).find(|n| *n as f64 + 0.5 >= x).unwrap_or(count - 1)
+    };
+    let row = if D < 3 { 0 } else { nearest(2, *rows) };
+    let cells = if D < 3 { columns - 1 } else { 2 * (rows - 1) * (columns - 1) };
+    (heights[row * columns + nearest(0, *columns)], cells)
+}
+
+#[test]
+fn solids_stay_on_the_ground() {
+    fn check<const D: usize>(parts: std::ops::Range<usize>) {
+        let scene = terrain_field::<D>(200);
+        let shape = &scene.objects[0].shape;
+        for n in 1..=200 {
+            for step in [0, 40, 80] {
+                let at = scene.placement(n, step).translation;
+                let (height, count) = ground(shape, &at);
+                assert!(parts.contains(&count), "{count} parts");
+                let low = scene.aabb(n, step).expect("bounded").0[1];
+                assert!(at[1] > height, "the centre of {n} is above the ground at step {step}");
+                assert!((low - height).abs() < 0.35, "{n} is near the ground: {low}, {height}");
+            }
+        }
+    }
+    check::<2>(2000..2001);
+    check::<3>(20_000..20_500);
+}
+
+/// The mesh and the field are the same surface.
+#[test]
+fn both_grounds_are_one() {
+    let (mesh, field) = (terrain_mesh::<3>(3), terrain_field::<3>(3));
+    let SceneShape::TriMesh { vertices, triangles } = &mesh.objects[0].shape else {
+        panic!("a mesh")
+    };
+    for corners in triangles {
+        let [a, b, c] = corners.map(|n| vertices[n as usize]);
+        let up = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);
+        assert_eq!(up, 0.25, "seen from above, counter-clockwise: half a cell, twice");
+    }
+    for vertex in vertices {
+        assert_eq!(ground(&field.objects[0].shape, vertex).0, vertex[1], "at {vertex:?}");
+    }
+    assert_eq!(mesh.objects[1..].len(), field.objects[1..].len());
+    let line = terrain_mesh::<2>(3);
+    assert!(
+        matches!(&line.objects[0].shape, SceneShape::Polyline { vertices } if vertices.len() == 31)
+    );
+}
+
 #[test]
 fn the_room_has_walls_and_areas() {
     let (plane, space) = (room::<2>(), room::<3>());
@@ -211,6 +267,8 @@ fn motion_is_pure_and_bounded() {
         check_motion(|| spawn_and_despawn::<D>(100));
         check_motion(|| tower::<D>(100));
         check_motion(|| room::<D>().scene);
+        check_motion(|| terrain_mesh::<D>(100));
+        check_motion(|| terrain_field::<D>(100));
     }
     check::<2>();
     check::<3>();

@@ -7,9 +7,6 @@ use crate::table::Row;
 
 /// A world that is compared with another.
 pub trait Contender<const D: usize> {
-    /// The name in the table.
-    fn name(&self) -> &'static str;
-
     /// Converts the new placements of some objects; not timed.
     fn prepare(&mut self, moved: &[(usize, Placement<D>)]);
 
@@ -23,6 +20,20 @@ pub trait Contender<const D: usize> {
     fn touching(&self) -> Vec<(usize, usize)>;
 }
 
+/// A world and its name in the table.
+pub struct Entrant<const D: usize> {
+    /// The name.
+    pub name: &'static str,
+    /// The world.
+    pub world: Box<dyn Contender<D>>,
+}
+
+/// What is timed, in the order of the three cases of a scene.
+pub const KINDS: [&str; 3] = ["step and reading", "step alone", "reading alone"];
+
+/// The kind whose answers are points, those of the last step, instead of pairs.
+const READING: usize = 2;
+
 /// A digest of all contact points: they have to be read, and should be about the same.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading {
@@ -35,33 +46,37 @@ pub struct Reading {
 /// How one contender did, in milliseconds per step.
 #[derive(Clone, Debug, Default)]
 struct Lane {
-    update: Times,
-    read: Times,
-    total: Times,
+    /// By the kinds of [`KINDS`].
+    times: [Times; 3],
+    points: usize,
     touching: usize,
     differ: usize,
 }
 
 /// Steps the contenders alternately; who goes first alternates too. The first step, in which
-/// everything is new, is not in the times. Each contender gives three rows: the update, the reading
-/// and both together.
+/// everything is new, is not in the times. Each contender gives a row for each case.
 pub fn race<const D: usize>(
     scene: &Scene<D>,
-    contenders: &mut [&mut dyn Contender<D>],
+    mut entrants: Vec<Entrant<D>>,
     steps: u32,
+    cases: &[String; 3],
 ) -> Vec<Row> {
-    let count = contenders.len();
+    let count = entrants.len();
     let mut lanes = vec![Lane::default(); count];
     for step in 0..=steps {
         let moved = moved(scene, step);
         for n in (0..count).map(|n| (n + step as usize) % count) {
-            lanes[n].step(contenders[n], &moved, step > 0);
+            lanes[n].step(&mut *entrants[n].world, &moved, step > 0);
         }
         if step % 10 == 0 {
-            compare(contenders, &mut lanes);
+            compare(&entrants, &mut lanes);
         }
     }
-    rows(scene, contenders, &lanes)
+    let named = || lanes.iter().zip(&entrants);
+    let rows = cases.iter().enumerate().flat_map(|(kind, case)| {
+        named().map(move |(lane, entrant)| lane.row(case, entrant.name, kind))
+    });
+    rows.collect()
 }
 
 impl Lane {
@@ -75,10 +90,20 @@ impl Lane {
         let (update, ()) = timed(|| contender.step());
         let (read, reading) = timed(|| contender.read());
         assert!(reading.depth.is_finite(), "{} points of no depth", reading.points);
+        self.points = reading.points;
         if is_kept {
-            self.update.push(update * 1e-6);
-            self.read.push(read * 1e-6);
-            self.total.push((update + read) * 1e-6);
+            let times = [update + read, update, read];
+            self.times.iter_mut().zip(times).for_each(|(kept, time)| kept.push(time * 1e-6));
+        }
+    }
+
+    fn row(&self, case: &str, name: &str, kind: usize) -> Row {
+        Row {
+            case: case.to_owned(),
+            contender: name.to_owned(),
+            answers: if kind == READING { self.points } else { self.touching },
+            differ: self.differ,
+            times: self.times[kind].clone(),
         }
     }
 }
@@ -91,8 +116,8 @@ fn moved<const D: usize>(scene: &Scene<D>, step: u32) -> Vec<(usize, Placement<D
 }
 
 /// Notes by how many touching pairs each differs from the first, in the worst of the steps compared.
-fn compare<const D: usize>(contenders: &[&mut dyn Contender<D>], lanes: &mut [Lane]) {
-    let pairs: Vec<_> = contenders.iter().map(|contender| contender.touching()).collect();
+fn compare<const D: usize>(entrants: &[Entrant<D>], lanes: &mut [Lane]) {
+    let pairs: Vec<_> = entrants.iter().map(|entrant| entrant.world.touching()).collect();
     let missing = |from: &[(usize, usize)], of: &[(usize, usize)]| {
         of.iter().filter(|pair| from.binary_search(pair).is_err()).count()
     };
@@ -101,24 +126,4 @@ fn compare<const D: usize>(contenders: &[&mut dyn Contender<D>], lanes: &mut [La
         let differ = missing(&pairs[0], found) + missing(found, &pairs[0]);
         lane.differ = lane.differ.max(differ);
     }
-}
-
-fn rows<const D: usize>(
-    scene: &Scene<D>,
-    contenders: &[&mut dyn Contender<D>],
-    lanes: &[Lane],
-) -> Vec<Row> {
-    let objects = scene.objects.len();
-    let row = |what: &str, lane: &Lane, name: &str, times: &Times| Row {
-        case: format!("{} {D}D, {objects}: {what}", scene.name),
-        contender: name.to_owned(),
-        answers: lane.touching,
-        differ: lane.differ,
-        times: times.clone(),
-    };
-    let named = || lanes.iter().zip(contenders.iter().map(|contender| contender.name()));
-    let total = named().map(|(lane, name)| row("step and reading", lane, name, &lane.total));
-    let update = named().map(|(lane, name)| row("step alone", lane, name, &lane.update));
-    let read = named().map(|(lane, name)| row("reading alone", lane, name, &lane.read));
-    total.chain(update).chain(read).collect()
 }

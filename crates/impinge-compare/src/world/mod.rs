@@ -2,15 +2,55 @@
 //! every contact point; only this is timed. Looking up the poses and converting them is not. On every
 //! tenth step the touching pairs of all are compared: a time for another answer is no time.
 //!
-//! All sides use `f32`, the same prediction and as good as the same loosening of boxes.
-
+//! All sides use `f32`, the same prediction and as good as the same loosening of boxes, as far as they
+//! let one choose. Two objects touch here if they have a contact point not farther apart than that.
+//!
+//! # Scenes
+//! In the plane and in space: a pile in which all boxes overlap their neighbours and move, ten times as
+//! many boxes drifting apart, boxes of which one in a hundred moves, all kinds of shapes above a plane,
+//! and solids on a ground of 100 triangles (in the plane 10 segments) each, given as a mesh and as a
+//! height field. Their size follows `--objects`.
+//!
+//! # Rivals
+//! rapier's `CollisionPipeline`, made for the same purpose as our world, runs everywhere.
+//!
+//! The rest are engines with dynamics, each behind a feature of its name, all of them behind `c`.
+//! `impinge-compare-c` says how each is driven and what of its dynamics is left: of Box2D and Box3D
+//! nothing but their lists of islands and constraints, of Jolt two passes over the bodies. They lack
+//! planes, single triangles or segments and are absent from the mixed shapes.
+//!
+//! - Box2D and Box3D (through `boxdd-sys`, `boxddd-sys`): compiled with `-O3 -DNDEBUG`. They run twice:
+//!   computing each contact anew, as we do, and, called recycling, as by default, where the points of a
+//!   pair stay as they are on both objects until these have moved by 0.05 against one another. Their
+//!   prediction is ten times ours, and there is no rest but sleep, which is off: where few objects move,
+//!   they look at all contacts still. A pose that is set from outside takes the box out of the tree and
+//!   puts it in anew if it has left its loosened box; what the solver moves only has its box enlarged, and
+//!   the tree mended at once. So the scenes in which all drift show them slower than they are in a game.
+//! - Jolt (through `oxijolt-sys`): its own build asks for AVX2, also where we do not. Its contacts are
+//!   read in a callback, so its reading is part of the step. All of its bodies stay awake, likewise. It
+//!   runs twice: with the edges of the scene, and rounded by 0.05, as by default, where it has another
+//!   answer but need not search for depths as often.
+//!
+//! # Rivals left out
+//! `joltc-sys`, another way to Jolt, has no listener of contacts: no point could be read. The safe crates
+//! above `boxdd-sys` and `boxddd-sys` look up each name in registries of their own, which would be
+//! charged to the engines. `box3d-sys` needs libclang, and has what `boxddd-sys` has.
 mod contender;
+#[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
+mod engines;
 mod ours;
 mod rapier2;
 mod rapier3;
 
-use contender::{Contender, race};
-use impinge_scenes::{Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift};
+#[cfg(feature = "jolt")]
+use impinge_compare_c::Jolt;
+#[cfg(any(feature = "box2d", feature = "box3d"))]
+use impinge_compare_c::Recycling;
+
+use contender::{Contender, Entrant, KINDS, race};
+use impinge_scenes::{
+    Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift, terrain_field, terrain_mesh,
+};
 
 use crate::Arguments;
 use crate::table::Table;
@@ -19,37 +59,77 @@ use crate::table::Table;
 /// the scenes ask for.
 const PREDICTION: f32 = 0.002;
 
+/// Makes a world with the objects of a scene as they are at step 0; none where it lacks a shape.
+type Maker<const D: usize> = fn(&Scene<D>) -> Option<Box<dyn Contender<D>>>;
+
+/// A scene by name: how it is made, and how many times the objects asked for it has.
+type Stage<const D: usize> = (&'static str, fn(usize) -> Scene<D>, usize);
+
 /// Runs all scenes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("world", "ms");
-    let objects = arguments.objects;
-    for scene in scenes::<2>(objects) {
-        let rival = rapier2::Rapier::new(&scene);
-        run_scene(&scene, ours::plane(&scene), rival, arguments, &mut table);
-    }
-    for scene in scenes::<3>(objects) {
-        let rival = rapier3::Rapier::new(&scene);
-        run_scene(&scene, ours::space(&scene), rival, arguments, &mut table);
-    }
+    let plane: &[(&str, Maker<2>)] = &[
+        ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
+        ("rapier", |scene| Some(Box::new(rapier2::Rapier::new(scene)))),
+        #[cfg(feature = "box2d")]
+        ("box2d", |scene| engines::box2d(scene, Recycling::Off)),
+        #[cfg(feature = "box2d")]
+        ("box2d recycling", |scene| engines::box2d(scene, Recycling::On)),
+    ];
+    let space: &[(&str, Maker<3>)] = &[
+        ("impinge", |scene| Some(Box::new(ours::space(scene)))),
+        ("rapier", |scene| Some(Box::new(rapier3::Rapier::new(scene)))),
+        #[cfg(feature = "box3d")]
+        ("box3d", |scene| engines::box3d(scene, Recycling::Off)),
+        #[cfg(feature = "box3d")]
+        ("box3d recycling", |scene| engines::box3d(scene, Recycling::On)),
+        #[cfg(feature = "jolt")]
+        ("jolt", |scene| engines::jolt(scene, 0.0)),
+        #[cfg(feature = "jolt")]
+        ("jolt rounded", |scene| engines::jolt(scene, Jolt::CONVEX_RADIUS)),
+    ];
+    run_stages(plane, arguments, &mut table);
+    run_stages(space, arguments, &mut table);
     vec![table]
 }
 
 /// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
-fn scenes<const D: usize>(n: usize) -> [Scene<D>; 4] {
-    let linear = f64::from(PREDICTION) / 2.0;
-    let mut scenes = [pile(n), sparse_drift(n), few_moving(n), mixed_shapes(n)];
-    for object in scenes.iter_mut().flat_map(|scene| &mut scene.objects) {
-        object.query = SceneQuery::Contacts { linear, angular: 0.0 };
-    }
-    scenes
+fn stages<const D: usize>() -> [Stage<D>; 6] {
+    [
+        ("pile", pile, 1),
+        ("sparse drift", sparse_drift, 10),
+        ("1 % moving", few_moving, 1),
+        ("mixed shapes", mixed_shapes, 1),
+        ("terrain mesh", terrain_mesh, 1),
+        ("terrain field", terrain_field, 1),
+    ]
 }
 
-fn run_scene<const D: usize>(
-    scene: &Scene<D>,
-    mut ours: impl Contender<D>,
-    mut rival: impl Contender<D>,
+fn run_stages<const D: usize>(
+    makers: &[(&'static str, Maker<D>)],
     arguments: &Arguments,
     table: &mut Table,
 ) {
-    table.add(race(scene, &mut [&mut ours, &mut rival], arguments.steps));
+    for (name, make, factor) in stages() {
+        let count = factor * arguments.objects;
+        let cases = KINDS.map(|kind| format!("{name} {D}D, {count}: {kind}"));
+        if !cases.iter().any(|case| arguments.wants_case(case)) {
+            continue;
+        }
+        let scene = asking_for_contacts(make(count));
+        let wanted = makers.iter().filter(|(name, _)| arguments.wants_contender(name));
+        let made = wanted.filter_map(|(name, make)| Some(Entrant { name, world: make(&scene)? }));
+        let mut rows = race(&scene, made.collect(), arguments.steps, &cases);
+        rows.retain(|row| arguments.wants_case(&row.case));
+        table.add(rows);
+    }
+}
+
+/// The same scene, in which the sum over a pair of what is asked for is the prediction.
+fn asking_for_contacts<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
+    let linear = f64::from(PREDICTION) / 2.0;
+    for object in &mut scene.objects {
+        object.query = SceneQuery::Contacts { linear, angular: 0.0 };
+    }
+    scene
 }

@@ -1,11 +1,13 @@
 //! impinge, in the plane and in space.
 
+use std::hint::black_box;
+
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::shape::{
-    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, ShapeHandle,
-    Triangle,
+    Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, HeightField, Plane, Polyline,
+    Segment, ShapeHandle, TriMesh, Triangle,
 };
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
@@ -29,7 +31,11 @@ where
 pub fn plane(scene: &Scene<2>) -> Impinge<2> {
     let particular = |shape: &SceneShape<2>| match shape {
         SceneShape::Convex { points } => {
-            ShapeHandle::new(ConvexPolygon::from_points(&hull(points)))
+            ShapeHandle::new(ConvexPolygon::from_points(&points_of(points)))
+        }
+        SceneShape::Polyline { vertices } => ShapeHandle::new(Polyline::open(points_of(vertices))),
+        SceneShape::HeightField { heights, extents, .. } => {
+            ShapeHandle::new(HeightField::<f32, 2>::new(scalars(heights), vector(extents)))
         }
         other => unreachable!("{other:?} is not of the plane"),
     };
@@ -44,12 +50,21 @@ pub fn plane(scene: &Scene<2>) -> Impinge<2> {
 /// A world in space with the objects of a scene as they are at step 0.
 pub fn space(scene: &Scene<3>) -> Impinge<3> {
     let particular = |shape: &SceneShape<3>| match shape {
-        SceneShape::Convex { points } => ShapeHandle::new(ConvexHull::from_points(&hull(points))),
+        SceneShape::Convex { points } => {
+            ShapeHandle::new(ConvexHull::from_points(&points_of(points)))
+        }
         SceneShape::Cylinder { half_height, radius } => {
             ShapeHandle::new(Cylinder::new(*half_height as f32, *radius as f32))
         }
         SceneShape::Cone { half_height, radius } => {
             ShapeHandle::new(Cone::new(*half_height as f32, *radius as f32))
+        }
+        SceneShape::TriMesh { vertices, triangles } => {
+            ShapeHandle::new(TriMesh::new(points_of(vertices), triangles.clone()))
+        }
+        SceneShape::HeightField { counts: [rows, columns], heights, extents } => {
+            let heights = scalars(heights);
+            ShapeHandle::new(HeightField::<f32, 3>::new(*rows, *columns, heights, vector(extents)))
         }
         other => unreachable!("{other:?} is of every dimension"),
     };
@@ -92,13 +107,20 @@ fn point<const D: usize>(point: &[f64; D]) -> Point<f32, D> {
     Point::from(point.map(|x| x as f32))
 }
 
-fn hull<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
+fn vector<const D: usize>(v: &[f64; D]) -> Vector<f32, D> {
+    Vector::<f32, D>::from(v.map(|x| x as f32))
+}
+
+fn scalars(numbers: &[f64]) -> Vec<f32> {
+    numbers.iter().map(|x| *x as f32).collect()
+}
+
+fn points_of<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(point).collect()
 }
 
 /// The shapes that exist in every dimension.
 fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> {
-    let vector = |v: &[f64; D]| Vector::<f32, D>::from(v.map(|x| x as f32));
     Some(match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),
         SceneShape::Cuboid { half_extents } => ShapeHandle::new(Cuboid::new(vector(half_extents))),
@@ -112,9 +134,7 @@ fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> 
         SceneShape::Triangle { corners: [a, b, c] } => {
             ShapeHandle::new(Triangle::new(point(a), point(b), point(c)))
         }
-        SceneShape::Convex { .. } | SceneShape::Cylinder { .. } | SceneShape::Cone { .. } => {
-            return None;
-        }
+        _ => return None,
     })
 }
 
@@ -122,10 +142,6 @@ impl<const D: usize> Contender<D> for Impinge<D>
 where
     f32: Space<D>,
 {
-    fn name(&self) -> &'static str {
-        "impinge"
-    }
-
     fn prepare(&mut self, moved: &[(usize, Placement<D>)]) {
         self.moved.clear();
         let poses = moved.iter().map(|(n, at)| (self.handles[*n], (self.isometry)(at)));
@@ -141,18 +157,17 @@ where
 
     fn read(&self) -> Reading {
         let mut reading = Reading::default();
-        for (_, _, manifold) in self.world.contact_manifolds() {
-            for tracked in manifold.contacts() {
+        for (_, _, manifold) in self.world.contact_views() {
+            for point in manifold.contacts() {
                 reading.points += 1;
-                reading.depth += f64::from(tracked.contact.depth);
+                reading.depth += f64::from(black_box(point).contact.depth);
             }
         }
         reading
     }
 
     fn touching(&self) -> Vec<(usize, usize)> {
-        let manifolds = self.world.contact_manifolds();
-        let touching = manifolds.filter(|(_, _, manifold)| !manifold.is_empty());
+        let touching = self.world.contact_views();
         let mut pairs: Vec<_> = touching.map(|(a, b, _)| (*a.data(), *b.data())).collect();
         for pair in &mut pairs {
             *pair = (pair.0.min(pair.1), pair.0.max(pair.1));

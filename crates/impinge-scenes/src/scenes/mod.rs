@@ -4,11 +4,13 @@ mod drift;
 mod mixed;
 mod pile;
 mod room;
+mod terrain;
 
 pub use drift::{few_moving, mixed_sizes, sparse_drift, spawn_and_despawn};
 pub use mixed::mixed_shapes;
 pub use pile::{pile, tower};
 pub use room::{Area, Room, room};
+pub use terrain::{terrain_field, terrain_mesh};
 
 use crate::SceneQuery;
 

@@ -45,7 +45,8 @@ fn shaking<const D: usize>(at: [f64; D], random: &mut Random) -> SceneObject<D> 
     SceneObject::new(shape, NEAR_CONTACTS, motion)
 }
 
-fn signed_speed(random: &mut Random, low: f64, high: f64) -> f64 {
+/// A speed of either sign.
+pub(super) fn signed_speed(random: &mut Random, low: f64, high: f64) -> f64 {
     let speed = random.between(low, high);
     if random.below(2) == 0 { speed } else { -speed }
 }

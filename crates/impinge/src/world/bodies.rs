@@ -153,13 +153,17 @@ impl<N: Space<D>, const D: usize> Bodies<N, D> {
             Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
     }
 
-    /// Moves an object, unless a number of the position is not finite.
+    /// Moves an object, unless a number of the position is not finite. An object that is there already
+    /// does not count as changed.
     pub(crate) fn set_isometry(
         &mut self,
         index: u32,
         isometry: N::Isometry,
     ) -> Result<(), WorldError> {
         let body = &mut self.bodies[index as usize];
+        if isometry == body.isometry {
+            return Ok(());
+        }
         let pose = finite_pose(N::pose(&isometry), Some(body.handle))?;
         body.isometry = isometry;
         body.aabb = aabb_at(&*body.shape, &pose);

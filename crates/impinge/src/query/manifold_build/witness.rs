@@ -2,7 +2,7 @@
 
 use super::facet::{Facet, Which};
 use super::frame::Frame;
-use super::{ManifoldRequest, Pair, at_witness, face, tangents2, tangents3};
+use super::{ManifoldRequest, Pair, at_witness, ball, face, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Real, Vector};
 use crate::shape::{FeatureId, Kind};
@@ -29,7 +29,7 @@ pub(crate) fn feature2<N: Real>(
     separation: &Separation<N, 2>,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, &frame(pair, separation, tangents2(&separation.normal)), is_second)
+    feature(pair, separation, tangents2, is_second)
 }
 
 /// The feature of one of two solids of space, the first or the second: one of [`features3`].
@@ -38,19 +38,11 @@ pub(crate) fn feature3<N: Real>(
     separation: &Separation<N, 3>,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, &frame(pair, separation, tangents3(&separation.normal)), is_second)
+    feature(pair, separation, tangents3, is_second)
 }
 
-fn features<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    separation: &Separation<N, D>,
-    tangents: [Vector<N, D>; 2],
-) -> [FeatureId; 2] {
-    let frame = frame(pair, separation, tangents);
-    [false, true].map(|is_second| feature(pair, &frame, is_second))
-}
-
-fn frame<N: Real, const D: usize>(
+/// The frame of a witness that nothing else is asked of.
+pub(super) fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     tangents: [Vector<N, D>; 2],
@@ -59,9 +51,45 @@ fn frame<N: Real, const D: usize>(
     Frame::new(pair, separation, &request, tangents)
 }
 
+fn features<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+) -> [FeatureId; 2] {
+    if let Some(touched) = known(pair, separation) {
+        return [FeatureId::Face(0), touched];
+    }
+    let frame = frame(pair, separation, tangents);
+    [false, true].map(|is_second| shown(pair, &frame, is_second))
+}
+
+fn feature<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
+    is_second: bool,
+) -> FeatureId {
+    match known(pair, separation) {
+        Some(touched) if is_second => touched,
+        Some(_) => FeatureId::Face(0),
+        None => shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second),
+    }
+}
+
+/// What a ball, the first solid, touches, where that is known at once.
+fn known<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+) -> Option<FeatureId> {
+    match pair.first {
+        Kind::Ball(_) => ball::known_part(pair, separation),
+        _ => None,
+    }
+}
+
 /// As a manifold would name it: the smallest part of what a core shows along the normal that holds
 /// the point.
-fn feature<N: Real, const D: usize>(
+fn shown<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
     is_second: bool,

@@ -85,6 +85,11 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
         can_interact && !self.excluded.contains(&handle)
     }
 
+    /// There is a question about the user's record.
+    pub(super) const fn has_predicate(&self) -> bool {
+        self.predicate.is_some()
+    }
+
     /// The predicate allows the object.
     pub(super) fn accepts(&self, object: &CollisionObject<N, D, T>) -> bool {
         self.predicate.is_none_or(|predicate| predicate(object))

@@ -55,18 +55,26 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for Neighbor<'_, N, D, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The objects that the broad phase found and has not lost track of, and those that it has and
     /// that `may` meet the question; allowed by the filter, in order, each once.
+    ///
+    /// The test of the question itself comes next: the user's records, which lie elsewhere in memory,
+    /// are for [`Self::record`] of those that pass it.
     fn candidates<'a>(
         &'a self,
         found: Vec<&CollisionObjectHandle>,
         may: &dyn Fn(&Body<N, D>) -> bool,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+    ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
         let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
         let astray = self.objects.bodies.astray().filter(|body| may(body));
-        let allowed = settled.chain(astray).filter_map(|body| self.allowed(body, filter));
-        let mut objects: Vec<_> = allowed.collect();
-        objects.sort_unstable_by_key(|object| object.handle);
-        objects.into_iter()
+        let allowed = settled.chain(astray).filter(|body| self.allows(body, filter));
+        let mut bodies: Vec<_> = allowed.collect();
+        bodies.sort_unstable_by_key(|body| body.handle);
+        bodies.into_iter()
+    }
+
+    /// The user's record of a living object.
+    fn record(&self, body: &Body<N, D>) -> Option<&CollisionObject<N, D, T>> {
+        self.objects.get(body.handle)
     }
 
     /// The object of a handle of the broad phase, if it lives and is where it was at the last update.

@@ -32,7 +32,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.broad_phase.interferences_with_point(&point, &mut found);
         let may = |body: &Body<N, D>| BoundingVolume::contains_point(&body.volume(), &point);
         self.candidates(found, &may, filter)
-            .filter(move |object| holds(self.body(object.handle), &point))
+            .filter(move |body| holds(body, &point))
+            .filter_map(move |body| self.record(body))
     }
 
     /// The nearest point to `point` of any object, and that object; of several the one whose handle comes

@@ -42,7 +42,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
         visit: &mut dyn FnMut(&CollisionObjectHandle) -> N,
     ) {
         match self {
-            Self::Ray(ray) => broad_phase.visit_ray(ray, limit, visit),
+            Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
             Self::Near(own) => broad_phase.visit_nearest(own, limit, visit),
             Self::Cast(own, velocity) => broad_phase.visit_cast(own, velocity, limit, visit),
         }
@@ -68,8 +68,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let Some(mut ranking) = ranking else { return Vec::new() };
         let mut limit = ranking.limit_of_boxes();
         let mut consider = |body: &Body<N, D>| {
-            if let Some((key, answer)) =
-                self.allowed(body, filter).and_then(|_| measure(body, ranking.limit()))
+            if self.allows(body, filter)
+                && let Some((key, answer)) = measure(body, ranking.limit())
             {
                 ranking.offer(Ranked { key, handle: body.handle, answer });
             }
@@ -92,14 +92,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .collect()
     }
 
-    /// The user's record of an object that the filter allows.
-    pub(super) fn allowed(
-        &self,
-        body: &Body<N, D>,
-        filter: &QueryFilter<'_, N, D, T>,
-    ) -> Option<&CollisionObject<N, D, T>> {
-        let is_admitted = filter.admits(body.handle, &body.groups);
-        let object = if is_admitted { self.objects.get(body.handle) } else { None };
-        object.filter(|object| filter.accepts(object))
+    /// The filter allows a living object. Only a predicate is worth the way to the user's record, which
+    /// lies elsewhere in memory.
+    pub(super) fn allows(&self, body: &Body<N, D>, filter: &QueryFilter<'_, N, D, T>) -> bool {
+        let accepts = || self.objects.get(body.handle).is_some_and(|object| filter.accepts(object));
+        filter.admits(body.handle, &body.groups) && (!filter.has_predicate() || accepts())
     }
 }

@@ -39,7 +39,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (aabb, mut found) = (*aabb, Vec::new());
         self.broad_phase.interferences_with_bounding_volume(&aabb, &mut found);
         self.candidates(found, &|_| true, filter)
-            .filter(move |object| self.body(object.handle).aabb.intersects(&aabb))
+            .filter(move |body| body.aabb.intersects(&aabb))
+            .filter_map(move |body| self.record(body))
     }
 
     /// The objects that touch or overlap a solid, in order of their handles.
@@ -80,7 +81,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         let may = |body: &Body<N, D>| aabb.is_some_and(|aabb| body.volume().intersects(&aabb));
         self.candidates(found, &may, filter)
-            .filter(move |object| separation(&placed, self.body(object.handle), N::ZERO).is_some())
+            .filter(move |body| separation(&placed, body, N::ZERO).is_some())
+            .filter_map(move |body| self.record(body))
     }
 
     /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes

@@ -1,0 +1,101 @@
+//! What the command line asks for.
+
+/// The suites to run and how much of them.
+#[derive(Clone, Debug)]
+pub struct Arguments {
+    /// How many objects there are in scenes whose size is not part of the case, and at most where it
+    /// is.
+    pub objects: usize,
+    /// Cases of fewer objects are left out, where the size is part of the case.
+    pub least: usize,
+    /// How many steps or rounds make a run.
+    pub steps: u32,
+    /// The folder below `bench/`.
+    pub machine: String,
+    /// What the words of a case have to contain.
+    pub case: String,
+    /// What the name of a contender has to contain.
+    pub only: String,
+    /// The suites asked for.
+    pub suites: Vec<String>,
+}
+
+impl Arguments {
+    /// From the words of the command line; ends the program if they are not understood.
+    pub fn of_command_line(known: &[&str]) -> Self {
+        let mut arguments = Self::default();
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let mut value = || words.next().unwrap_or_else(|| usage(&word, known));
+            let number = |text: String| text.parse().unwrap_or_else(|_| usage(&text, known));
+            match word.as_str() {
+                "--objects" => arguments.objects = number(value()) as usize,
+                "--from" => arguments.least = number(value()) as usize,
+                "--steps" => arguments.steps = number(value()),
+                "--machine" => arguments.machine = value(),
+                "--case" => arguments.case = value(),
+                "--only" => arguments.only = value(),
+                name if known.contains(&name) => arguments.suites.push(word),
+                other => usage(other, known),
+            }
+        }
+        if arguments.suites.is_empty() {
+            usage("nothing", known);
+        }
+        arguments
+    }
+
+    /// Whether a suite is to run.
+    pub fn wants_suite(&self, name: &str) -> bool {
+        self.suites.iter().any(|wanted| wanted == "all" || wanted == name)
+    }
+
+    /// Whether a contender of this name is to run.
+    pub fn wants_contender(&self, name: &str) -> bool {
+        name.contains(&self.only)
+    }
+
+    /// Whether a case is to run.
+    pub fn wants_case(&self, case: &str) -> bool {
+        case.contains(&self.case)
+    }
+
+    /// Whether a case of so many objects is among those asked for.
+    pub fn includes(&self, objects: usize) -> bool {
+        (self.least..=self.objects).contains(&objects)
+    }
+
+    /// Whether impinge is to run without rivals.
+    pub fn is_alone(&self) -> bool {
+        self.only == "impinge"
+    }
+
+    /// Whether all contenders run in all cases.
+    pub const fn is_whole(&self) -> bool {
+        self.only.is_empty() && self.case.is_empty() && self.least == 0
+    }
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self {
+            objects: 10_000,
+            least: 0,
+            steps: 100,
+            machine: "local".to_owned(),
+            case: String::new(),
+            only: String::new(),
+            suites: Vec::new(),
+        }
+    }
+}
+
+/// Says what is understood, and ends the program.
+pub fn usage(word: &str, suites: &[&str]) -> ! {
+    eprintln!("{word} is not understood");
+    eprintln!("usage: impinge-compare SUITE... [--objects N] [--from N] [--steps N]");
+    eprintln!("                       [--machine NAME] [--only NAME] [--case TEXT]");
+    eprintln!("       impinge-compare accuracy [samples]");
+    eprintln!("suites: {}", suites.join(" "));
+    std::process::exit(2)
+}

@@ -1,0 +1,142 @@
+//! What is asked of each contender, and the race.
+
+use std::collections::HashSet;
+
+use super::swarm::{Cell, Change, Swarm};
+use crate::measure::{Times, timed};
+use crate::table::Row;
+
+/// By how much all contenders loosen boxes, so that a box that moves little costs little.
+pub const MARGIN: f32 = 0.05;
+
+/// A broad phase that is compared with another.
+pub trait Contender<const D: usize> {
+    /// The name in the table.
+    fn name(&self) -> &'static str;
+
+    /// Hands over the boxes that moved, vanished and appeared, updates, and collects the events;
+    /// timed.
+    fn step(&mut self, change: &Change<D>);
+
+    /// Follows the events of the step; not timed.
+    fn settle(&mut self, _change: &Change<D>) {}
+
+    /// All pairs, by [`key`]; not timed.
+    fn pairs(&mut self) -> Vec<u64>;
+}
+
+/// The contenders of a case, the first of which is impinge.
+pub type Contenders<const D: usize> = Vec<Box<dyn Contender<D>>>;
+
+/// Two numbers as one, in either order.
+pub fn key(a: u32, b: u32) -> u64 {
+    u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+}
+
+/// A pair that started (`true`) or stopped.
+pub type Event = (u32, u32, bool);
+
+/// The pairs that follow from events.
+#[derive(Clone, Debug, Default)]
+pub struct Held(HashSet<u64>);
+
+impl Held {
+    /// Takes the events in.
+    pub fn apply(&mut self, events: impl IntoIterator<Item = Event>) {
+        for (a, b, started) in events {
+            if started {
+                self.0.insert(key(a, b));
+            } else {
+                self.0.remove(&key(a, b));
+            }
+        }
+    }
+
+    /// Drops the pairs of what vanished, for those who do not report them.
+    pub fn forget<const D: usize>(&mut self, change: &Change<D>) {
+        let gone: HashSet<u32> = change.replaced.iter().map(|(n, _)| *n).collect();
+        if !gone.is_empty() {
+            let stays = |key: &u64| {
+                !(gone.contains(&((key >> 32) as u32)) || gone.contains(&(*key as u32)))
+            };
+            self.0.retain(stays);
+        }
+    }
+
+    /// All of them.
+    pub fn pairs(&self) -> Vec<u64> {
+        self.0.iter().copied().collect()
+    }
+}
+
+/// How one contender did, in milliseconds per step.
+#[derive(Clone, Debug, Default)]
+struct Lane {
+    times: Times,
+    pairs: usize,
+    differ: usize,
+}
+
+/// Steps the contenders alternately; who goes first alternates too. The first step, in which
+/// everything is new, is not in the times, and neither are those after it, half as many as are: at first
+/// all boxes are in the middle of their loosened ones, and later they leave at different times. The pairs
+/// are compared before the times are taken, after every tenth and after the last.
+pub fn race<const D: usize>(
+    case: &str,
+    swarm: &mut Swarm<D>,
+    contenders: &mut Contenders<D>,
+    steps: u32,
+) -> Vec<Row> {
+    let count = contenders.len();
+    let mut lanes = vec![Lane::default(); count];
+    let warmup = (steps / 2).max(1);
+    for step in 0..=warmup + steps {
+        let change = if step == 0 { Change::default() } else { swarm.step() };
+        for n in (0..count).map(|n| (n + step as usize) % count) {
+            let (time, ()) = timed(|| contenders[n].step(&change));
+            contenders[n].settle(&change);
+            if step > warmup {
+                lanes[n].times.push(time * 1e-6);
+            }
+        }
+        if step == warmup || step == warmup + steps || step > warmup && step % 10 == 0 {
+            compare(&swarm.cells, contenders, &mut lanes);
+        }
+    }
+    let rows = lanes.into_iter().zip(contenders).map(|(lane, contender)| Row {
+        case: case.to_owned(),
+        contender: contender.name().to_owned(),
+        answers: lane.pairs,
+        differ: lane.differ,
+        times: lane.times,
+    });
+    rows.collect()
+}
+
+/// Notes how many answers of each are wrong, in the worst of the steps compared.
+///
+/// Every two boxes that overlap must be a pair: what one contender lacks and another has counts. Boxes
+/// that are near may be one, depending on when they were loosened last. A loosened box reaches at most
+/// two margins beyond the box within, so pairs with a gap of more than four are stale, and count too.
+fn compare<const D: usize>(cells: &[Cell<D>], contenders: &mut Contenders<D>, lanes: &mut [Lane]) {
+    let gap = |key: &u64| cells[(key >> 32) as usize].gap(&cells[(key & 0xffff_ffff) as usize]);
+    let mut overlapping = Vec::new();
+    let mut counts = Vec::new();
+    for (contender, lane) in contenders.iter_mut().zip(lanes.iter_mut()) {
+        let mut pairs = contender.pairs();
+        pairs.sort_unstable();
+        let all = pairs.len();
+        pairs.dedup();
+        let stale = pairs.iter().filter(|key| gap(key) > 4.01 * MARGIN).count();
+        lane.pairs = all;
+        lane.differ = lane.differ.max(stale + all - pairs.len());
+        pairs.retain(|key| gap(key) <= 0.0);
+        counts.push(pairs.len());
+        overlapping.extend(pairs);
+        overlapping.sort_unstable();
+        overlapping.dedup();
+    }
+    for (lane, count) in lanes.iter_mut().zip(counts) {
+        lane.differ = lane.differ.max(overlapping.len() - count);
+    }
+}

@@ -1,0 +1,69 @@
+//! parry's tree alone, used as rapier uses it: leaves are loosened, the tree is improved a little at each
+//! step and refitted, and the pairs are listed of which one box left its loosened one. What follows from
+//! that, the pairs that started and stopped, is not worked out.
+
+use super::parry::bounding_volume::Aabb;
+use super::parry::math::Vector;
+use super::parry::partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhWorkspace};
+
+use super::D;
+use crate::broad::contender::{Contender, MARGIN, key};
+use crate::broad::swarm::{Cell, Change};
+
+/// A tree of parry.
+pub struct Parry {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    candidates: Vec<(u32, u32)>,
+}
+
+impl Parry {
+    /// A tree of the boxes.
+    pub fn new(cells: &[Cell<D>]) -> Self {
+        let leaves: Vec<_> = cells.iter().map(|cell| aabb(cell, MARGIN)).collect();
+        Self {
+            tree: Bvh::from_leaves(BvhBuildStrategy::default(), &leaves),
+            workspace: BvhWorkspace::default(),
+            candidates: Vec::new(),
+        }
+    }
+}
+
+fn aabb(cell: &Cell<D>, margin: f32) -> Aabb {
+    Aabb::new(
+        Vector::from(cell.mins()) - Vector::splat(margin),
+        Vector::from(cell.maxs()) + Vector::splat(margin),
+    )
+}
+
+impl Contender<D> for Parry {
+    fn name(&self) -> &'static str {
+        "parry (no events)"
+    }
+
+    fn step(&mut self, change: &Change<D>) {
+        let Self { tree, workspace, candidates } = self;
+        candidates.clear();
+        for (n, _) in &change.replaced {
+            tree.remove(*n);
+        }
+        let mut updated = 0;
+        for (n, cell) in change.replaced.iter().chain(&change.moved) {
+            let status = tree.insert_or_update_partially(aabb(cell, 0.0), *n, MARGIN);
+            updated += usize::from(status != BvhLeafUpdateStatus::Unchanged);
+        }
+        // rapier does without where few boxes leave; it then has other ways to keep the tree good.
+        if updated * 16 >= tree.leaf_count() as usize {
+            tree.optimize_incremental(workspace);
+        }
+        tree.refit(workspace);
+        tree.traverse_bvtt_single_tree::<true>(workspace, &mut |a, b| candidates.push((a, b)));
+    }
+
+    fn pairs(&mut self) -> Vec<u64> {
+        let mut pairs = Vec::new();
+        let mut push = |a, b| pairs.push(key(a, b));
+        self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut push);
+        pairs
+    }
+}

@@ -1,0 +1,21 @@
+//! Space: the rivals that are one crate per dimension.
+//!
+//! Such crates have the same source for both dimensions, and so have their contenders here.
+
+use ncollide3d as ncollide;
+use parry3d as parry;
+use rapier3d as rapier;
+
+/// The number of dimensions.
+const D: usize = 3;
+
+#[path = "ncollide.rs"]
+mod ncollide_phase;
+#[path = "parry.rs"]
+mod parry_tree;
+#[path = "rapier.rs"]
+mod rapier_phase;
+
+pub use ncollide_phase::Ncollide;
+pub use parry_tree::Parry;
+pub use rapier_phase::Rapier;

@@ -1,0 +1,213 @@
+//! Whole worlds of boxes that are not turned: impinge, rapier and ncollide. Made, moved and read.
+
+use impinge::math::Isometry3;
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::{Cuboid, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionWorld};
+use ncollide3d::pipeline as ncollide;
+use rapier3d::prelude as rapier;
+
+use crate::broad::swarm::{Cell, is_borderline};
+use crate::broad::{MARGIN, key};
+
+/// The sum over a pair of the distances at which boxes have contact points.
+const PREDICTION: f32 = 0.002;
+
+/// A world of boxes.
+pub trait World: Send {
+    /// Adds a box, whose number is that of the call.
+    fn add(&mut self, cell: &Cell<3>);
+
+    /// Moves some boxes and updates.
+    fn step(&mut self, moved: &[(u32, Cell<3>)]);
+
+    /// Reads every contact point: how many there are, and the sum of their depths.
+    fn read(&self) -> (usize, f32);
+
+    /// The pairs with contact points, by [`key`].
+    fn touching(&self) -> Vec<u64>;
+}
+
+/// The touching pairs of a world, sorted, but for those of which rounding decides whether they touch.
+pub fn certainly_touching(world: &dyn World, cells: &[Cell<3>]) -> Vec<u64> {
+    let mut pairs = world.touching();
+    let ends = |key: &u64| [key >> 32, key & 0xffff_ffff].map(|n| &cells[n as usize]);
+    pairs.retain(|key| {
+        let [a, b] = ends(key);
+        !is_borderline(a, b, f64::from(PREDICTION))
+    });
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// A world of impinge.
+pub struct Ours {
+    world: CollisionWorld<f32, 3, u32>,
+    handles: Vec<CollisionObjectHandle>,
+}
+
+impl Ours {
+    /// A world without boxes.
+    pub fn new() -> Self {
+        Self { world: CollisionWorld::new(MARGIN), handles: Vec::new() }
+    }
+}
+
+impl World for Ours {
+    fn add(&mut self, cell: &Cell<3>) {
+        let number = u32::try_from(self.handles.len()).expect("there are fewer boxes");
+        let [x, y, z] = cell.center;
+        let shape = ShapeHandle::new(Cuboid::new(cell.half.into()));
+        let query = GeometricQueryType::Contacts(PREDICTION / 2.0, 0.0);
+        let place = Isometry3::translation(x, y, z);
+        self.handles.push(self.world.add(place, shape, CollisionGroups::new(), query, number));
+    }
+
+    fn step(&mut self, moved: &[(u32, Cell<3>)]) {
+        for (n, cell) in moved {
+            let [x, y, z] = cell.center;
+            let place = Isometry3::translation(x, y, z);
+            self.world.set_position(self.handles[*n as usize], place);
+        }
+        self.world.update();
+    }
+
+    fn read(&self) -> (usize, f32) {
+        let mut reading = (0, 0.0);
+        for (_, _, manifold) in self.world.contact_views() {
+            for tracked in manifold.contacts() {
+                reading.0 += 1;
+                reading.1 += tracked.contact.depth;
+            }
+        }
+        reading
+    }
+
+    fn touching(&self) -> Vec<u64> {
+        let manifolds = self.world.contact_manifolds();
+        let touching = manifolds.filter(|(_, _, manifold)| !manifold.is_empty());
+        touching.map(|(a, b, _)| key(*a.data(), *b.data())).collect()
+    }
+}
+
+/// A world of rapier: colliders without bodies, which cost it the least.
+pub struct Rapier {
+    islands: rapier::IslandManager,
+    broad_phase: rapier::BroadPhaseBvh,
+    narrow_phase: rapier::NarrowPhase,
+    bodies: rapier::RigidBodySet,
+    colliders: rapier::ColliderSet,
+    pipeline: rapier::CollisionPipeline,
+    handles: Vec<rapier::ColliderHandle>,
+}
+
+impl Rapier {
+    /// A world without boxes.
+    pub fn new() -> Self {
+        Self {
+            islands: rapier::IslandManager::new(),
+            broad_phase: rapier::BroadPhaseBvh::new(),
+            narrow_phase: rapier::NarrowPhase::new(),
+            bodies: rapier::RigidBodySet::new(),
+            colliders: rapier::ColliderSet::new(),
+            pipeline: rapier::CollisionPipeline::new(),
+            handles: Vec::new(),
+        }
+    }
+}
+
+impl World for Rapier {
+    fn add(&mut self, cell: &Cell<3>) {
+        let number = self.handles.len();
+        let [x, y, z] = cell.half;
+        let collider = rapier::ColliderBuilder::cuboid(x, y, z)
+            .translation(cell.center.into())
+            .active_collision_types(rapier::ActiveCollisionTypes::all())
+            .user_data(number as u128);
+        self.handles.push(self.colliders.insert(collider));
+    }
+
+    fn step(&mut self, moved: &[(u32, Cell<3>)]) {
+        for (n, cell) in moved {
+            self.colliders[self.handles[*n as usize]].set_translation(cell.center.into());
+        }
+        self.pipeline.step(
+            PREDICTION,
+            &mut self.islands,
+            &mut self.broad_phase,
+            &mut self.narrow_phase,
+            &mut self.bodies,
+            &mut self.colliders,
+            &(),
+            &(),
+        );
+    }
+
+    fn read(&self) -> (usize, f32) {
+        let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
+        let points = manifolds.flat_map(|manifold| &manifold.points);
+        points.fold((0, 0.0), |(count, sum), point| (count + 1, sum - point.dist))
+    }
+
+    fn touching(&self) -> Vec<u64> {
+        let near = |pair: &&rapier::ContactPair| {
+            let mut points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
+            points.any(|point| point.dist <= PREDICTION)
+        };
+        let number = |handle: rapier::ColliderHandle| self.colliders[handle].user_data as u32;
+        let touching = self.narrow_phase.contact_pairs().filter(near);
+        touching.map(|pair| key(number(pair.collider1), number(pair.collider2))).collect()
+    }
+}
+
+/// A world of ncollide.
+pub struct Ncollide {
+    world: ncollide::CollisionWorld<f32, u32>,
+    handles: Vec<ncollide::CollisionObjectSlabHandle>,
+}
+
+impl Ncollide {
+    /// A world without boxes.
+    pub fn new() -> Self {
+        Self { world: ncollide::CollisionWorld::new(MARGIN), handles: Vec::new() }
+    }
+}
+
+fn ncollide_place(cell: &Cell<3>) -> ncollide3d::math::Isometry<f32> {
+    let [x, y, z] = cell.center;
+    ncollide3d::math::Isometry::translation(x, y, z)
+}
+
+impl World for Ncollide {
+    fn add(&mut self, cell: &Cell<3>) {
+        use ncollide3d::shape::{Cuboid, ShapeHandle};
+        let number = u32::try_from(self.handles.len()).expect("there are fewer boxes");
+        let shape = ShapeHandle::new(Cuboid::new(cell.half.into()));
+        let query = ncollide::GeometricQueryType::Contacts(PREDICTION / 2.0, 0.0);
+        let (place, groups) = (ncollide_place(cell), ncollide::CollisionGroups::new());
+        self.handles.push(self.world.add(place, shape, groups, query, number).0);
+    }
+
+    fn step(&mut self, moved: &[(u32, Cell<3>)]) {
+        for (n, cell) in moved {
+            let object = self.world.objects.get_mut(self.handles[*n as usize]);
+            object.expect("nothing was removed").set_position(ncollide_place(cell));
+        }
+        self.world.update();
+    }
+
+    fn read(&self) -> (usize, f32) {
+        let pairs = self.world.contact_pairs(false);
+        let contacts = pairs.flat_map(|(_, _, _, manifold)| manifold.contacts());
+        contacts.fold((0, 0.0), |(count, sum), tracked| (count + 1, sum + tracked.contact.depth))
+    }
+
+    fn touching(&self) -> Vec<u64> {
+        let number =
+            |handle| *self.world.collision_object(handle).expect("nothing was removed").data();
+        let pairs = self.world.contact_pairs(false);
+        let touching = pairs.filter(|(_, _, _, manifold)| manifold.len() > 0);
+        touching.map(|(a, b, _, _)| key(number(a), number(b))).collect()
+    }
+}

@@ -1,0 +1,30 @@
+//! Instructions per call, for an instruction counter: the rounds of one contender in one case.
+
+use super::question::{Contender, Question};
+use super::regime::PAIRS;
+
+/// Runs the contender of this name in so many rounds of a case, and says how many calls that were. The
+/// first round is not counted.
+pub fn count(
+    case: &str,
+    question: Question,
+    name: &str,
+    contenders: &mut [Box<dyn Contender>],
+    rounds: usize,
+) {
+    let is_meant = |one: &&mut Box<dyn Contender>| one.treats(question) && one.name() == name;
+    for contender in contenders.iter_mut().filter(is_meant) {
+        contender.reset(question);
+        contender.ask(question);
+        for _ in 0..rounds {
+            counted(&mut **contender, question);
+        }
+        println!("{case}, {name}: {} calls", rounds * PAIRS);
+    }
+}
+
+/// The one function whose instructions count.
+#[inline(never)]
+fn counted(contender: &mut dyn Contender, question: Question) {
+    contender.ask(question);
+}

@@ -1,0 +1,169 @@
+// The rest, for both crates; included by `ncollide.rs`.
+
+use ncollide::math::{Isometry, Point, Translation, Vector};
+use ncollide::na::Unit;
+use ncollide::narrow_phase::{
+    ContactAlgorithm, ContactDispatcher, DefaultContactDispatcher,
+};
+use ncollide::query::{
+    ContactManifold, ContactPrediction, DefaultTOIDispatcher, Proximity, contact, distance,
+    proximity, time_of_impact,
+};
+use ncollide::shape::{Ball, Capsule, Cuboid, Plane, Segment, Shape, ShapeHandle};
+
+use super::super::form::{Form, up};
+use super::super::placement::Placement;
+use super::super::question::{
+    Answer, Contender, LONGEST_TIME, PREDICTION, Question, Stand, stand,
+};
+use super::super::regime::{Pair, Poses};
+
+/// What ncollide keeps of a pair.
+struct Kept {
+    algorithm: ContactAlgorithm<f32>,
+    manifold: ContactManifold<f32>,
+}
+
+/// Its queries, and its manifolds.
+pub struct Ncollide {
+    shapes: [ShapeHandle<f32>; 2],
+    first: Vec<Isometry<f32>>,
+    second: [Vec<Isometry<f32>>; 2],
+    moved: Vec<Vec<Isometry<f32>>>,
+    velocities: Vec<Vector<f32>>,
+    kept: Vec<Option<Kept>>,
+    answers: Vec<Answer>,
+    round: usize,
+}
+
+fn point(at: &[f64; DIM]) -> Point<f32> {
+    Point::from(vector(at))
+}
+
+fn cloud(points: &[[f64; DIM]]) -> Vec<Point<f32>> {
+    points.iter().map(point).collect()
+}
+
+fn shape(form: &Form<DIM>) -> Option<ShapeHandle<f32>> {
+    Some(match form {
+        Form::Ball(radius) => ShapeHandle::new(Ball::new(*radius as f32)),
+        Form::Cuboid(half_extents) => ShapeHandle::new(Cuboid::new(vector(half_extents))),
+        Form::Capsule { half_height, radius } => {
+            ShapeHandle::new(Capsule::new(*half_height as f32, *radius as f32))
+        }
+        Form::Segment([a, b]) => ShapeHandle::new(Segment::new(point(a), point(b))),
+        Form::HalfSpace => ShapeHandle::new(Plane::new(Unit::new_unchecked(vector(&up::<DIM>())))),
+        other => return particular(other),
+    })
+}
+
+/// An algorithm and an empty manifold, as its own narrow phase makes them.
+fn fresh(shape1: &dyn Shape<f32>, shape2: &dyn Shape<f32>) -> Option<Kept> {
+    let algorithm = DefaultContactDispatcher::new().get_contact_algorithm(shape1, shape2)?;
+    let manifold = algorithm.init_manifold();
+    Some(Kept { algorithm, manifold })
+}
+
+impl Ncollide {
+    /// `None` where it does not have one of the shapes.
+    pub fn new(pair: &Pair<DIM>, poses: &Poses<DIM>) -> Option<Self> {
+        let [first, second] = pair.forms().map(shape);
+        let all = |set: &Vec<Placement<DIM>>| set.iter().map(isometry).collect::<Vec<_>>();
+        Some(Self {
+            shapes: [first?, second?],
+            first: all(&poses.first),
+            second: poses.second.each_ref().map(all),
+            moved: poses.moved.iter().map(all).collect(),
+            velocities: poses.velocities.iter().map(vector).collect(),
+            kept: Vec::new(),
+            answers: Vec::new(),
+            round: 0,
+        })
+    }
+
+    fn ask_all(
+        &mut self,
+        ask: impl Fn(&Isometry<f32>, &dyn Shape<f32>, &Isometry<f32>, &dyn Shape<f32>) -> Answer,
+    ) {
+        let [shape1, shape2] = &self.shapes;
+        self.answers.clear();
+        let placed = self.first.iter().zip(&self.second[0]);
+        self.answers.extend(placed.map(|(at1, at2)| ask(at1, &**shape1, at2, &**shape2)));
+    }
+
+    fn impacts(&mut self) {
+        let (g1, g2) = (&*self.shapes[0], &*self.shapes[1]);
+        let (still, by) = (Vector::zeros(), &DefaultTOIDispatcher);
+        self.answers.clear();
+        for ((at1, at2), velocity) in self.first.iter().zip(&self.second[0]).zip(&self.velocities) {
+            let longest = LONGEST_TIME;
+            let found = time_of_impact(by, at1, &still, g1, at2, velocity, g2, longest, 0.0);
+            let time = found.map(|hit| hit.map_or(Answer::NONE, |hit| Answer(hit.toi)));
+            self.answers.push(time.unwrap_or(Answer::UNSUPPORTED));
+        }
+    }
+
+    fn manifolds(&mut self, question: Question) {
+        let at2 = match stand(question, self.round) {
+            Stand::Set(n) => &self.second[n],
+            Stand::Moved(n) => &self.moved[n],
+        };
+        let (g1, g2) = (&*self.shapes[0], &*self.shapes[1]);
+        let (dispatcher, prediction) =
+            (DefaultContactDispatcher::new(), ContactPrediction::new(PREDICTION, 0.0, 0.0));
+        for ((at1, at2), kept) in self.first.iter().zip(at2).zip(&mut self.kept) {
+            if question == Question::ManifoldCold {
+                *kept = fresh(g1, g2);
+            }
+            let Some(Kept { algorithm, manifold }) = kept else { continue };
+            manifold.save_cache_and_clear();
+            algorithm
+                .generate_contacts(&dispatcher, at1, g1, None, at2, g2, None, &prediction, manifold);
+        }
+        self.round += 1;
+    }
+}
+
+impl Contender for Ncollide {
+    fn name(&self) -> &'static str {
+        "ncollide"
+    }
+
+    fn treats(&self, _: Question) -> bool {
+        true
+    }
+
+    fn reset(&mut self, _: Question) {
+        let [shape1, shape2] = &self.shapes;
+        self.kept = self.first.iter().map(|_| fresh(&**shape1, &**shape2)).collect();
+        self.round = 0;
+    }
+
+    fn ask(&mut self, question: Question) {
+        match question {
+            Question::Distance => {
+                self.ask_all(|at1, g1, at2, g2| Answer(distance(at1, g1, at2, g2)));
+            }
+            Question::Contact => self.ask_all(|at1, g1, at2, g2| {
+                let found = contact(at1, g1, at2, g2, PREDICTION);
+                found.map_or(Answer::NONE, |found| Answer(-found.depth))
+            }),
+            Question::Proximity => self.ask_all(|at1, g1, at2, g2| {
+                Answer::touching(proximity(at1, g1, at2, g2, 0.0) == Proximity::Intersecting)
+            }),
+            Question::Impact => self.impacts(),
+            _ => self.manifolds(question),
+        }
+    }
+
+    fn answers(&self, question: Question) -> Vec<Answer> {
+        if !question.is_manifold() {
+            return self.answers.clone();
+        }
+        let of = |kept: &Option<Kept>| {
+            let Some(kept) = kept else { return Answer::UNSUPPORTED };
+            Answer::deepest(kept.manifold.contacts().map(|tracked| -tracked.contact.depth))
+        };
+        self.kept.iter().map(of).collect()
+    }
+}

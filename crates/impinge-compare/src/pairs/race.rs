@@ -1,0 +1,62 @@
+//! The race of one question, and what the suite finds out about it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::question::{Answer, Contender, Question};
+use super::regime::{PAIRS, Regime};
+use crate::measure::{Times, in_turn, timed};
+use crate::table::Row;
+
+/// No contender takes longer than about so many nanoseconds for all rounds of a question.
+const LONGEST: f64 = 3e7;
+
+/// The fewest rounds that are measured.
+const FEWEST: usize = 2;
+
+/// Asks all contenders, and gives a row for each that has an answer for every pair. The first one is
+/// the measure of the others.
+pub fn race(
+    case: &str,
+    question: Question,
+    regime: Regime,
+    contenders: &mut [Box<dyn Contender>],
+    rounds: usize,
+) -> Vec<Row> {
+    let mut able = Vec::new();
+    let mut slowest = 0.0_f64;
+    for contender in contenders.iter_mut().filter(|contender| contender.treats(question)) {
+        if let Some(time) = tried(&mut **contender, question) {
+            slowest = slowest.max(time);
+            able.push(contender);
+        }
+    }
+    let rounds = rounds.min((LONGEST / slowest) as usize).max(FEWEST);
+    let mut asks: Vec<_> = able.iter_mut().map(|one| || one.ask(question)).collect();
+    let mut turns: Vec<&mut dyn FnMut()> = Vec::new();
+    turns.extend(asks.iter_mut().map(|ask| ask as &mut dyn FnMut()));
+    let times = in_turn(rounds, PAIRS, &mut turns);
+    drop(asks);
+    let answers: Vec<_> = able.iter().map(|one| one.answers(question)).collect();
+    let named = able.iter().zip(times).zip(&answers);
+    let row = |((one, times), found): ((&&mut Box<dyn Contender>, Times), &Vec<Answer>)| Row {
+        case: case.to_owned(),
+        contender: one.name().to_owned(),
+        answers: found.iter().filter(|answer| answer.is_some()).count(),
+        differ: question.differences(&answers[0], found, regime.distance()),
+        times,
+    };
+    named.map(row).collect()
+}
+
+/// How long a contender takes for the first round; `None` if it has no algorithm for the pair, or
+/// gives up in panic. It begins anew afterwards.
+fn tried(contender: &mut dyn Contender, question: Question) -> Option<f64> {
+    let attempt = AssertUnwindSafe(|| {
+        contender.reset(question);
+        let (time, ()) = timed(|| contender.ask(question));
+        let is_able = contender.answers(question).iter().all(|answer| answer.is_supported());
+        contender.reset(question);
+        is_able.then_some(time)
+    });
+    catch_unwind(attempt).ok().flatten()
+}

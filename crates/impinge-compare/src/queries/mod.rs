@@ -1,0 +1,123 @@
+//! The suite of queries: rays, moving solids, points and boxes against many objects, and rays against
+//! one mesh.
+//!
+//! Two scenes, each in the plane and in space: a dense one, in which rays are short, and one with a fifth
+//! of the density, in which they go far. The queries of the first kinds meet solids, and whole worlds
+//! answer, or a tree with the solids of parry; those of the others meet nothing but boxes, and trees
+//! answer. Every contender has the same numbers, and its own copy of the queries before the clock runs.
+//! Rivals have their best build (`medium` of `obvhs`) and, where they advise it, the primitives in the
+//! order of the tree. All give the normal where there is one.
+
+mod mesh;
+mod ncollide;
+mod obvhs_trees;
+mod ours;
+mod parry;
+mod race;
+mod scene;
+mod trees;
+
+use race::{Contender, Rule, race};
+use scene::{Library, Questions, Scene};
+
+use crate::Arguments;
+use crate::table::Table;
+
+/// Times and distances that differ by less, as a share of themselves, are the same.
+const TOLERANCE: f32 = 1e-4;
+
+/// Times of moving solids are found by iteration, to a tolerance of each library's own.
+const CAST_TOLERANCE: f32 = 1e-3;
+
+/// How many triangles the meshes have: twice the square of these.
+const MESHES: [usize; 2] = [100, 708];
+
+/// Runs all cases. The larger mesh belongs to runs with a hundred thousand objects.
+pub fn run(arguments: &Arguments) -> Vec<Table> {
+    let mut table = Table::new("queries", "ns");
+    let objects = arguments.objects;
+    for scene in scenes::<3>(objects) {
+        space(&scene, arguments, &mut table);
+    }
+    for edge in MESHES.into_iter().filter(|edge| edge * edge < 10 * objects) {
+        table.add(mesh::run(edge, arguments));
+    }
+    for scene in scenes::<2>(objects) {
+        plane(&scene, arguments, &mut table);
+    }
+    vec![table]
+}
+
+/// A tenth of the steps asked for.
+fn rounds(arguments: &Arguments) -> usize {
+    (arguments.steps as usize / 10).max(1)
+}
+
+fn scenes<const D: usize>(objects: usize) -> [Scene<D>; 2] {
+    [Scene::new("dense", objects, 0.375, 8.0), Scene::new("sparse", objects, 0.075, f32::MAX)]
+}
+
+fn space(scene: &Scene<3>, arguments: &Arguments, table: &mut Table) {
+    let (ours, rapier) = (ours::space(scene), parry::space::Rapier::new(scene));
+    let parry = parry::space::Parry::new(scene);
+    let (obvhs, bvh) = (obvhs_trees::Obvhs::new(scene, &parry), trees::BvhTree::new(scene));
+    let (rstar, ncollide) = (trees::RstarTree::new(scene), ncollide::space::Ncollide::new(scene));
+    let all: [&dyn Library<3>; 7] = [&ours, &rapier, &parry, &obvhs, &bvh, &rstar, &ncollide];
+    ask_all(scene, &all, arguments, table);
+}
+
+fn plane(scene: &Scene<2>, arguments: &Arguments, table: &mut Table) {
+    let (ours, rapier) = (ours::plane(scene), parry::plane::Rapier::new(scene));
+    let parry = parry::plane::Parry::new(scene);
+    let (bvh, rstar) = (trees::BvhTree::new(scene), trees::RstarTree::new(scene));
+    let ncollide = ncollide::plane::Ncollide::new(scene);
+    let all: [&dyn Library<2>; 6] = [&ours, &rapier, &parry, &bvh, &rstar, &ncollide];
+    ask_all(scene, &all, arguments, table);
+}
+
+/// Races all who answer, kind by kind.
+fn ask_all<const D: usize>(
+    scene: &Scene<D>,
+    libraries: &[&dyn Library<D>],
+    arguments: &Arguments,
+    table: &mut Table,
+) where
+    f32: impinge::math::Space<D>,
+{
+    let objects = scene.objects.len();
+    for (what, questions) in scene.questions(objects) {
+        let case = format!("{} {D}D: {what}", scene.name);
+        if arguments.wants_case(&case) {
+            let all = libraries.iter().flat_map(|library| library.contenders(&questions));
+            let (rule, count) = rule(&questions);
+            table.add(race(&case, rule, count, rounds(arguments), wanted(all, arguments)));
+        }
+    }
+}
+
+/// Those who are to run.
+fn wanted<'a>(
+    contenders: impl IntoIterator<Item = Contender<'a>>,
+    arguments: &Arguments,
+) -> Vec<Contender<'a>> {
+    let is_wanted = |contender: &Contender| arguments.wants_contender(contender.name());
+    contenders.into_iter().filter(is_wanted).collect()
+}
+
+/// How answers are compared, and how many queries there are.
+fn rule<const D: usize>(questions: &Questions<D>) -> (Rule, usize) {
+    match questions {
+        Questions::Rays(rays, _) | Questions::BoxRays(rays, _) => {
+            (Rule::Best(TOLERANCE), rays.len())
+        }
+        Questions::Casts(casts, _) => (Rule::Best(CAST_TOLERANCE), casts.len()),
+        Questions::Nearest(points) | Questions::BoxNearest(points) => {
+            (Rule::Best(TOLERANCE), points.len())
+        }
+        Questions::Containing(points) | Questions::BoxContaining(points) => {
+            (Rule::All, points.len())
+        }
+        Questions::Overlapping(solids) => (Rule::All, solids.len()),
+        Questions::BoxOverlapping(boxes) => (Rule::All, boxes.len()),
+    }
+}

@@ -1,0 +1,37 @@
+//! rapier's query pipeline, and parry's tree alone, with parry's solids and over nothing but boxes.
+//!
+//! The crates for the plane and for space differ in nothing but their names, and so do the modules here.
+
+use super::race::Contender;
+use super::scene::{Corners, Library, Questions, Scene, Solid};
+use impinge_scenes::{Placement, SceneShape};
+
+/// In the plane.
+pub mod plane {
+    use super::*;
+    use ::rapier2d as rapier;
+    const DIM: usize = 2;
+
+    fn pose(placement: &Placement<2>) -> Pose {
+        let [x, y] = placement.translation.map(|x| x as f32);
+        let [cosine, sine] = placement.complex().map(|x| x as f32);
+        Pose::from_parts(Vector::new(x, y), Rotation::from_cos_sin_unchecked(cosine, sine))
+    }
+
+    include!("parry_common.rs");
+}
+
+/// In space.
+pub mod space {
+    use super::*;
+    use ::rapier3d as rapier;
+    const DIM: usize = 3;
+
+    fn pose(placement: &Placement<3>) -> Pose {
+        let [x, y, z] = placement.translation.map(|x| x as f32);
+        let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
+        Pose::from_parts(Vector::new(x, y, z), Rotation::from_xyzw(i, j, k, w))
+    }
+
+    include!("parry_common.rs");
+}

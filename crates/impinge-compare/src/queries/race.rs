@@ -1,0 +1,159 @@
+//! Answers that can be compared, and the race.
+
+use crate::measure::{Times, in_turn};
+use crate::table::Row;
+
+/// One thing found: by a query for the first or the nearest at most one, by the others any number.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    /// Which of the queries.
+    pub query: u32,
+    /// The object or the triangle.
+    pub id: u32,
+    /// The time or the distance; zero where there is none.
+    pub key: f32,
+}
+
+/// What a contender found, the queries in ascending order.
+pub type Answers = Vec<Answer>;
+
+/// Somebody who asks all queries of a case.
+pub struct Contender<'a> {
+    name: &'static str,
+    ask: Box<dyn FnMut(&mut Answers) + 'a>,
+}
+
+impl<'a> Contender<'a> {
+    /// The name in the table.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// One that is asked everything at once, by a batch interface.
+    pub fn batch(name: &'static str, ask: impl FnMut(&mut Answers) + 'a) -> Self {
+        Self { name, ask: Box::new(ask) }
+    }
+
+    /// One that is asked for the best thing, query by query: its number and its key.
+    pub fn best<Q>(
+        name: &'static str,
+        queries: Vec<Q>,
+        mut ask: impl FnMut(&Q) -> Option<(u32, f32)> + 'a,
+    ) -> Self
+    where
+        Q: 'a,
+    {
+        Self::batch(name, move |answers| {
+            for (query, asked) in (0..).zip(&queries) {
+                if let Some((id, key)) = ask(asked) {
+                    answers.push(Answer { query, id, key });
+                }
+            }
+        })
+    }
+
+    /// One that is asked for all things of a kind, query by query; it calls back with their numbers.
+    pub fn all<Q>(
+        name: &'static str,
+        queries: Vec<Q>,
+        mut ask: impl FnMut(&Q, &mut dyn FnMut(u32)) + 'a,
+    ) -> Self
+    where
+        Q: 'a,
+    {
+        Self::batch(name, move |answers| {
+            for (query, asked) in (0..).zip(&queries) {
+                ask(asked, &mut |id| answers.push(Answer { query, id, key: 0.0 }));
+            }
+        })
+    }
+}
+
+/// How answers of one case are compared.
+#[derive(Clone, Copy, Debug)]
+pub enum Rule {
+    /// One answer or none to each query. Keys agree within this share of themselves, or of 1 if they
+    /// are less; another object at an equal key is as good.
+    Best(f32),
+    /// Sets of objects, which have to be the same.
+    All,
+}
+
+/// Asks each contender once and compares its answers with those of the first, then times them in turn.
+/// Times are in nanoseconds per query.
+pub fn race(
+    case: &str,
+    rule: Rule,
+    count: usize,
+    rounds: usize,
+    lanes: Vec<Contender>,
+) -> Vec<Row> {
+    let (names, mut asks): (Vec<_>, Vec<_>) =
+        lanes.into_iter().map(|lane| (lane.name, lane.ask)).unzip();
+    let found: Vec<_> = asks.iter_mut().map(|ask| collected(ask)).collect();
+    let times = timed_in_turn(rounds, count, &mut asks);
+    let rows = names.iter().zip(times).zip(&found).map(|((name, times), answers)| Row {
+        case: case.to_owned(),
+        contender: (*name).to_owned(),
+        answers: answers.len(),
+        differ: differing(rule, &found[0], answers),
+        times,
+    });
+    rows.collect()
+}
+
+fn collected(ask: &mut impl FnMut(&mut Answers)) -> Answers {
+    let mut answers = Answers::new();
+    ask(&mut answers);
+    answers.sort_unstable_by_key(|answer| (answer.query, answer.id));
+    answers
+}
+
+fn timed_in_turn(
+    rounds: usize,
+    count: usize,
+    asks: &mut [Box<dyn FnMut(&mut Answers) + '_>],
+) -> Vec<Times> {
+    // Of one vector of answers for all, none pays for the growth.
+    let answers = std::cell::RefCell::new(Answers::new());
+    let mut runs: Vec<_> = asks
+        .iter_mut()
+        .map(|ask| {
+            || {
+                let mut answers = answers.borrow_mut();
+                answers.clear();
+                ask(&mut answers);
+                std::hint::black_box(&*answers);
+            }
+        })
+        .collect();
+    let mut runs: Vec<&mut dyn FnMut()> = runs.iter_mut().map(|run| run as _).collect();
+    in_turn(rounds, count, &mut runs)
+}
+
+/// By how many answers two contenders differ.
+fn differing(rule: Rule, first: &[Answer], other: &[Answer]) -> usize {
+    let (mut left, mut right, mut agreed) = (0, 0, 0);
+    while left < first.len() && right < other.len() {
+        let (a, b) = (first[left], other[right]);
+        let (at, bt) = match rule {
+            Rule::Best(_) => ((a.query, 0), (b.query, 0)),
+            Rule::All => ((a.query, a.id), (b.query, b.id)),
+        };
+        agreed += usize::from(at == bt && agree(rule, a, b));
+        left += usize::from(at <= bt);
+        right += usize::from(bt <= at);
+    }
+    // An answer that both give but differently is one difference, not two.
+    match rule {
+        Rule::Best(_) => first.len().max(other.len()) - agreed,
+        Rule::All => first.len() + other.len() - 2 * agreed,
+    }
+}
+
+fn agree(rule: Rule, a: Answer, b: Answer) -> bool {
+    match rule {
+        Rule::Best(tolerance) => (a.key - b.key).abs() <= tolerance * a.key.max(1.0),
+        Rule::All => true,
+    }
+}

@@ -1,0 +1,178 @@
+//! The objects, and what is asked about them.
+
+use impinge::bounding_volume::Aabb;
+use impinge::math::{Point, Space};
+use impinge::partitioning::BoxTree;
+use impinge_scenes::{Placement, SceneShape};
+
+/// Half an edge of the average object.
+const HALF: f64 = 0.5;
+
+/// Balls and turned boxes in a cube, one of fifty three times as large as the others.
+#[derive(Clone, Debug)]
+pub struct Scene<const D: usize> {
+    /// For the table.
+    pub name: &'static str,
+    /// What is there, and where.
+    pub objects: Vec<(SceneShape<D>, Placement<D>)>,
+    /// The boxes of the objects; the trees have nothing else.
+    pub boxes: Vec<Corners<D>>,
+    /// An edge of the cube.
+    edge: f64,
+    /// How long rays are and how far solids are cast.
+    pub reach: f32,
+}
+
+/// The least and the greatest corner of a box.
+pub type Corners<const D: usize> = ([f32; D], [f32; D]);
+
+/// From where, and the unit vector whereto.
+pub type Ray<const D: usize> = ([f32; D], [f32; D]);
+
+/// A solid.
+pub type Solid<const D: usize> = (SceneShape<D>, Placement<D>);
+
+/// The queries of one case; those of the first kinds are about solids, those of the others about
+/// nothing but boxes.
+#[derive(Clone, Debug)]
+pub enum Questions<const D: usize> {
+    /// Which solid a ray meets first, and when; none starts in the box of one.
+    Rays(Vec<Ray<D>>, f32),
+    /// Which solid a moving one meets first, and when; it starts apart from all boxes, and moves
+    /// along the unit vector.
+    Casts(Vec<(Solid<D>, [f32; D])>, f32),
+    /// Which solid is nearest to a point, and how far; no point is in a box.
+    Nearest(Vec<[f32; D]>),
+    /// Which solids hold a point.
+    Containing(Vec<[f32; D]>),
+    /// Which solids a solid touches.
+    Overlapping(Vec<Solid<D>>),
+    /// Which box a ray meets first, and when.
+    BoxRays(Vec<Ray<D>>, f32),
+    /// Which box is nearest to a point, and how far.
+    BoxNearest(Vec<[f32; D]>),
+    /// Which boxes hold a point.
+    BoxContaining(Vec<[f32; D]>),
+    /// Which boxes meet a box.
+    BoxOverlapping(Vec<Corners<D>>),
+}
+
+/// A library that answers some kinds of queries, in one way or several.
+pub trait Library<const D: usize> {
+    /// Those who answer; the queries are converted already.
+    fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<super::race::Contender<'a>>;
+}
+
+impl<const D: usize> Scene<D> {
+    /// `objects` of them that fill `share` of the cube.
+    pub fn new(name: &'static str, objects: usize, share: f64, reach: f32) -> Self {
+        let mut random = Random(0x5eed + D as u64);
+        let edge = (objects as f64 / share).powf(1.0 / D as f64) * 2.0 * HALF;
+        let objects: Vec<_> =
+            (0..objects).map(|n| random.solid(edge, if n % 50 == 0 { 3.0 } else { 1.0 })).collect();
+        let boxes = objects.iter().map(|(shape, placement)| corners(shape, placement)).collect();
+        Self { name, objects, boxes, edge, reach }
+    }
+
+    /// Every kind of queries, `count` of each but for the dear ones, for which it is a fifth.
+    pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
+    where
+        f32: Space<D>,
+    {
+        let mut random = Random(0x0a5c);
+        let taken = BoxTree::from_boxes(&self.boxes.iter().map(aabb).collect::<Vec<_>>());
+        let is_free = |corners: &Corners<D>| taken.overlapping(&aabb(corners)).is_empty();
+        let mut outside = || {
+            std::iter::repeat_with(|| random.point(self.edge))
+                .find(|&p| is_free(&(p, p)))
+                .expect("")
+        };
+        let outside: Vec<_> = (0..count).map(|_| outside()).collect();
+        let rays: Vec<Ray<D>> =
+            outside.iter().map(|&from| (from, random.direction().map(|x| x as f32))).collect();
+        let anywhere: Vec<_> = (0..count).map(|_| random.point(self.edge)).collect();
+        let solids: Vec<_> = (0..count / 5).map(|_| random.solid(self.edge, 1.0)).collect();
+        let mut cast = || {
+            let solids = std::iter::repeat_with(|| random.solid(self.edge, 0.5));
+            let mut free = solids.filter(|(shape, placement)| is_free(&corners(shape, placement)));
+            free.next().expect("there is always a next one")
+        };
+        let casts: Vec<_> = (0..count / 5).map(|_| cast()).collect();
+        let casts: Vec<_> =
+            casts.into_iter().map(|solid| (solid, random.direction().map(|x| x as f32))).collect();
+        let boxes = anywhere.iter().map(|&at| (at, at.map(|x| x + 2.0 * HALF as f32))).collect();
+        vec![
+            ("first on a ray", Questions::Rays(rays.clone(), self.reach)),
+            ("first in the way of a solid", Questions::Casts(casts, self.reach)),
+            ("nearest to a point", Questions::Nearest(outside.clone())),
+            ("holding a point", Questions::Containing(anywhere.clone())),
+            ("touching a solid", Questions::Overlapping(solids)),
+            ("first box on a ray", Questions::BoxRays(rays, self.reach)),
+            ("box nearest to a point", Questions::BoxNearest(outside)),
+            ("boxes holding a point", Questions::BoxContaining(anywhere)),
+            ("boxes meeting a box", Questions::BoxOverlapping(boxes)),
+        ]
+    }
+}
+
+fn corners<const D: usize>(shape: &SceneShape<D>, placement: &Placement<D>) -> Corners<D> {
+    let (low, high) = shape.aabb(placement).expect("balls and boxes are bounded");
+    (low.map(|x| x as f32), high.map(|x| x as f32))
+}
+
+fn aabb<const D: usize>((low, high): &Corners<D>) -> Aabb<f32, D> {
+    Aabb::new(Point::from(*low), Point::from(*high))
+}
+
+/// `SplitMix64`: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// From `low` up to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        let unit = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
+        low + (high - low) * unit
+    }
+
+    /// A number less than `bound`.
+    pub fn below(&mut self, bound: usize) -> usize {
+        (self.bits() % bound as u64) as usize
+    }
+
+    fn point<const D: usize>(&mut self, edge: f64) -> [f32; D] {
+        std::array::from_fn(|_| self.between(0.0, edge) as f32)
+    }
+
+    /// A unit vector, all equally likely: of points in the cube those in the ball.
+    pub fn direction<const D: usize>(&mut self) -> [f64; D] {
+        loop {
+            let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
+            let squared: f64 = v.iter().map(|x| x * x).sum();
+            if (1e-4..1.0).contains(&squared) {
+                return v.map(|x| x / squared.sqrt());
+            }
+        }
+    }
+
+    /// A ball or a turned box somewhere in the cube.
+    fn solid<const D: usize>(&mut self, edge: f64, scale: f64) -> Solid<D> {
+        let mut half = || scale * self.between(0.6 * HALF, 1.4 * HALF);
+        let (radius, half_extents) = (half(), std::array::from_fn(|_| half()));
+        let at = std::array::from_fn(|_| self.between(0.0, edge));
+        let placement = Placement::at(at);
+        if self.below(2) == 0 {
+            return (SceneShape::Ball { radius }, placement);
+        }
+        let axis = if D == 3 { self.direction() } else { placement.axis };
+        let tangent = self.between(-1.0, 1.0);
+        (SceneShape::Cuboid { half_extents }, Placement { axis, tangent, ..placement })
+    }
+}

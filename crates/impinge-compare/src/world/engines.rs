@@ -1,0 +1,59 @@
+//! The engines of `impinge-compare-c` as contenders.
+
+use impinge_scenes::{Placement, Scene};
+
+use super::PREDICTION;
+use super::contender::{Contender, Reading};
+
+/// A world of Box2D, if it has all shapes of the scene.
+#[cfg(feature = "box2d")]
+pub fn box2d(
+    scene: &Scene<2>,
+    recycling: impinge_compare_c::Recycling,
+) -> Option<Box<dyn Contender<2>>> {
+    Some(Box::new(impinge_compare_c::Box2d::new(scene, recycling)?))
+}
+
+/// A world of Box3D, if it has all shapes of the scene.
+#[cfg(feature = "box3d")]
+pub fn box3d(
+    scene: &Scene<3>,
+    recycling: impinge_compare_c::Recycling,
+) -> Option<Box<dyn Contender<3>>> {
+    Some(Box::new(impinge_compare_c::Box3d::new(scene, recycling)?))
+}
+
+/// A world of Jolt, whose edges are rounded by a radius, if it has all shapes of the scene.
+#[cfg(feature = "jolt")]
+pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>>> {
+    Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION, convex_radius)?))
+}
+
+/// All engines have the same methods.
+macro_rules! contender {
+    ($engine:ident, $feature:literal, $dimension:literal) => {
+        #[cfg(feature = $feature)]
+        impl Contender<$dimension> for impinge_compare_c::$engine {
+            fn prepare(&mut self, moved: &[(usize, Placement<$dimension>)]) {
+                self.prepare(moved);
+            }
+
+            fn step(&mut self) {
+                self.step();
+            }
+
+            fn read(&self) -> Reading {
+                let digest = self.read();
+                Reading { points: digest.points, depth: digest.depth }
+            }
+
+            fn touching(&self) -> Vec<(usize, usize)> {
+                self.touching(PREDICTION)
+            }
+        }
+    };
+}
+
+contender!(Box2d, "box2d", 2);
+contender!(Box3d, "box3d", 3);
+contender!(Jolt, "jolt", 3);

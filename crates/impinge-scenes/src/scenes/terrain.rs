@@ -1,0 +1,188 @@
+//! Solids that slide and hop over hilly ground.
+
+use super::pile::{axis, signed_speed};
+use super::{MARGIN, NEAR_CONTACTS};
+use crate::random::{Random, root};
+use crate::{Motion, Placement, Scene, SceneObject, SceneShape, Wave, rounded};
+
+/// The width of a cell of the ground, half that of most objects.
+const CELL: f64 = 0.5;
+/// How many cells there are between two hills or valleys.
+const HILL: usize = 16;
+
+/// `count` balls, boxes, capsules and convex solids of size 1, as many of each, on a hilly ground of
+/// triangles, which is the first object: 100 triangles for each, a million for 10 000. In the plane
+/// the ground is a line of 10 segments for each.
+///
+/// All move by 0.01 to 0.03 per step along the ground, to and fro by up to half their size, and up and
+/// down by 0.05. At any time about two thirds of them touch the ground, with a few of its triangles, and
+/// few touch one another. No centre is ever below the ground.
+#[must_use]
+pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
+    let ground = Ground::new(count, &mut Random::new(6));
+    let shape = ground.mesh();
+    Scene { name: "terrain mesh", ..scene(count, &ground, shape) }
+}
+
+/// The same objects on the same ground, which is a height field.
+#[must_use]
+pub fn terrain_field<const D: usize>(count: usize) -> Scene<D> {
+    let ground = Ground::<D>::new(count, &mut Random::new(6));
+    let shape = ground.field();
+    Scene { name: "terrain field", ..scene(count, &ground, shape) }
+}
+
+fn scene<const D: usize>(count: usize, ground: &Ground<D>, shape: SceneShape<D>) -> Scene<D> {
+    let random = &mut Random::new(7);
+    let ground_object = SceneObject::new(shape, NEAR_CONTACTS, Motion::rest([0.0; D]));
+    let standing = (0..count).map(|n| standing(solid(n % 4, random), ground, random));
+    let objects = std::iter::once(ground_object).chain(standing).collect();
+    Scene { name: "terrain", margin: MARGIN, objects, steps: 100 }
+}
+
+fn solid<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
+    let radius = rounded(random.between(0.3, 0.5));
+    match kind {
+        0 => SceneShape::Ball { radius },
+        1 => {
+            let half_extents = [0.0; D].map(|_: f64| rounded(random.between(0.3, 0.6)));
+            SceneShape::Cuboid { half_extents }
+        }
+        2 => SceneShape::Capsule { half_height: radius, radius: rounded(0.6 * radius) },
+        _ => SceneShape::Convex { points: stone(radius, random) },
+    }
+}
+
+/// The corners of a box, each brought nearer to its middle by up to a fifth, and one above it.
+fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
+    let corners = (0..1_usize << D).map(|corner| {
+        let shrink = random.between(0.8, 1.0) * radius;
+        std::array::from_fn(|axis| rounded(if corner >> axis & 1 == 0 { -shrink } else { shrink }))
+    });
+    let mut points: Vec<_> = corners.collect();
+    let mut top = [0.0; D];
+    top[1] = rounded(1.5 * radius);
+    points.push(top);
+    points
+}
+
+/// An object whose box reaches down to the ground at step 0.
+fn standing<const D: usize>(
+    shape: SceneShape<D>,
+    ground: &Ground<D>,
+    random: &mut Random,
+) -> SceneObject<D> {
+    let mut at = ground.somewhere(random);
+    let turn = random.between(-0.1, 0.1);
+    let axis = axis::<D>(random);
+    let box_at_ground = shape.aabb(&Placement { tangent: turn, axis, ..Placement::at(at) });
+    at[1] += box_at_ground.map_or(0.0, |(low, _)| at[1] - low[1]);
+    let place = std::array::from_fn(|i| {
+        let (way, slow, fast) = if i == 1 { (0.05, 0.002, 0.006) } else { (0.5, 0.007, 0.02) };
+        let start = at[i] + random.between(-way, way);
+        Wave::new((at[i] - way, at[i] + way), start, signed_speed(random, slow, fast))
+    });
+    let tangent = Wave::new((-0.1, 0.1), turn, random.between(0.001, 0.01));
+    SceneObject::new(shape, NEAR_CONTACTS, Motion { place, axis, tangent })
+}
+
+/// Heights over a grid that is centred at the origin.
+struct Ground<const D: usize> {
+    /// Rows and columns of vertices.
+    counts: [usize; 2],
+    heights: Vec<f64>,
+}
+
+impl<const D: usize> Ground<D> {
+    fn new(count: usize, random: &mut Random) -> Self {
+        let counts = if D < 3 {
+            [1, 10 * count.max(1) + 1]
+        } else {
+            // 50 cells, of two triangles each, for an object; `root` never falls short by a cell.
+            let side = root::<2>(50.0 * count.max(1) as f64).ceil();
+            let vertices = (1_usize..).find(|n| *n as f64 > side).unwrap_or(2);
+            [vertices; 2]
+        };
+        let hills = counts.map(|n| n / HILL + 2);
+        let lattice: Vec<_> = (0..hills[0] * hills[1]).map(|_| random.between(-0.5, 0.5)).collect();
+        let vertices = (0..counts[0]).flat_map(|row| (0..counts[1]).map(move |n| [row, n]));
+        let heights =
+            vertices.map(|at| rounded(hill(&lattice, hills[1], at) + random.between(-0.02, 0.02)));
+        Self { counts, heights: heights.collect() }
+    }
+
+    /// Rows lie along the third axis.
+    fn extents(&self) -> [f64; D] {
+        std::array::from_fn(|axis| match axis {
+            0 => (self.counts[1] - 1) as f64 * CELL,
+            1 => 1.0,
+            _ => (self.counts[0] - 1) as f64 * CELL,
+        })
+    }
+
+    fn vertex(&self, [row, column]: [usize; 2]) -> [f64; D] {
+        let extents = self.extents();
+        std::array::from_fn(|axis| match axis {
+            0 => column as f64 * CELL - 0.5 * extents[0],
+            1 => self.heights[row * self.counts[1] + column],
+            _ => row as f64 * CELL - 0.5 * extents[axis],
+        })
+    }
+
+    fn field(&self) -> SceneShape<D> {
+        let heights = self.heights.clone();
+        SceneShape::HeightField { counts: self.counts, heights, extents: self.extents() }
+    }
+
+    fn mesh(&self) -> SceneShape<D> {
+        let [rows, columns] = self.counts;
+        let points = (0..rows).flat_map(|row| (0..columns).map(move |column| [row, column]));
+        let vertices = points.map(|at| self.vertex(at)).collect();
+        if D < 3 { SceneShape::Polyline { vertices } } else { self.triangles(vertices) }
+    }
+
+    fn triangles(&self, vertices: Vec<[f64; D]>) -> SceneShape<D> {
+        let [rows, columns] = self.counts;
+        let index = |row: usize, column: usize| {
+            u32::try_from(row * columns + column).expect("fewer vertices than 32 bits number")
+        };
+        let cells = (1..rows).flat_map(|row| (1..columns).map(move |column| [row, column]));
+        let triangles = cells.flat_map(|[row, column]| {
+            let near = [index(row - 1, column - 1), index(row - 1, column)];
+            let far = [index(row, column - 1), index(row, column)];
+            // Counter-clockwise seen from above, where z points down if x points to the right.
+            [[near[0], far[0], far[1]], [near[0], far[1], near[1]]]
+        });
+        SceneShape::TriMesh { triangles: triangles.collect(), vertices }
+    }
+
+    /// A place at most half a cell along the ground from a vertex and as high, no nearer to the border
+    /// than an object is wide.
+    fn somewhere(&self, random: &mut Random) -> [f64; D] {
+        let border = 3;
+        let mut vertex = |count: usize| {
+            border.min(count / 2) + random.below(count.saturating_sub(2 * border).max(1))
+        };
+        let mut at =
+            self.vertex([if D < 3 { 0 } else { vertex(self.counts[0]) }, vertex(self.counts[1])]);
+        for (_, x) in at.iter_mut().enumerate().filter(|(axis, _)| *axis != 1) {
+            *x += random.between(-0.5, 0.5) * CELL;
+        }
+        at
+    }
+}
+
+/// Value noise: the random heights of a coarse lattice, joined by cubics that are level there.
+fn hill(lattice: &[f64], width: usize, at: [usize; 2]) -> f64 {
+    let base = at.map(|n| n / HILL);
+    let [down, right] = at.map(|n| {
+        let t = (n % HILL) as f64 / HILL as f64;
+        t * t * (3.0 - 2.0 * t)
+    });
+    let row = |row: usize| {
+        let [a, b] = [0, 1].map(|step| lattice[row * width + base[1] + step]);
+        a + (b - a) * right
+    };
+    let (near, far) = (row(base[0]), row(base[0] + 1));
+    near + (far - near) * down
+}
