@@ -98,8 +98,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// If there is no such triangle.
     #[must_use]
     pub fn triangle(&self, index: u32) -> Triangle<N, D> {
-        let [a, b, c] = self.corners(index);
-        Triangle::new(a, b, c)
+        Triangle::of_finite(self.corners(index))
     }
 
     /// What lies across a side, 0 to 2, of a triangle. Looking costs O(1).

@@ -56,7 +56,7 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
     pub(super) fn bound(&self, parts: &dyn CompositeShape<N, D>, part: u32) -> Bound<N> {
         let Part { pose, solid } = parts.part(part);
         // Most composites that are given by corners give them in their own frame.
-        let is_own = pose == Pose::identity();
+        let is_own = pose.is_same(&Pose::identity());
         let placed = |corner: &Point<N, D>| if is_own { *corner } else { pose.point(corner) };
         match solid {
             PartSolid::Triangle(triangle) => {

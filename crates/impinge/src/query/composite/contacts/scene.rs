@@ -184,7 +184,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             return None;
         }
         let usual = self.usual.get_or_init(|| self.usual(part));
-        if usual.pose != part.pose || usual.is_segment != is_segment {
+        if !usual.pose.is_same(&part.pose) || usual.is_segment != is_segment {
             return None;
         }
         let solid = Solid::Part(recentred(&part.solid, &usual.local)?);
