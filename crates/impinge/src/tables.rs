@@ -16,7 +16,7 @@ use crate::narrow_phase::{
     ObjectTable, Posed, proximity_of,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
-use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part};
+use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
@@ -26,9 +26,9 @@ use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
     Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
     impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
-    witness_features2, witness_features3, witness_in_world,
+    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
-use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
+use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
@@ -42,6 +42,10 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) witness_in_world: WitnessFn<N, D>,
     /// The features that the nearest points of two convex solids lie on.
     pub(crate) witness_features: FeaturesFn<N, D>,
+    /// The same of one of the solids alone, the second if that is said.
+    pub(crate) witness_feature: FeatureFn<N, D>,
+    /// The feature of a triangle that a ball is over; the last argument is what counts as rounding.
+    pub(crate) over: OverFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
     pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
@@ -78,6 +82,8 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
+type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
+type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
 type NearestPartFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
@@ -178,6 +184,8 @@ struct Particular<N: Space<D>, const D: usize> {
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
+    witness_feature: FeatureFn<N, D>,
+    over: OverFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
@@ -191,6 +199,8 @@ impl<N: Real> Particular<N, 2> {
         box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
+        witness_feature: witness_feature2,
+        over: over2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
@@ -205,6 +215,8 @@ impl<N: Real> Particular<N, 3> {
         box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
+        witness_feature: witness_feature3,
+        over: over3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
@@ -222,6 +234,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             touching_in_world,
             witness_in_world,
             witness_features: particular.witness_features,
+            witness_feature: particular.witness_feature,
+            over: particular.over,
             impact: impact_of_pair,
             nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,

@@ -83,6 +83,11 @@ impl<S, V: Default> Group<S, V> {
         self.keys.iter().copied().zip(&self.states)
     }
 
+    /// There is no pair.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.keys.is_empty()
+    }
+
     /// All pairs, their states and their views.
     pub(crate) fn rows(&mut self) -> Rows<'_, S, V> {
         let views = self.views.get_mut().map_or(&mut [][..], Vec::as_mut_slice);

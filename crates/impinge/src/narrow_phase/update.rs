@@ -58,7 +58,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
+        // Of the hundreds of groups most are empty.
         for (number, group) in self.lanes.contacts.iter_mut().enumerate() {
+            if group.is_empty() {
+                continue;
+            }
             let are_boxes = number == usize::from(BOX_PAIRS);
             let update = if are_boxes { update_boxes } else { update_contacts };
             update_group(group, changes, |rows, changes| update(rows, table, changes));
@@ -66,7 +70,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         update_group(&mut self.lanes.composites, changes, |rows, changes| {
             update_contacts(rows, table, changes);
         });
-        for group in &mut self.lanes.proximity {
+        for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
             update_group(group, changes, |rows, changes| {
                 update_each(rows, changes, |key, entry, _| {
                     let needed = needs_update(entry.due, table, key);

@@ -39,6 +39,18 @@ pub(super) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
+/// A vector rises along a unit vector by far more than what counts as rounding.
+pub(super) fn leads_up_clearly<N: Real, const D: usize>(
+    vector: &Vector<N, D>,
+    normal: &Vector<N, D>,
+) -> bool {
+    let rise = vector.dot(normal);
+    rise > N::ZERO && rise * rise > N::lit(CLEAR) * vector.norm_squared()
+}
+
+/// Squares of sines above this are no rounding.
+const CLEAR: f64 = 1.0 / (512.0 * 512.0);
+
 /// What is known of a normal at a seam while its pieces are gone through.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seam<N: Real, const D: usize> {

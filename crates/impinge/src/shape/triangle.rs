@@ -47,6 +47,12 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         Ok(Self { corners: [a, b, c] })
     }
 
+    /// The triangle of corners that are known to be finite.
+    #[inline]
+    pub(super) const fn of_finite(corners: [Point<N, D>; 3]) -> Self {
+        Self { corners }
+    }
+
     /// The corners, in the order given.
     #[inline]
     #[must_use]

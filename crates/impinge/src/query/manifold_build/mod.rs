@@ -34,7 +34,10 @@ use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, merge};
-pub(crate) use self::witness::{features2 as witness_features2, features3 as witness_features3};
+pub(crate) use self::witness::{
+    feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
+    features3 as witness_features3,
+};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;

@@ -57,6 +57,13 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     merging: &Merging<'_, N, D>,
     ids: &mut PairIds,
 ) -> Vec<Patch<N, D>> {
+    if let [Patch { points, .. }] = pieces.as_mut_slice()
+        && let [point] = points.as_mut_slice()
+    {
+        keep_alone(point, merging, ids);
+        pieces.retain(|piece| piece.points[0].raw.distance <= merging.request.prediction);
+        return pieces;
+    }
     for piece in &mut pieces {
         piece.points.sort_by(|a, b| by_depth(a, b));
     }
@@ -77,6 +84,19 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
         reduce_patch(patch, heirs.of_patch(index), merging, ids);
     }
     patches
+}
+
+/// Numbers the only point of all, if it is near enough.
+fn keep_alone<N: Real, const D: usize>(
+    point: &mut PatchPoint<N, D>,
+    merging: &Merging<'_, N, D>,
+    ids: &mut PairIds,
+) {
+    if point.raw.distance <= merging.request.prediction {
+        let mut old = merging.old.iter().flat_map(|patch| &patch.points);
+        let same = old.find(|old| old.name() == point.name());
+        point.raw.id = same.map_or_else(|| ids.next(), |old| old.raw.id);
+    }
 }
 
 /// Deepest first, then in the order of the parts.
@@ -113,7 +133,11 @@ impl Heirs {
     fn of<N: Real, const D: usize>(old: &[Patch<N, D>], new: &[Patch<N, D>]) -> Self {
         let mut kept: Vec<Vec<Option<u32>>> =
             new.iter().map(|patch| vec![None; patch.points.len()]).collect();
-        let mut names: Vec<(Name, usize, usize)> = Vec::new();
+        if old.iter().all(|patch| patch.points.is_empty()) {
+            return Self { kept };
+        }
+        let count = new.iter().map(|patch| patch.points.len()).sum();
+        let mut names: Vec<(Name, usize, usize)> = Vec::with_capacity(count);
         for (at, patch) in new.iter().enumerate() {
             names.extend(patch.points.iter().enumerate().map(|(i, point)| (point.name(), at, i)));
         }

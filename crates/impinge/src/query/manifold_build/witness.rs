@@ -23,6 +23,24 @@ pub(crate) fn features3<N: Real>(
     features(pair, separation, tangents3(&separation.normal))
 }
 
+/// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
+pub(crate) fn feature2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, separation, tangents2, is_second)
+}
+
+/// The feature of one of two solids of space, the first or the second: one of [`features3`].
+pub(crate) fn feature3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, separation, tangents3, is_second)
+}
+
 /// The frame of a witness that nothing else is asked of.
 pub(super) fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -33,29 +51,56 @@ pub(super) fn frame<N: Real, const D: usize>(
     Frame::new(pair, separation, &request, tangents)
 }
 
-/// As a manifold would name them: each is the smallest part of what a core shows along the normal that
-/// holds the point.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     tangents: [Vector<N, D>; 2],
 ) -> [FeatureId; 2] {
-    let known = match pair.first {
-        Kind::Ball(_) => ball::known_part(pair, separation),
-        _ => None,
-    };
-    if let Some(touched) = known {
+    if let Some(touched) = known(pair, separation) {
         return [FeatureId::Face(0), touched];
     }
     let frame = frame(pair, separation, tangents);
-    [(pair.first, Which::First), (pair.second, Which::Second)].map(|(kind, which)| {
-        // A ball's only feature, and a half-space's.
-        if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
-            return FeatureId::Face(0);
-        }
-        let mut facet = Facet::boundary(which);
-        let pose = matches!(which, Which::Second).then_some(&pair.pose12);
-        face(&mut facet, kind, pose, &frame);
-        at_witness(&facet, &frame)
-    })
+    [false, true].map(|is_second| shown(pair, &frame, is_second))
+}
+
+fn feature<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
+    is_second: bool,
+) -> FeatureId {
+    match known(pair, separation) {
+        Some(touched) if is_second => touched,
+        Some(_) => FeatureId::Face(0),
+        None => shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second),
+    }
+}
+
+/// What a ball, the first solid, touches, where that is known at once.
+fn known<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+) -> Option<FeatureId> {
+    match pair.first {
+        Kind::Ball(_) => ball::known_part(pair, separation),
+        _ => None,
+    }
+}
+
+/// As a manifold would name it: the smallest part of what a core shows along the normal that holds
+/// the point.
+fn shown<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &Frame<N, D>,
+    is_second: bool,
+) -> FeatureId {
+    let (kind, which) =
+        if is_second { (pair.second, Which::Second) } else { (pair.first, Which::First) };
+    // A ball's only feature, and a half-space's.
+    if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
+        return FeatureId::Face(0);
+    }
+    let mut facet = Facet::boundary(which);
+    face(&mut facet, kind, is_second.then_some(&pair.pose12), frame);
+    at_witness(&facet, frame)
 }

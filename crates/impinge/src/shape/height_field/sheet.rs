@@ -312,8 +312,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     fn triangle_of(&self, corners: [GridPoint; 3]) -> Triangle<N, 3> {
-        let [a, b, c] = corners.map(|[row, column]| self.grid.point(row, column));
-        Triangle::new(a, b, c)
+        Triangle::of_finite(corners.map(|[row, column]| self.grid.point(row, column)))
     }
 
     /// Whether triangle `k` of the cell at a row and column is removed.

@@ -3,8 +3,8 @@
 use super::HeightField;
 use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
-use crate::shape::seam::{Seam, is_across, slack};
-use crate::shape::tri_mesh::{inward_of, normal_of};
+use crate::shape::seam::{Seam, is_across, leads_up_clearly, slack};
+use crate::shape::tri_mesh::{Rise, inward_of, normal_of, rise_of};
 use crate::shape::{FeatureId, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
@@ -62,6 +62,16 @@ impl<N: Real> HeightField<N, 3> {
         let own = self.corners(part);
         let (a, b, c) = (own[side % 3], own[(side + 1) % 3], own[(side + 2) % 3]);
         let [start, end] = [a, b].map(|[row, column]| self.grid.point(row, column));
+        let others = || self.around_point(a).filter(|other| other.contains(&b) && *other != own);
+        let is_hollow = others().any(|other| {
+            let opposite = other.iter().find(|corner| **corner != a && **corner != b);
+            opposite.is_some_and(|&[row, column]| {
+                rise_of(&[start, end, self.grid.point(row, column)], normal) == Rise::Clear
+            })
+        });
+        if is_hollow {
+            return false;
+        }
         let mut seam = Seam::of_faces(self.front_of(&own), normal);
         let mut add = |corners: &[GridPoint; 3], [row, column]: GridPoint| {
             if let Some(inward) = inward_of(&[start, end, self.grid.point(row, column)]) {
@@ -69,7 +79,7 @@ impl<N: Real> HeightField<N, 3> {
             }
         };
         add(&own, c);
-        for other in self.around_point(a).filter(|other| other.contains(&b) && *other != own) {
+        for other in others() {
             if let Some(&opposite) = other.iter().find(|corner| **corner != a && **corner != b) {
                 add(&other, opposite);
             }
@@ -80,6 +90,11 @@ impl<N: Real> HeightField<N, 3> {
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
         let own = self.corners(part);
         let at = own[corner % 3];
+        let point = |[row, column]: GridPoint| self.grid.point(row, column);
+        let rises = |other: &GridPoint| leads_up_clearly(&(point(*other) - point(at)), normal);
+        if self.around_point(at).any(|corners| corners.iter().any(rises)) {
+            return false;
+        }
         let mut seam = Seam::of_faces(self.front_of(&own), normal);
         for corners in self.around_point(at) {
             seam.add_face(self.rise_from(at, &corners, normal), &self.front_of(&corners));

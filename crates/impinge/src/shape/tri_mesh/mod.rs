@@ -9,7 +9,7 @@ mod surface3;
 mod table;
 mod topology;
 
-pub(super) use around::inward_of;
+pub(super) use around::{Rise, inward_of, rise_of};
 pub(super) use composite::{aabb_at, sphere_around};
 pub(super) use surface3::normal_of;
 pub(crate) use table::MeshTable;
@@ -99,8 +99,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// If there is no such triangle.
     #[must_use]
     pub fn triangle(&self, index: u32) -> Triangle<N, D> {
-        let [a, b, c] = self.corners(index);
-        Triangle::new(a, b, c)
+        Triangle::of_finite(self.corners(index))
     }
 
     /// What lies across a side, 0 to 2, of a triangle. Looking costs O(1).

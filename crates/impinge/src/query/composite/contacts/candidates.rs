@@ -1,10 +1,62 @@
 //! Which parts may touch.
 
+use smallvec::SmallVec;
+
 use super::super::between::Between;
 use super::super::bounds::{aabb_of, enclosing};
+use super::near::Probe;
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::math::{Pose, Space};
+use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::CompositeShape;
+
+/// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
+pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
+
+/// What of two shapes may be within reach of each other.
+pub(super) struct Nearby<N: Real> {
+    /// In order.
+    pub(super) parts: PartPairs,
+    /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
+    /// nothing is known.
+    pub(super) clearance: N,
+}
+
+/// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
+/// candidates those that no plane tells to be farther.
+pub(super) fn nearby<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    is_self: bool,
+    reach: N,
+) -> Nearby<N> {
+    let [None, Some(parts2)] = between.composites() else {
+        return Nearby { parts: candidates(between, is_self, reach), clearance: N::ZERO };
+    };
+    let (mut parts, aabb) = (PartPairs::new(), search_box(between, reach));
+    parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
+    let mut clearance = N::ZERO;
+    if let Some(probe) = Probe::new(between, reach) {
+        clearance = depth_in(&aabb, probe.center());
+        parts.retain(|[_, part2]| {
+            let bound = probe.bound(parts2, *part2);
+            clearance = min(clearance, bound.from_middle);
+            !bound.is_beyond
+        });
+    }
+    parts.sort_unstable();
+    Nearby { parts, clearance }
+}
+
+/// A box in the frame of the second shape around all that is within `reach` of the first.
+fn search_box<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, reach: N) -> Aabb<N, D> {
+    let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
+    enclosing(&aabb, &between.pose21)
+}
+
+/// How far a point is from the outside of a box that holds it.
+fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
+    let (below, above) = (point - aabb.mins(), aabb.maxs() - point);
+    below.iter().chain(above.iter()).fold(N::INFINITY, |least, &x| min(x, least))
+}
 
 /// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape
 /// that is not a composite.
@@ -14,14 +66,13 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
     reach: N,
-) -> Vec<[u32; 2]> {
-    let mut found = Vec::new();
+) -> PartPairs {
+    let mut found = PartPairs::new();
     match between.composites() {
         [Some(parts), Some(_)] if is_self => of_one(parts, reach, &mut found),
         [Some(parts1), Some(parts2)] => of_two(between, (parts1, parts2), reach, &mut found),
         [None, Some(parts2)] => {
-            let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
-            let aabb = enclosing(&aabb, &between.pose21);
+            let aabb = search_box(between, reach);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
         }
         // Composites come last among the kinds.
@@ -37,7 +88,7 @@ fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     (parts1, parts2): (&dyn CompositeShape<N, D>, &dyn CompositeShape<N, D>),
     reach: N,
-    found: &mut Vec<[u32; 2]>,
+    found: &mut PartPairs,
 ) {
     let poses = [&between.pose21, &between.pair.pose12];
     let is_first = parts1.num_parts() <= parts2.num_parts();
@@ -56,7 +107,7 @@ fn of_two<N: Space<D>, const D: usize>(
 fn of_one<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     reach: N,
-    found: &mut Vec<[u32; 2]>,
+    found: &mut PartPairs,
 ) {
     for part1 in 0..parts.num_parts() {
         let aabb = box_of_part(parts, part1, &Pose::identity(), reach);

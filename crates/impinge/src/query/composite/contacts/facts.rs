@@ -5,7 +5,8 @@ use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::manifold_build::{Along, Patch, build_along, build_between};
-use crate::query::{ManifoldRequest, RawManifold};
+use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use crate::shape::{FeatureId, Kind};
 
 /// How a contact of two parts stands as one of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,8 @@ pub(super) struct Finding<N: Real, const D: usize> {
     pub(super) parts: [u32; 2],
     /// How far the two are apart, each taken alone.
     pub(super) distance: N,
-    /// What they say of the contact of the shapes, in the frame of the first.
+    /// What they say of the contact of the shapes, in the frame of the first. Without points where
+    /// that is no contact of the shapes: few are asked for it, see [`nearest_points`].
     pub(super) patch: Patch<N, D>,
     pub(super) standing: Standing,
     /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
@@ -41,6 +43,11 @@ impl<N: Real, const D: usize> Finding<N, D> {
     pub(super) fn lowest(&self) -> N {
         let distances = self.patch.points.iter().map(|point| point.raw.distance);
         distances.fold(N::INFINITY, crate::math::min)
+    }
+
+    /// It holds, but was left out when it was found, so that its points are missing.
+    pub(super) fn is_owing(&self) -> bool {
+        self.standing != Standing::Left && self.patch.points.is_empty()
     }
 }
 
@@ -92,8 +99,14 @@ struct Meeting<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
-    /// What the two surfaces say of a separation of the two parts.
-    fn verdicts(&self, scene: &Scene<'_, N, D>, found: &Separation<N, D>) -> [Verdict<N, D>; 2] {
+    /// What the two surfaces say of a separation of the two parts. `over` is the feature of the
+    /// second part that a ball is over, if that is known.
+    fn verdicts(
+        &self,
+        scene: &Scene<'_, N, D>,
+        found: &Separation<N, D>,
+        over: Option<FeatureId>,
+    ) -> [Verdict<N, D>; 2] {
         // Where the other solid comes from, and the part itself, as the shape of the part sees it.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
@@ -103,16 +116,24 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         if !can_touch {
             return [Verdict::Nothing; 2];
         }
-        let features = (N::tables().witness_features)(&self.placed.pair(), found);
-        let [feature1, feature2] = self.placed.turned(features);
+        let [is_second1, is_second2] = self.placed.turned([false, true]);
+        let feature =
+            |is_second| (N::tables().witness_feature)(&self.placed.pair(), found, is_second);
+        let (feature1, feature2) =
+            (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
         let normal = self.placed.outward(&found.normal);
-        let (part, feature, toward) = (self.parts[0], feature1, other1 - own1);
-        let case1 = Case { part, feature, outward: normal, toward };
-        let (part, feature, toward) = (self.parts[1], feature2, other2 - own2);
-        let outward = -self.placed.seen_by_second(&normal);
-        let case2 = Case { part, feature, outward, toward };
+        let (part, toward) = (self.parts[0], other1 - own1);
+        let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
+        let (part, toward) = (self.parts[1], other2 - own2);
+        let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
+        let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
         [judge(surface1, &case1), judge(surface2, &case2)]
     }
+}
+
+/// A ball over a side or a corner has no point over the face.
+fn is_beside(over: Option<FeatureId>) -> bool {
+    over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
 fn of_surfaces<N: Space<D>, const D: usize>(
@@ -126,15 +147,21 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     if !found.distance.is_finite_number() {
         return None;
     }
-    let verdicts = meeting.verdicts(scene, &found);
+    let tolerance = placed.tolerance();
+    let over = over(&pair, tolerance);
+    let verdicts = meeting.verdicts(scene, &found, over);
     let normal = placed.outward(&found.normal);
     let mut raw = RawManifold::default();
     let mut standing = match settled(placed, &verdicts, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => Standing::Left,
+        Settled::Forced(..) if is_beside(over) => Standing::Left,
         Settled::Found(normal) => {
             let witness = Separation { normal: placed.inward(&normal), ..found };
-            build_between(&pair, &witness, request, &mut raw);
+            match over.filter(|over| is_certain(*over, &verdicts[1])) {
+                Some(over) => raw = of_ball(&witness, over),
+                None => build_between(&pair, &witness, request, &mut raw),
+            }
             Standing::Own
         }
         Settled::Forced(normal, standing) => {
@@ -144,13 +171,59 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             standing
         }
     };
-    if overlooks(&raw, &found, placed.tolerance()) {
+    if overlooks(&raw, &found, tolerance) {
         standing = Standing::Left;
-        build_between(&pair, &found, request, &mut raw);
+        raw.points.clear();
     }
-    let (patch, tolerance) = (placed.patch(&raw, parts), placed.tolerance());
+    let patch = placed.patch(&raw, parts);
     let face = verdicts[1].face().filter(|_| standing != Standing::Left);
     Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
+}
+
+/// The feature of a triangle that a ball is over, where that is certain.
+fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Option<FeatureId> {
+    let (Kind::Ball(_), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
+        return None;
+    };
+    let center = pair.pose12.inverse_point(&Point::origin());
+    (N::tables().over)(triangle, &center, tolerance)
+}
+
+/// The name of a contact is the feature that the ball is over: close to a side a ball may yet have
+/// the normal of the face.
+fn is_certain<N: Real, const D: usize>(over: FeatureId, verdict: &Verdict<N, D>) -> bool {
+    matches!(over, FeatureId::Face(_)) == matches!(verdict, Verdict::Face(_))
+}
+
+/// The contact of a ball with a known feature.
+fn of_ball<N: Real, const D: usize>(
+    witness: &Separation<N, D>,
+    over: FeatureId,
+) -> RawManifold<N, D> {
+    let mut raw = RawManifold { normal: witness.normal, ..RawManifold::default() };
+    let (point1, distance, id) = (witness.point1, witness.distance, raw.ids.next());
+    raw.points.push(RawPoint {
+        point1,
+        distance,
+        feature1: FeatureId::Face(0),
+        feature2: over,
+        id,
+    });
+    raw
+}
+
+/// What two parts within reach say on their own of how near they are.
+pub(super) fn nearest_points<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    parts: [u32; 2],
+    request: &ManifoldRequest<N>,
+) -> Patch<N, D> {
+    let (placed, mut raw) = (scene.pair(parts), RawManifold::default());
+    let pair = placed.pair();
+    if let Some(found) = (N::tables().separation)(&pair, request.prediction) {
+        build_between(&pair, &found, request, &mut raw);
+    }
+    placed.patch(&raw, parts)
 }
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,

@@ -29,15 +29,19 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
 ) {
-    let mut faces: Vec<(usize, Vector<N, D>)> = Vec::new();
-    for (index, finding) in findings.iter().enumerate() {
-        // Between two composites it is not one solid that is on one side.
-        faces.extend(finding.face.filter(|_| scene.first_is_convex()).map(|face| (index, face)));
-    }
-    let is_alike = |a: &Vector<N, D>, b: &Vector<N, D>| a.dot(b) > N::lit(ALIKE);
-    if faces.windows(2).all(|two| is_alike(&two[0].1, &two[1].1)) {
+    // Between two composites it is not one solid that is on one side.
+    if !scene.first_is_convex() {
         return;
     }
+    let is_alike = |a: &Vector<N, D>, b: &Vector<N, D>| a.dot(b) > N::lit(ALIKE);
+    let (all, next) = (findings.iter(), findings.iter());
+    let (all, next) = (all.filter_map(|one| one.face), next.filter_map(|one| one.face).skip(1));
+    if all.zip(next).all(|(a, b)| is_alike(&a, &b)) {
+        return;
+    }
+    let faces = findings.iter().enumerate();
+    let faces: Vec<(usize, Vector<N, D>)> =
+        faces.filter_map(|(index, finding)| Some((index, finding.face?))).collect();
     let mut hidden = Vec::new();
     for &(back, normal) in &faces {
         let hides = |&(front, other): &(usize, Vector<N, D>)| {

@@ -44,10 +44,13 @@ impl<N: Real, const D: usize> Verdict<N, D> {
 }
 
 /// The contact of a part with the other solid, as seen by the composite.
-pub(super) struct Case<N: Real, const D: usize> {
+pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
-    /// Where on the part.
-    pub(super) feature: FeatureId,
+    /// Where on the part; most cases are settled without it.
+    pub(super) feature: &'a dyn Fn() -> FeatureId,
+    /// The other solid is beside the part, so that [`Verdict::Snapped`] says as much as
+    /// [`Verdict::Beyond`].
+    pub(super) is_beside: bool,
     /// Unit, away from the part.
     pub(super) outward: Vector<N, D>,
     /// From the part to where the other solid comes from.
@@ -66,25 +69,28 @@ pub(super) fn faces<N: Space<D>, const D: usize>(
 /// What the surface of a shape, if it has one, says of a contact.
 pub(super) fn judge<N: Space<D>, const D: usize>(
     surface: Option<&dyn Surface<N, D>>,
-    case: &Case<N, D>,
+    case: &Case<'_, N, D>,
 ) -> Verdict<N, D> {
     let Some(surface) = surface else { return Verdict::Admitted };
-    let is_admitted = || surface.admits(case.part, case.feature, &case.outward);
+    let is_admitted = |feature| surface.admits(case.part, feature, &case.outward);
     let Some(face) = surface.snapped(case.part, &case.toward) else {
-        return if is_admitted() { Verdict::Admitted } else { Verdict::Refused };
+        return if is_admitted((case.feature)()) { Verdict::Admitted } else { Verdict::Refused };
     };
     let lean = (case.outward - face).norm();
-    let room = if is_face(case.feature) { N::lit(ON_FACE) } else { N::ZERO };
-    if lean <= N::lit(ROUNDING) * N::EPSILON || lean <= room {
+    if lean <= N::lit(ROUNDING) * N::EPSILON {
         return Verdict::Face(face);
     }
     if case.outward.dot(&face) < N::lit(BEHIND) {
         return Verdict::Snapped(face);
     }
-    if is_admitted() {
+    let feature = (case.feature)();
+    if is_face(feature) && lean <= N::lit(ON_FACE) {
+        return Verdict::Face(face);
+    }
+    if is_admitted(feature) {
         return Verdict::Admitted;
     }
-    if is_beyond_ridge(surface, case, &face) {
+    if !case.is_beside && is_beyond_ridge(surface, case, feature, &face) {
         Verdict::Beyond(face)
     } else {
         Verdict::Snapped(face)
@@ -95,12 +101,13 @@ pub(super) fn judge<N: Space<D>, const D: usize>(
 /// are: seen from the face, normals that lean a little the same way are the ridge's.
 fn is_beyond_ridge<N: Space<D>, const D: usize>(
     surface: &dyn Surface<N, D>,
-    case: &Case<N, D>,
+    case: &Case<'_, N, D>,
+    feature: FeatureId,
     face: &Vector<N, D>,
 ) -> bool {
     let leaning = face + (case.outward - face) * N::lit(A_LITTLE);
     let leaning = unit(&leaning).map(|(leaning, _)| leaning);
-    leaning.is_some_and(|leaning| surface.admits(case.part, case.feature, &leaning))
+    leaning.is_some_and(|leaning| surface.admits(case.part, feature, &leaning))
 }
 
 /// A flat piece; for the segments of a surface in the plane that is an edge.

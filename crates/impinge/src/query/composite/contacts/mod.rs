@@ -14,11 +14,14 @@ mod candidates;
 mod facts;
 mod hidden;
 mod judge;
+mod near;
+mod over;
 mod resolve;
 mod scene;
 mod view;
 
 use self::facts::{Finding, Reference, Standing};
+pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
 use super::between::Between;
 use super::bounds::aabb_of;
@@ -30,7 +33,7 @@ use crate::query::manifold_build::{Merging, Patch, merge};
 use crate::query::pair::Placed;
 use crate::query::separation::placed;
 use crate::query::{ManifoldRequest, Pair, PairIds};
-use crate::shape::{Geometry, Kind};
+use crate::shape::{Geometry, Kind, SupportMap};
 
 /// So many points of two parts are kept before they are merged with those of others: all that two
 /// facets of usual solids have.
@@ -77,10 +80,13 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
+        let of_parts = of_parts(between, request);
+        let nearby = candidates::nearby(between, is_self, of_parts.prediction);
         let center = middle_of_first(between);
-        let reference = center.map(|center| advanced(between, self.reference, center));
-        let query = Query { between, is_self, reference: &reference, request };
-        let findings = query.findings();
+        let way = Way { old: self.reference, clearance: nearby.clearance };
+        let reference = center.map(|center| advanced(between, &way, center));
+        let query = Query { between, reference: &reference, request: &of_parts };
+        let findings = query.findings(&nearby.parts);
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
         let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
@@ -97,19 +103,30 @@ fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Opti
     Some(between.pose21.point(&map.center()))
 }
 
+/// Where the middle of the first shape was.
+struct Way<N: Real, const D: usize> {
+    old: Reference<N, D>,
+    /// No part of the second shape is nearer to where it is.
+    clearance: N,
+}
+
 /// Where the middle of the first shape counts as being: where it is, unless the straight way there
 /// from where it was leads through the surface and is no longer than the shape is.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    old: Reference<N, D>,
+    way: &Way<N, D>,
     center: Point<N, D>,
 ) -> Point<N, D> {
+    let Way { old, clearance } = *way;
     let [_, composite] = between.composites();
     let composite = composite.filter(|composite| composite.surface().is_some());
     let map = Geometry(between.pair.first).as_support_map();
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
     let way = center - old;
-    if way == Vector::<N, D>::zeros() || way.norm() > N::TWO * (map.reach() + map.rounding()) {
+    let length = way.norm();
+    // Half of what is known to be free leaves room for rounding.
+    let is_free = length < clearance * N::HALF;
+    if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
     }
     let ray = Ray::new(old, way);
@@ -124,33 +141,40 @@ fn advanced<N: Space<D>, const D: usize>(
 /// What is asked of a pair.
 struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
-    is_self: bool,
     reference: &'a Reference<N, D>,
+    /// What is asked of two parts.
     request: &'a ManifoldRequest<N>,
 }
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// What the parts say; which of it holds is settled.
-    fn findings(&self) -> Vec<Finding<N, D>> {
-        let request = self.of_parts();
-        let reach = request.prediction;
-        let candidates = candidates::candidates(self.between, self.is_self, reach);
+    /// What some pairs of parts say; which of it holds is settled.
+    fn findings(&self, parts: &[[u32; 2]]) -> Vec<Finding<N, D>> {
         let scene = Scene::new(self.between);
-        let one = |&parts| facts::finding(&scene, parts, self.reference, &request);
-        let mut findings: Vec<_> = candidates.iter().filter_map(one).collect();
+        let one = |&parts| facts::finding(&scene, parts, self.reference, self.request);
+        let mut findings: Vec<_> = parts.iter().filter_map(one).collect();
         resolve::resolve(&scene, &mut findings);
+        for finding in findings.iter_mut().filter(|finding| finding.is_owing()) {
+            finding.patch = facts::nearest_points(&scene, finding.parts, self.request);
+        }
         findings
     }
+}
 
-    /// What is asked of two parts: of points that turning brings near, the nearest point may lie on
-    /// another part, so that is looked at when all are known.
-    fn of_parts(&self) -> ManifoldRequest<N> {
-        let map = Geometry(self.between.pair.first).as_support_map();
-        let size = map.map_or(N::ZERO, |map| N::TWO * (map.reach() + map.rounding()));
-        let ManifoldRequest { prediction, sine, .. } = *self.request;
-        let prediction = prediction + sine * size;
-        ManifoldRequest { prediction, sine: N::ZERO, max_points: PART_POINTS }
-    }
+/// What is asked of two parts: of points that turning brings near, the nearest point may lie on
+/// another part, so that is looked at when all are known.
+fn of_parts<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    request: &ManifoldRequest<N>,
+) -> ManifoldRequest<N> {
+    let ManifoldRequest { prediction, sine, .. } = *request;
+    let map = Geometry(between.pair.first).as_support_map().filter(|_| sine > N::ZERO);
+    let way = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
+    ManifoldRequest { prediction: prediction + way, sine: N::ZERO, max_points: PART_POINTS }
+}
+
+/// No point of a solid is farther from its origin.
+fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
+    map.reach() + map.rounding()
 }
 
 /// The contact of two placed shapes in the world frame, `None` beyond `limit`: of composites the
@@ -201,8 +225,9 @@ fn deepest_within<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
     let reference = middle_of_first(between);
-    let query = Query { between, is_self: false, reference: &reference, request: &request };
-    let findings = query.findings();
+    let query = Query { between, reference: &reference, request: &request };
+    let nearby = candidates::nearby(between, false, request.prediction);
+    let findings = query.findings(&nearby.parts);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
     let points = kept.flat_map(|finding| {
         let normal = finding.patch.normal;

@@ -28,6 +28,19 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     findings: &mut [Finding<N, D>],
 ) {
     super::hidden::drop_hidden(scene, findings);
+    let is_asked =
+        |finding: &Finding<N, D>| matches!(finding.standing, Standing::Snapped | Standing::Beyond);
+    if findings.iter().any(is_asked) {
+        leave_explained(scene, findings);
+    }
+    keep_one(findings);
+}
+
+/// Leaves out contacts with faces that other contacts explain.
+fn leave_explained<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    findings: &mut [Finding<N, D>],
+) {
     let mut ways = Vec::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
         note(&mut ways, finding);
@@ -41,7 +54,6 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
             }
         }
     }
-    keep_one(findings);
 }
 
 /// The findings of a standing.

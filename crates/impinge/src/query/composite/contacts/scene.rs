@@ -1,5 +1,7 @@
 //! The parts of two shapes, placed for computing with them.
 
+use core::cell::OnceCell;
+
 use smallvec::SmallVec;
 
 use super::super::between::{Between, anchor, recentred};
@@ -13,6 +15,34 @@ pub(super) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// What holds the parts of each together.
     pub(super) surfaces: [Option<&'a dyn Surface<N, D>>; 2],
+    /// How the parts of a surface lie that a convex solid meets: most lie alike.
+    usual: OnceCell<Usual<N, D>>,
+}
+
+/// How a part that is given by its corners lies to a convex first shape.
+#[derive(Clone, Copy)]
+struct Usual<N: Real, const D: usize> {
+    /// Of the part, in the frame of its shape.
+    pose: Pose<N, D>,
+    is_segment: bool,
+    /// Of the part's frame, the point that the two are seen from.
+    local: Vector<N, D>,
+    /// The point in the frames of the two shapes.
+    origins: [Point<N, D>; 2],
+    lying: Lying<N, D>,
+}
+
+/// How two bodies lie to each other.
+#[derive(Clone, Copy)]
+struct Lying<N: Real, const D: usize> {
+    /// The second of the bodies, in the order of their kinds, in the frame of the first.
+    pose12: Pose<N, D>,
+    /// The first of the bodies is the part of the second shape.
+    is_turned: bool,
+    /// The frame of the first of the bodies, in that of the first shape put through the point.
+    frame: Pose<N, D>,
+    /// The rotation of the second shape's frame in that of the first.
+    turn: Pose<N, D>,
 }
 
 /// A part of one of the shapes; a convex shape is its own part.
@@ -34,13 +64,7 @@ enum Solid<'a, N: Real, const D: usize> {
 pub(super) struct PartPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [Body<'a, N, D>; 2],
-    pose12: Pose<N, D>,
-    /// The first of the bodies is the part of the second shape.
-    is_turned: bool,
-    /// The frame of the first of the bodies, in that of the first shape put through the point.
-    frame: Pose<N, D>,
-    /// The rotation of the second shape's frame in that of the first.
-    turn: Pose<N, D>,
+    lying: Lying<N, D>,
     /// The point in the frames of the two shapes.
     origins: [Point<N, D>; 2],
 }
@@ -83,7 +107,7 @@ impl<N: Real, const D: usize> Body<'_, N, D> {
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
-        Self { between, surfaces: between.composites().map(surface) }
+        Self { between, surfaces: between.composites().map(surface), usual: OnceCell::new() }
     }
 
     /// The first shape is one solid.
@@ -124,6 +148,11 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let [composite1, composite2] = self.between.composites();
         let piece1 = composite1.map(|composite| composite.part(part1));
         let piece2 = composite2.map(|composite| composite.part(part2));
+        if let (None, Some(piece2)) = (&piece1, &piece2)
+            && let Some(pair) = self.as_usual(piece2)
+        {
+            return pair;
+        }
         let pose21 = &self.between.pose21;
         let origins = match &piece1 {
             None => [Point::origin(), Point::from(pose21.translation)],
@@ -139,26 +168,73 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let whole = &self.between.pair;
         let bodies =
             [body(whole.first, piece1, &origins[0]), body(whole.second, piece2, &origins[1])];
-        PartPair::new(bodies, Pose { rotation: whole.pose12.rotation, ..Pose::identity() }, origins)
+        PartPair::new(bodies, self.turn(), origins)
+    }
+
+    /// The rotation of the second shape's frame in that of the first.
+    fn turn(&self) -> Pose<N, D> {
+        Pose { rotation: self.between.pair.pose12.rotation, ..Pose::identity() }
+    }
+
+    /// A convex solid and a part that lies like those before: the same pair at less cost. `None` of
+    /// others.
+    fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PartPair<'a, N, D>> {
+        let is_segment = matches!(part.solid, PartSolid::Segment(_));
+        if let PartSolid::Shape(_) = part.solid {
+            return None;
+        }
+        let usual = self.usual.get_or_init(|| self.usual(part));
+        if !usual.pose.is_same(&part.pose) || usual.is_segment != is_segment {
+            return None;
+        }
+        let solid = Solid::Part(recentred(&part.solid, &usual.local)?);
+        let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
+        let whole = Solid::Whole(self.between.pair.first);
+        let bodies = [Body { pose: Pose::identity(), solid: whole }, Body { pose, solid }];
+        Some(PartPair::of(bodies, usual.lying, usual.origins))
+    }
+
+    fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
+        let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
+        let rotation = part.pose.rotation;
+        let pose = Pose { rotation, translation: Vector::<N, D>::zeros() };
+        let kind = part.solid.geometry().kind();
+        let is_turned = Geometry(self.between.pair.first).kind() > kind;
+        Usual {
+            pose: part.pose,
+            is_segment: matches!(part.solid, PartSolid::Segment(_)),
+            local: part.pose.inverse_point(&origins[1]).coords,
+            origins,
+            lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_turned),
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Lying<N, D> {
+    /// By the poses of a part of the first shape and one of the second.
+    fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_turned: bool) -> Self {
+        let (frame1, frame2) = (*pose1, turn.compose(pose2));
+        let (frame, other) = if is_turned { (frame2, frame1) } else { (frame1, frame2) };
+        Self { pose12: Pose::relative(&frame, &other), is_turned, frame, turn }
     }
 }
 
 impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
-    fn new(
+    fn new(bodies: [Body<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
+        let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();
+        let is_turned = kind(&bodies[0]) > kind(&bodies[1]);
+        let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_turned);
+        Self::of(bodies, lying, origins)
+    }
+
+    /// A part of the first shape and one of the second.
+    fn of(
         [body1, body2]: [Body<'a, N, D>; 2],
-        turn: Pose<N, D>,
+        lying: Lying<N, D>,
         origins: [Point<N, D>; 2],
     ) -> Self {
-        let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();
-        let is_turned = kind(&body1) > kind(&body2);
-        let (frame1, frame2) = (body1.pose, turn.compose(&body2.pose));
-        let (bodies, frame, other) = if is_turned {
-            ([body2, body1], frame2, frame1)
-        } else {
-            ([body1, body2], frame1, frame2)
-        };
-        let pose12 = Pose::relative(&frame, &other);
-        Self { bodies, pose12, is_turned, frame, turn, origins }
+        let bodies = if lying.is_turned { [body2, body1] } else { [body1, body2] };
+        Self { bodies, lying, origins }
     }
 }
 
@@ -166,7 +242,7 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
     /// The two parts in the order of their kinds.
     pub(super) fn pair(&self) -> Pair<'_, N, D> {
         let [first, second] = &self.bodies;
-        Pair { first: first.kind(), second: second.kind(), pose12: self.pose12 }
+        Pair { first: first.kind(), second: second.kind(), pose12: self.lying.pose12 }
     }
 
     /// Points well inside the part of the first shape and that of the second, each as seen by the
@@ -174,7 +250,7 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.map(|origin| origin.coords);
-        let [in1, in2] = [self.turn.inverse_point(&center1), self.turn.point(&center2)];
+        let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
@@ -185,34 +261,34 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
             map.map_or(N::ZERO, |map| map.reach() + map.rounding())
         };
         let lengths = size(&self.bodies[0]) + size(&self.bodies[1]);
-        N::lit(16.0) * N::EPSILON * (lengths + self.pose12.translation.norm())
+        N::lit(16.0) * N::EPSILON * (lengths + self.lying.pose12.translation.norm())
     }
 
     /// Something given for the first shape and the second, in the order of the kinds, or back.
     pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
-        if self.is_turned { [b, a] } else { [a, b] }
+        if self.lying.is_turned { [b, a] } else { [a, b] }
     }
 
     /// A direction in the second shape's frame, in the first's.
     pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.turn.vector(direction)
+        self.lying.turn.vector(direction)
     }
 
     /// A direction in the first shape's frame, in the second's.
     pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.turn.inverse_vector(direction)
+        self.lying.turn.inverse_vector(direction)
     }
 
     /// A direction from the first body to the second, as one from the first shape to the second.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.frame.vector(normal);
-        if self.is_turned { -normal } else { normal }
+        let normal = self.lying.frame.vector(normal);
+        if self.lying.is_turned { -normal } else { normal }
     }
 
     /// The opposite of [`Self::outward`].
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.frame.inverse_vector(normal);
-        if self.is_turned { -normal } else { normal }
+        let normal = self.lying.frame.inverse_vector(normal);
+        if self.lying.is_turned { -normal } else { normal }
     }
 
     /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
@@ -228,8 +304,8 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         let mut points = SmallVec::new();
         for point in &raw.points {
             let mut placed = *point;
-            let across = if self.is_turned { point.distance } else { N::ZERO };
-            let foot = self.frame.point(&(point.point1 + raw.normal * across));
+            let across = if self.lying.is_turned { point.distance } else { N::ZERO };
+            let foot = self.lying.frame.point(&(point.point1 + raw.normal * across));
             placed.point1 = self.origins[0] + foot.coords;
             [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
             points.push(PatchPoint { raw: placed, parts });
