@@ -25,8 +25,8 @@ use crate::query::separation::{
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Witness, box_contacts2, contact_in_world, contacts2,
-    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs3,
+    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
+    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
     witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle};
@@ -111,10 +111,11 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) refit: RefitFn<N, D>,
     pub(crate) each: AnswerFn<N, D>,
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
+    pub(crate) near_first: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
 }
 
-type BuildFn<N, const D: usize> = fn(&[Aabb<N, D>]) -> Result<BoxTree<N, D>, BoxTreeError>;
+type BuildFn<N, const D: usize> = fn(Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError>;
 type RefitFn<N, const D: usize> = fn(&mut BoxTree<N, D>, &[Aabb<N, D>]) -> Result<(), BoxTreeError>;
 type AnswerFn<N, const D: usize> = fn(&BoxTree<N, D>, &Question<'_, N, D>, &mut dyn FnMut(u32));
 type InOrderFn<N, const D: usize, Q> = fn(&BoxTree<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
@@ -126,6 +127,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
             refit: BoxTree::refit_to,
             each: BoxTree::answer,
             by_time: BoxTree::by_time,
+            near_first: BoxTree::near_first,
             by_distance: BoxTree::by_distance,
         }
     }
@@ -191,7 +193,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         contacts: contacts2,
-        box_contacts: box_contacts2,
+        box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
         ray_span: ray2::span,

@@ -74,9 +74,14 @@ impl World for Ours {
     }
 
     fn read(&self) -> (usize, f32) {
-        let manifolds = self.world.contact_manifolds();
-        let contacts = manifolds.flat_map(|(_, _, manifold)| manifold.contacts());
-        contacts.fold((0, 0.0), |(count, sum), tracked| (count + 1, sum + tracked.contact.depth))
+        let mut reading = (0, 0.0);
+        for (_, _, manifold) in self.world.contact_views() {
+            for tracked in manifold.contacts() {
+                reading.0 += 1;
+                reading.1 += tracked.contact.depth;
+            }
+        }
+        reading
     }
 
     fn touching(&self) -> Vec<u64> {

@@ -23,7 +23,8 @@ use rapier3d::parry::query::RayCast as _;
 use super::obvhs_trees::answer;
 use super::race::{Contender, Rule, race};
 use super::scene::{Random, Ray};
-use super::{TOLERANCE, ours};
+use super::{TOLERANCE, ours, rounds, wanted};
+use crate::Arguments;
 use crate::table::Row;
 
 /// Rays of each kind.
@@ -40,13 +41,20 @@ struct Hills {
 }
 
 /// Times rays from above and rays along hills of `edge`² cells of two triangles.
-pub fn run(edge: usize, rounds: usize) -> Vec<Row> {
+pub fn run(edge: usize, arguments: &Arguments) -> Vec<Row> {
+    let case = |name: &str| format!("rays {name} on {} triangles", 2 * edge * edge);
+    let names = ["down", "grazing"].map(case);
+    if !names.iter().any(|case| arguments.wants_case(case)) {
+        return Vec::new();
+    }
     let hills = Hills::new(edge);
     let worlds = Worlds::new(&hills);
     let mut rows = Vec::new();
-    for (name, rays) in [("down", hills.down()), ("grazing", hills.grazing())] {
-        let case = format!("rays {name} on {} triangles", hills.triangles.len());
-        rows.extend(race(&case, Rule::Best(TOLERANCE), RAYS, rounds, worlds.contenders(&rays)));
+    for (case, rays) in names.iter().zip([hills.down(), hills.grazing()]) {
+        if arguments.wants_case(case) {
+            let (rule, all) = (Rule::Best(TOLERANCE), worlds.contenders(&rays));
+            rows.extend(race(case, rule, RAYS, rounds(arguments), wanted(all, arguments)));
+        }
     }
     rows
 }

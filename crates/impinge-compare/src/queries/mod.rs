@@ -35,58 +35,73 @@ const MESHES: [usize; 2] = [100, 708];
 /// Runs all cases. The larger mesh belongs to runs with a hundred thousand objects.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("queries", "ns");
-    let (objects, rounds) = (arguments.objects, (arguments.steps as usize / 10).max(1));
+    let objects = arguments.objects;
     for scene in scenes::<3>(objects) {
-        space(&scene, rounds, &mut table);
+        space(&scene, arguments, &mut table);
     }
     for edge in MESHES.into_iter().filter(|edge| edge * edge < 10 * objects) {
-        table.add(mesh::run(edge, rounds));
+        table.add(mesh::run(edge, arguments));
     }
     for scene in scenes::<2>(objects) {
-        plane(&scene, rounds, &mut table);
+        plane(&scene, arguments, &mut table);
     }
     vec![table]
+}
+
+/// A tenth of the steps asked for.
+fn rounds(arguments: &Arguments) -> usize {
+    (arguments.steps as usize / 10).max(1)
 }
 
 fn scenes<const D: usize>(objects: usize) -> [Scene<D>; 2] {
     [Scene::new("dense", objects, 0.375, 8.0), Scene::new("sparse", objects, 0.075, f32::MAX)]
 }
 
-fn space(scene: &Scene<3>, rounds: usize, table: &mut Table) {
+fn space(scene: &Scene<3>, arguments: &Arguments, table: &mut Table) {
     let (ours, rapier) = (ours::space(scene), parry::space::Rapier::new(scene));
     let parry = parry::space::Parry::new(scene);
     let (obvhs, bvh) = (obvhs_trees::Obvhs::new(scene, &parry), trees::BvhTree::new(scene));
     let (rstar, ncollide) = (trees::RstarTree::new(scene), ncollide::space::Ncollide::new(scene));
     let all: [&dyn Library<3>; 7] = [&ours, &rapier, &parry, &obvhs, &bvh, &rstar, &ncollide];
-    ask_all(scene, &all, rounds, table);
+    ask_all(scene, &all, arguments, table);
 }
 
-fn plane(scene: &Scene<2>, rounds: usize, table: &mut Table) {
+fn plane(scene: &Scene<2>, arguments: &Arguments, table: &mut Table) {
     let (ours, rapier) = (ours::plane(scene), parry::plane::Rapier::new(scene));
     let parry = parry::plane::Parry::new(scene);
     let (bvh, rstar) = (trees::BvhTree::new(scene), trees::RstarTree::new(scene));
     let ncollide = ncollide::plane::Ncollide::new(scene);
     let all: [&dyn Library<2>; 6] = [&ours, &rapier, &parry, &bvh, &rstar, &ncollide];
-    ask_all(scene, &all, rounds, table);
+    ask_all(scene, &all, arguments, table);
 }
 
 /// Races all who answer, kind by kind.
 fn ask_all<const D: usize>(
     scene: &Scene<D>,
     libraries: &[&dyn Library<D>],
-    rounds: usize,
+    arguments: &Arguments,
     table: &mut Table,
 ) where
     f32: impinge::math::Space<D>,
 {
     let objects = scene.objects.len();
     for (what, questions) in scene.questions(objects) {
-        let contenders: Vec<Contender> =
-            libraries.iter().flat_map(|library| library.contenders(&questions)).collect();
         let case = format!("{} {D}D: {what}", scene.name);
-        let (rule, count) = rule(&questions);
-        table.add(race(&case, rule, count, rounds, contenders));
+        if arguments.wants_case(&case) {
+            let all = libraries.iter().flat_map(|library| library.contenders(&questions));
+            let (rule, count) = rule(&questions);
+            table.add(race(&case, rule, count, rounds(arguments), wanted(all, arguments)));
+        }
     }
+}
+
+/// Those who are to run.
+fn wanted<'a>(
+    contenders: impl IntoIterator<Item = Contender<'a>>,
+    arguments: &Arguments,
+) -> Vec<Contender<'a>> {
+    let is_wanted = |contender: &Contender| arguments.wants_contender(contender.name());
+    contenders.into_iter().filter(is_wanted).collect()
 }
 
 /// How answers are compared, and how many queries there are.

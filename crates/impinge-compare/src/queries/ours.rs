@@ -18,8 +18,8 @@ type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 /// How a dimension turns things.
 type Turn<const D: usize> = fn(&Placement<D>) -> Isometry<D>;
 
-/// Updates until everything counts as resting.
-const UPDATES: usize = 80;
+/// Updates until everything has come to rest and the trees are in the order that they keep.
+const UPDATES: usize = 128;
 
 /// All that impinge answers with.
 pub struct Impinge<const D: usize>

@@ -24,6 +24,11 @@ pub struct Contender<'a> {
 }
 
 impl<'a> Contender<'a> {
+    /// The name in the table.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
     /// One that is asked everything at once, by a batch interface.
     pub fn batch(name: &'static str, ask: impl FnMut(&mut Answers) + 'a) -> Self {
         Self { name, ask: Box::new(ask) }

@@ -1,5 +1,7 @@
 //! impinge, in the plane and in space.
 
+use std::hint::black_box;
+
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -156,17 +158,16 @@ where
     fn read(&self) -> Reading {
         let mut reading = Reading::default();
         for (_, _, manifold) in self.world.contact_views() {
-            for tracked in manifold.contacts() {
+            for point in manifold.contacts() {
                 reading.points += 1;
-                reading.depth += f64::from(tracked.contact.depth);
+                reading.depth += f64::from(black_box(point).contact.depth);
             }
         }
         reading
     }
 
     fn touching(&self) -> Vec<(usize, usize)> {
-        let manifolds = self.world.contact_manifolds();
-        let touching = manifolds.filter(|(_, _, manifold)| !manifold.is_empty());
+        let touching = self.world.contact_views();
         let mut pairs: Vec<_> = touching.map(|(a, b, _)| (*a.data(), *b.data())).collect();
         for pair in &mut pairs {
             *pair = (pair.0.min(pair.1), pair.0.max(pair.1));

@@ -138,7 +138,7 @@ impl Contender<3> for Rapier {
         let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
         for point in manifolds.flat_map(|manifold| &manifold.points) {
             reading.points += 1;
-            reading.depth -= f64::from(point.dist);
+            reading.depth -= f64::from(std::hint::black_box(point).dist);
         }
         reading
     }

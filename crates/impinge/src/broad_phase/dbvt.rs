@@ -265,6 +265,11 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_ray(ray, max_time, &mut by_id);
     }
 
+    fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_ray_roughly(ray, max_time, &mut by_id);
+    }
+
     fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
         let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
         self.finder.visit_nearest(bv, max_distance, &mut by_id);

@@ -2,22 +2,22 @@
 
 use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
+use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
-use crate::pairs::{pack, unpack};
+use crate::pairs::{PairTable, pack, unpack};
 
-/// One object in so many changed: beyond that, all pairs are looked at for those that ended.
-const SWEEP_FROM: usize = 4;
+/// Pairs whose ends are brought into the cache together.
+const AT_ONCE: usize = 16;
 
-/// Pairs per chunk of that look.
-const SWEEP_CHUNK: usize = 4096;
-
-/// What becomes of pairs in an update.
-#[derive(Debug, Default)]
-struct Verdict {
-    /// Indices of the pairs that end.
-    ending: Vec<usize>,
-    /// The pairs that begin, packed, ascending.
+/// What becomes of pairs in an update; packed pairs, ascending.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Verdict {
+    /// The pairs that begin.
     starting: Vec<u64>,
+    /// The pairs that end.
+    stopped: Vec<u64>,
+    /// Both, merged: `true` for those that begin.
+    events: Vec<(u64, bool)>,
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
@@ -34,99 +34,82 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
         self.apply_waiting();
         self.apply_again();
-        self.moving.refit();
+        self.moving.refit_from(&self.loose);
         self.still.refit();
-        let verdict = self.judge(filter);
+        let mut found = core::mem::take(&mut self.found);
+        self.find_changes(&mut found);
+        self.judge(&mut found, filter);
         // From here on no foreign code runs until everything is consistent.
-        let events = self.commit(verdict);
-        self.settle();
-        self.keep_order();
-        for (key, started) in events {
+        self.commit_and_settle(&found.ended);
+        self.found = found;
+        let events = core::mem::take(&mut self.verdict.events);
+        for &(key, started) in &events {
             let (a, b) = unpack(key);
             callback(a, b, started);
         }
+        self.verdict.events = events;
     }
 
-    /// Decides about all pairs that the changes concern; alters nothing.
-    fn judge(&mut self, filter: &mut dyn FnMut(u32, u32) -> bool) -> Verdict {
-        let mut verdict = Verdict { ending: self.parted(), starting: Vec::new() };
-        let mut met = self.met();
-        met.sort_unstable();
-        debug_assert!(met.is_sorted_by(|a, b| a < b), "every pair begins once");
-        for key in met {
+    /// Decides about the pairs that began; those to be asked about again that are refused now join
+    /// the ended ones. Alters no pair.
+    fn judge(&mut self, found: &mut Changes, filter: &mut dyn FnMut(u32, u32) -> bool) {
+        self.verdict.starting.clear();
+        found.began.sort_unstable();
+        debug_assert!(found.began.is_sorted_by(|a, b| a < b), "every pair begins once");
+        for &key in &found.began {
             let (a, b) = unpack(key);
             let is_again = (self.marks[a as usize] | self.marks[b as usize]) & AGAIN != 0;
-            let present = if is_again { self.pairs.index_of(a, b) } else { None };
-            match (present, filter(a, b)) {
-                (None, true) => verdict.starting.push(key),
-                (Some(index), false) => verdict.ending.push(index),
+            let is_present = is_again && self.pairs.index_of(a, b).is_some();
+            match (is_present, filter(a, b)) {
+                (false, true) => self.verdict.starting.push(key),
+                (true, false) => found.ended.push(key),
                 _ => {}
             }
         }
-        verdict
+        found.ended.sort_unstable();
+        found.ended.dedup();
     }
 
-    /// Indices of the pairs whose boxes do not overlap any more.
-    fn parted(&self) -> Vec<usize> {
-        if self.changes.len() * SWEEP_FROM < self.homes.len() {
-            return self.parted_from_changed();
+    /// The pairs whose boxes overlap and did not before, and those whose boxes did and do not.
+    fn find_changes(&mut self, found: &mut Changes) {
+        found.clear();
+        self.joiner.self_join(&self.moving, found);
+        self.joiner.self_join(&self.still, found);
+        self.joiner.cross_join(&self.moving, &self.still, found);
+        for &u in &self.unbounded {
+            self.changes_of_unbounded(u, found);
         }
-        let pairs = self.pairs.pairs();
-        let sweep = |chunk: usize| -> Vec<usize> {
-            let first = chunk * SWEEP_CHUNK;
-            let last = pairs.len().min(first + SWEEP_CHUNK);
-            let has_parted =
-                |&(a, b): &(u32, u32)| !self.loose[a as usize].overlaps(&self.loose[b as usize]);
-            (first..last).filter(|&index| has_parted(&pairs[index])).collect()
-        };
-        let chunks = pairs.len().div_ceil(SWEEP_CHUNK);
-        #[cfg(feature = "parallel")]
-        if pairs.len() >= crate::bvh::PARALLEL_FROM && rayon::current_num_threads() > 1 {
-            use rayon::prelude::*;
-            let lists: Vec<Vec<usize>> = (0..chunks).into_par_iter().map(sweep).collect();
-            return lists.concat();
+        let strayed = self.moving.strayed().chain(self.still.strayed());
+        for a in strayed.chain(self.searched.iter().copied()) {
+            self.parted_from(a, &mut found.ended);
         }
-        (0..chunks).flat_map(sweep).collect()
     }
 
-    /// The same, by way of the objects that changed.
-    fn parted_from_changed(&self) -> Vec<usize> {
-        let mut parted = Vec::new();
-        for &a in &self.changes {
-            for (b, index) in self.pairs.partners(a) {
-                // Where both changed, the smaller one speaks for the pair.
-                let is_other = self.marks[b as usize] & CHANGED != 0 && b < a;
-                if !is_other && !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
-                    parted.push(index);
-                }
+    /// The pairs of an object that overlap no more.
+    fn parted_from(&self, a: u32, ended: &mut Vec<u64>) {
+        for (b, _) in self.pairs.partners(a) {
+            if !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
+                ended.push(pack(a, b));
             }
         }
-        parted
     }
 
-    /// The pairs whose boxes overlap and did not before, packed.
-    fn met(&mut self) -> Vec<u64> {
-        let mut met = Vec::new();
-        self.joiner.self_join(&self.moving, &mut met);
-        self.joiner.self_join(&self.still, &mut met);
-        self.joiner.cross_join(&self.moving, &self.still, &mut met);
-        for &u in &self.unbounded {
-            self.met_by_unbounded(u, &mut met);
-        }
-        met
-    }
-
-    /// The pairs of one unbounded object that began: with all objects if it changed itself, else
-    /// with those that changed.
-    fn met_by_unbounded(&self, u: u32, met: &mut Vec<u64>) {
+    /// The pairs of one unbounded object that began or ended: with all objects if it changed itself,
+    /// else with those that changed.
+    fn changes_of_unbounded(&self, u: u32, found: &mut Changes) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
             // Of two unbounded objects, the one that changed speaks, of two that did the smaller.
             let is_told_by_other = self.homes[other as usize] == Home::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);
-            if other != u && !is_told_by_other && self.began(u, other) {
-                met.push(pack(u, other));
+            if other == u || is_told_by_other {
+                return;
+            }
+            match self.overlap_before_and_now(u, other) {
+                (false, true) => found.began.push(pack(u, other)),
+                (true, false) => found.ended.push(pack(u, other)),
+                _ => {}
             }
         };
         if is_changed {
@@ -137,31 +120,29 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// The boxes overlap and did not before.
-    fn began(&self, a: u32, b: u32) -> bool {
-        let old = |id: u32| {
-            let is_changed = self.marks[id as usize] & CHANGED != 0;
-            if is_changed { &self.previous[id as usize] } else { &self.loose[id as usize] }
-        };
-        self.loose[a as usize].overlaps(&self.loose[b as usize]) && !old(a).overlaps(old(b))
+    fn overlap_before_and_now(&self, a: u32, b: u32) -> (bool, bool) {
+        let before = self.before(a).overlaps(&self.before(b));
+        (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
-    /// Alters the table of pairs; the events, in canonical order.
-    fn commit(&mut self, mut verdict: Verdict) -> Vec<(u64, bool)> {
-        // From the back: what a removal moves has been dealt with already.
-        verdict.ending.sort_unstable_by(|a, b| b.cmp(a));
-        let mut stopped = Vec::with_capacity(verdict.ending.len());
-        for index in verdict.ending {
-            let (a, b) = self.pairs.pairs()[index];
-            stopped.push(pack(a, b));
-            self.pairs.remove_at(index);
+    /// Alters the table of pairs, and makes the trees ready for the next update. Neither needs the
+    /// other.
+    fn commit_and_settle(&mut self, ended: &[u64]) {
+        let mut pairs = core::mem::take(&mut self.pairs);
+        let mut verdict = core::mem::take(&mut self.verdict);
+        let is_large = self.homes.len() >= PARALLEL_FROM;
+        let mut commit = || verdict.commit(&mut pairs, ended);
+        let mut settle = || {
+            self.settle();
+            self.keep_order();
+        };
+        if is_large {
+            join(commit, settle);
+        } else {
+            commit();
+            settle();
         }
-        stopped.sort_unstable();
-        for &key in &verdict.starting {
-            let (a, b) = unpack(key);
-            self.pairs.insert_new(a, b);
-        }
-        merge(&stopped, &verdict.starting)
+        (self.pairs, self.verdict) = (pairs, verdict);
     }
 
     /// Declares the present boxes those of before.
@@ -170,14 +151,59 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.marks[id as usize] = 0;
         }
         self.changes.clear();
+        self.searched.clear();
         self.moving.settle();
         self.still.settle();
     }
 }
 
+/// Runs both, on two threads if there are several.
+fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    #[cfg(feature = "parallel")]
+    rayon::join(one, other);
+    #[cfg(not(feature = "parallel"))]
+    {
+        one();
+        other();
+    }
+}
+
+impl Verdict {
+    /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
+    /// place of one that stops, so that no third one moves.
+    fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
+        let Self { starting, stopped, events } = self;
+        let mut started = 0;
+        stopped.clear();
+        for chunk in ended.chunks(AT_ONCE) {
+            pairs.fetch(chunk);
+            pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
+            for &key in chunk {
+                let (a, b) = unpack(key);
+                // A pair that the filter refused is not there.
+                let was_there = match starting.get(started) {
+                    Some(&start) => pairs.replace((a, b), unpack(start)).is_some(),
+                    None => pairs.remove(a, b).is_some(),
+                };
+                if was_there {
+                    stopped.push(key);
+                    started = starting.len().min(started + 1);
+                }
+            }
+        }
+        for chunk in starting[started..].chunks(AT_ONCE) {
+            pairs.fetch(chunk);
+            for (a, b) in chunk.iter().copied().map(unpack) {
+                pairs.insert_new(a, b);
+            }
+        }
+        merge(stopped, starting, events);
+    }
+}
+
 /// Two ascending lists as one: stopped pairs with `false`, started ones with `true`.
-fn merge(stopped: &[u64], started: &[u64]) -> Vec<(u64, bool)> {
-    let mut events = Vec::with_capacity(stopped.len() + started.len());
+fn merge(stopped: &[u64], started: &[u64], events: &mut Vec<(u64, bool)>) {
+    events.clear();
     let mut rest = started.iter().peekable();
     for &stop in stopped {
         while let Some(&start) = rest.next_if(|&&start| start < stop) {
@@ -186,5 +212,4 @@ fn merge(stopped: &[u64], started: &[u64]) -> Vec<(u64, bool)> {
         events.push((stop, false));
     }
     events.extend(rest.map(|&start| (start, true)));
-    events
 }

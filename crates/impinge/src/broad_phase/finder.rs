@@ -1,8 +1,10 @@
 //! The broad phase without the user's data: numbers and boxes in, changes of pairs out.
 
 use super::BroadPhaseError;
+use super::events::Verdict;
+use super::sieve::{Kept, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::bvh::{Bounds, Joiner, Lanes, NONE, Tree};
+use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::math::Real;
 use crate::pairs::PairTable;
 
@@ -26,9 +28,9 @@ pub(super) const AGAIN: u8 = 2;
 
 /// A box to be given to an object at the next update; the id is [`NONE`] if it was removed since.
 #[derive(Clone, Copy, Debug)]
-struct Waiting<N: Real, const D: usize> {
-    id: u32,
-    aabb: Aabb<N, D>,
+pub(super) struct Waiting<N: Real, const D: usize> {
+    pub(super) id: u32,
+    pub(super) aabb: Aabb<N, D>,
 }
 
 /// Keeps the pairs of objects whose loosened boxes overlap. Objects are dense small numbers.
@@ -46,13 +48,15 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// As given, at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// The loosened box at the last update, for objects marked as changed.
+    /// The loosened box at the last update, for unbounded objects marked as changed.
     pub(super) previous: Vec<Bounds<D>>,
     pub(super) homes: Vec<Home>,
     pub(super) marks: Vec<u8>,
     /// The update that last changed the loosened box.
     pub(super) last_change: Vec<u32>,
     waiting: Vec<Waiting<N, D>>,
+    /// Memory for places in `waiting`.
+    leavers: Vec<u32>,
     /// Where an object stands in `waiting`, or [`NONE`].
     waiting_at: Vec<u32>,
     /// The objects marked as changed, each once.
@@ -64,7 +68,14 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) still: Tree<D>,
     pub(super) unbounded: Vec<u32>,
     pub(super) pairs: PairTable,
-    pub(super) joiner: Joiner,
+    pub(super) joiner: Joiner<D>,
+    /// Objects whose pairs are to be looked through for those that ended: what the join sees of
+    /// them is not enough.
+    pub(super) searched: Vec<u32>,
+    /// Memory for an update.
+    pub(super) resting: Vec<u32>,
+    pub(super) found: Changes,
+    pub(super) verdict: Verdict,
     pub(super) lanes: Lanes,
     /// Updates so far; wraps.
     pub(super) clock: u32,
@@ -96,6 +107,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             marks: Vec::new(),
             last_change: Vec::new(),
             waiting: Vec::new(),
+            leavers: Vec::new(),
             waiting_at: Vec::new(),
             changes: Vec::new(),
             again: Vec::new(),
@@ -105,6 +117,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             unbounded: Vec::new(),
             pairs: PairTable::new(),
             joiner: Joiner::default(),
+            searched: Vec::new(),
+            resting: Vec::new(),
+            found: Changes::default(),
+            verdict: Verdict::default(),
             lanes,
             clock: 0,
             cursor: 0,
@@ -211,34 +227,57 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Applies the boxes that wait, in the order in which they came.
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
-        for &Waiting { id, aabb } in waiting.iter().filter(|waiting| waiting.id != NONE) {
-            let index = id as usize;
-            self.waiting_at[index] = NONE;
-            self.exact[index] = aabb;
-            let tight = Bounds::enclosing(&aabb);
-            let stays = match self.homes[index] {
-                Home::Nowhere => false,
-                Home::Moving | Home::Still => self.loose[index].contains(&tight),
-                Home::Unbounded => self.loose[index].contains(&tight) && !tight.is_finite(),
-            };
-            if !stays {
-                self.move_to(id, Bounds::enclosing(&aabb.loosened(self.margin)));
-            }
+        let mut leavers = core::mem::take(&mut self.leavers);
+        self.list_leavers(&waiting, &mut leavers);
+        for &at in &leavers {
+            let Waiting { id, aabb } = &waiting[at as usize];
+            self.leave_loose(*id, aabb);
         }
         waiting.clear();
-        self.waiting = waiting;
+        (self.waiting, self.leavers) = (waiting, leavers);
     }
 
-    fn move_to(&mut self, id: u32, loose: Bounds<D>) {
+    /// Stores the exact boxes and lists, by place in the list of those that wait, the objects that
+    /// leave their loosened boxes or have none in a tree.
+    fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
+        leavers.clear();
+        leavers.resize(waiting.len(), 0);
+        let kept = Kept { homes: &self.homes, loose: &self.loose };
+        let sieve = Sieve { first: 0, exact: &mut self.exact, waiting_at: &mut self.waiting_at };
+        let count = sieve.run(&kept, waiting, 0, leavers);
+        leavers.truncate(count);
+    }
+
+    /// Gives an object that left it another loosened box.
+    #[inline]
+    fn leave_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
-        let was_nowhere = self.homes[index] == Home::Nowhere;
-        let before = if was_nowhere { Bounds::NOWHERE } else { self.loose[index] };
-        self.mark(id, CHANGED, before);
+        let loose = Bounds::enclosing(&aabb.loosened(self.margin));
+        if self.homes[index] == Home::Moving && loose.is_finite() {
+            // The tree knows the box of before, and fetches the new one in its refit.
+            self.last_change[index] = self.clock;
+            self.mark(id, CHANGED);
+            self.loose[index] = loose;
+            return self.moving.set_later(id);
+        }
+        let tight = Bounds::enclosing(aabb);
+        let is_unbounded = self.homes[index] == Home::Unbounded && !tight.is_finite();
+        if !(is_unbounded && self.loose[index].contains(&tight)) {
+            self.last_change[index] = self.clock;
+            self.move_home(id, loose);
+        }
+    }
+
+    /// Moves an object to the tree of moving ones or to the list of unbounded ones.
+    #[inline(never)]
+    fn move_home(&mut self, id: u32, loose: Bounds<D>) {
+        let index = id as usize;
+        self.previous[index] = self.before(id);
+        self.mark(id, CHANGED);
         self.loose[index] = loose;
-        self.last_change[index] = self.clock;
         let is_bounded = loose.is_finite();
-        if is_bounded && self.homes[index] == Home::Moving {
-            return self.moving.set(id, &loose);
+        if !is_bounded || self.homes[index] == Home::Unbounded {
+            self.searched.push(id);
         }
         self.leave_home(id);
         if is_bounded {
@@ -250,14 +289,27 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Marks the object; `before` counts if it is the first mark since the last update.
-    fn mark(&mut self, id: u32, mark: u8, before: Bounds<D>) {
+    /// The loosened box at the last update.
+    pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
-        if self.marks[index] & CHANGED == 0 {
-            self.previous[index] = before;
+        let in_tree = match self.homes[index] {
+            Home::Nowhere => Some(Bounds::NOWHERE),
+            Home::Moving => self.moving.before(id),
+            Home::Still => self.still.before(id),
+            Home::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
+            Home::Unbounded => Some(self.loose[index]),
+        };
+        // What is empty there was not: an unbounded box must not meet it.
+        in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
+    }
+
+    #[inline]
+    fn mark(&mut self, id: u32, mark: u8) {
+        let marks = &mut self.marks[id as usize];
+        if *marks & CHANGED == 0 {
             self.changes.push(id);
         }
-        self.marks[index] |= CHANGED | mark;
+        *marks |= CHANGED | mark;
     }
 
     /// Makes all pairs of the objects that are to be asked about again begin again.
@@ -273,8 +325,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
                 Home::Still => self.still.forget_before(id),
                 Home::Unbounded => {}
             }
-            self.mark(id, AGAIN, Bounds::NOWHERE);
+            self.mark(id, AGAIN);
             self.previous[id as usize] = Bounds::NOWHERE;
+            self.searched.push(id);
         }
         again.clear();
         self.again = again;
@@ -321,6 +374,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 }
 
 /// A count as an id.
+#[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("fewer than 2^32 objects")
 }

@@ -146,6 +146,12 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&hits, max_time, visit);
     }
 
+    /// [`Self::visit_ray`] in no promised order, for those who sort what they find: near ones first is
+    /// better. The default is [`Self::visit_ray`].
+    fn visit_ray_roughly(&self, ray: &BV::Ray, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
+        self.visit_ray(ray, max_time, visit);
+    }
+
     /// Calls `visit` for the objects whose exact volumes, as of the last update, are at most
     /// `max_distance` from `bv`, the nearest first, ties by uid. `visit` returns the new
     /// `max_distance`; a negative one ends the search at once.

@@ -21,6 +21,7 @@ mod handle;
 mod interface;
 mod rest;
 mod search;
+mod sieve;
 
 #[cfg(all(test, feature = "f64"))]
 mod tests;

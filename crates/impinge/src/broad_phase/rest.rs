@@ -14,12 +14,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// trees in order. Looks at a window of objects that advances with each update, so that the
     /// outcome depends on the calls made alone.
     pub(super) fn keep_order(&mut self) {
-        let resting = self.resting();
+        let mut resting = core::mem::take(&mut self.resting);
+        self.list_resting(&mut resting);
         for &id in &resting {
             self.moving.remove(id);
             self.still.insert_still(id, &self.loose[id as usize]);
             self.homes[id as usize] = Home::Still;
         }
+        self.resting = resting;
         for tree in [&mut self.moving, &mut self.still] {
             tree.refit();
             tree.settle();
@@ -27,10 +29,11 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    fn resting(&mut self) -> Vec<u32> {
+    fn list_resting(&mut self, resting: &mut Vec<u32>) {
         let count = self.homes.len();
+        resting.clear();
         if self.moving.is_empty() {
-            return Vec::new();
+            return;
         }
         let window = (count / WINDOW + 1).min(count);
         let start = self.cursor;
@@ -39,6 +42,6 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             let rest = self.clock.wrapping_sub(self.last_change[id as usize]);
             self.homes[id as usize] == Home::Moving && rest >= REST
         };
-        (start..start + window).map(|at| small(at % count)).filter(is_resting).collect()
+        resting.extend((start..start + window).map(|at| small(at % count)).filter(is_resting));
     }
 }

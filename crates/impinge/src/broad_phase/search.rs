@@ -34,6 +34,16 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
+    /// [`Self::visit_ray`] in no exact order, but near ones first.
+    pub fn visit_ray_roughly(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().near_first(&Sweep::along(ray), max_time, visit);
+    }
+
     /// Calls `visit` with each object whose exact box is at most `max_distance` from `aabb` and the
     /// distance, in ascending order of (distance, id); `visit` returns the new `max_distance`, which
     /// never grows.

@@ -27,8 +27,8 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| below(aabb.mins()[axis].as_f64())),
-            hi: core::array::from_fn(|axis| -below(-aabb.maxs()[axis].as_f64()) + 0.0),
+            lo: core::array::from_fn(|axis| below(aabb.mins()[axis])),
+            hi: core::array::from_fn(|axis| -below(-aabb.maxs()[axis]) + 0.0),
         }
     }
 
@@ -36,8 +36,8 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| below(point[axis].as_f64())),
-            hi: core::array::from_fn(|axis| -below(-point[axis].as_f64()) + 0.0),
+            lo: core::array::from_fn(|axis| below(point[axis])),
+            hi: core::array::from_fn(|axis| -below(-point[axis]) + 0.0),
         }
     }
 
@@ -124,13 +124,21 @@ impl<const D: usize> Bounds<D> {
 /// `Real::as_f32_below`, with selections in place of branches: whether a number is rounded up or
 /// down to `f32` is a coin toss that no processor foresees. A zero is positive.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, then corrects")]
-fn below(x: f64) -> f32 {
-    let nearest = x as f32 + 0.0;
+fn below<N: Real>(x: N) -> f32 {
+    let nearest = x.as_f32() + 0.0;
+    if holds_all_of::<N>() {
+        return nearest;
+    }
     let bits = nearest.to_bits();
     let smaller = if nearest > 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) };
     let smaller = if nearest == 0.0 { 0x8000_0001 } else { smaller };
-    f32::from_bits(if f64::from(nearest) > x { smaller } else { bits })
+    f32::from_bits(if f64::from(nearest) > x.as_f64() { smaller } else { bits })
+}
+
+/// `f32` rounds no number of this kind; known when compiled.
+#[inline]
+fn holds_all_of<N: Real>() -> bool {
+    N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
 }
 
 #[cfg(test)]
@@ -146,7 +154,12 @@ mod tests {
             assert_eq!(-below(-x), x.as_f32_above(), "{x} upwards");
         }
         assert!(below(f64::NAN).is_nan(), "NaN stays");
-        assert_eq!(below(-0.0).to_bits(), 0, "zeros are positive");
+        assert_eq!(below(-0.0_f64).to_bits(), 0, "zeros are positive");
+        assert_eq!(below(-0.0_f32).to_bits(), 0, "those of f32 too");
+        assert!(
+            below(f32::NAN).is_nan() && below(-0.1_f32).to_bits() == (-0.1_f32).to_bits(),
+            "kept"
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The pairs that began since trees were settled.
+//! The pairs that began and ended since trees were settled.
 //!
 //! Two ways to the same answer, chosen by how much changed:
 //! * many changes: a join of the tree with itself (or of two trees), layer by layer. The tasks of
@@ -10,14 +10,16 @@
 //! Lists are cut into chunks of constant size whose outputs are concatenated in order, so that any
 //! number of threads yields the same list.
 
+use core::ops::Range;
+
 use super::kernel::{Kernel, TaskList, with_kernel};
 use super::tree::small;
-use super::{LANES, Tree};
+use super::{Block, Bounds, LANES, Tree};
 use crate::pairs::pack;
 
 /// Tasks per chunk in the upper layers, and block pairs per chunk in the lowest.
 const UPPER_CHUNK: usize = 256;
-const LEAF_CHUNK: usize = 2048;
+const LEAF_CHUNK: usize = 512;
 /// Up to one object in so many changed, queries beat the join.
 const QUERIES_BELOW: usize = 4;
 
@@ -29,99 +31,122 @@ pub(super) struct Sides<'a, const D: usize> {
     pub(super) is_self: bool,
 }
 
-/// Finds beginnings; keeps the task lists from call to call.
+/// Pairs of ids, [`pack`]ed, that differ between the boxes of before and those of now.
 #[derive(Clone, Debug, Default)]
-pub struct Joiner {
+pub struct Changes {
+    /// Overlap now and did not before.
+    pub began: Vec<u64>,
+    /// Overlapped before and do not now.
+    pub ended: Vec<u64>,
+}
+
+impl Changes {
+    /// Forgets every pair and keeps the memory.
+    pub fn clear(&mut self) {
+        self.began.clear();
+        self.ended.clear();
+    }
+}
+
+/// Finds what began and ended; keeps the task lists from call to call.
+#[derive(Clone, Debug, Default)]
+pub struct Joiner<const D: usize> {
     tasks: TaskList,
     next: TaskList,
     found: TaskList,
-    scratch: Scratch,
+    /// Slots asked about.
+    slots: Vec<u32>,
+    desks: Desks<D>,
 }
 
 /// Lists for the work inside a chunk.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct Scratch<const D: usize> {
     pub(super) tasks: TaskList,
     pub(super) next: TaskList,
-    met: Vec<Met>,
+    /// The boxes asked about.
+    pub(super) reaches: Vec<Bounds<D>>,
 }
 
-/// A slot and the lanes of a block that it overlaps.
-#[derive(Clone, Copy, Debug, Default)]
-struct Met {
-    slot: u32,
-    block: u32,
-    mask: u32,
+/// Where chunks are worked on: the first list is for work on one thread, the others for one chunk
+/// each.
+#[derive(Clone, Debug, Default)]
+struct Desks<const D: usize> {
+    scratch: Scratch<D>,
+    #[cfg(feature = "parallel")]
+    parallel: Vec<(TaskList, Scratch<D>)>,
 }
 
-impl Joiner {
-    /// Appends the pairs within the tree that began, each once, as [`pack`]ed ids in no
-    /// particular (but always the same) order. The tree must be refitted.
-    pub fn self_join<const D: usize>(&mut self, tree: &Tree<D>, began: &mut Vec<u64>) {
+impl<const D: usize> Joiner<D> {
+    /// Appends the pairs within the tree that began or ended, each once, in no particular (but
+    /// always the same) order. Of those that ended, some of [`Tree::strayed`] objects may be
+    /// missing. The tree must be refitted.
+    pub fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = Sides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
             self.ask_changed(sides);
         } else {
             self.join(sides);
         }
-        self.report(sides, began);
+        self.report(sides, changes);
     }
 
-    /// Appends the pairs of an object of `first` with one of `second` that began, like
+    /// Appends the pairs of an object of `first` with one of `second` that began or ended, like
     /// [`Self::self_join`].
-    pub fn cross_join<const D: usize>(
-        &mut self,
-        first: &Tree<D>,
-        second: &Tree<D>,
-        began: &mut Vec<u64>,
-    ) {
+    pub fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
         let sides = Sides { first, second, is_self: false };
         let flipped = Sides { first: second, second: first, is_self: false };
         let all = first.live + second.live;
         let few = (first.changed + second.changed) * QUERIES_BELOW < all;
         match (first.changed, second.changed) {
             (0, 0) => {}
-            (_, 0) if few => self.ask_and_report(sides, began),
-            (0, _) if few => self.ask_and_report(flipped, began),
+            (_, 0) if few => self.ask_and_report(sides, changes),
+            (0, _) if few => self.ask_and_report(flipped, changes),
             _ => {
                 self.join(sides);
-                self.report(sides, began);
+                self.report(sides, changes);
             }
         }
     }
 
-    fn ask_and_report<const D: usize>(&mut self, sides: Sides<'_, D>, began: &mut Vec<u64>) {
+    fn ask_and_report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
         self.ask_changed(sides);
-        self.report(sides, began);
+        self.report(sides, changes);
     }
 
-    /// The found pairs of slots as pairs of ids.
-    fn report<const D: usize>(&mut self, sides: Sides<'_, D>, began: &mut Vec<u64>) {
+    /// The found pairs of slots as pairs of ids, by what became of them.
+    fn report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
         let (first, second) = self.found.parts();
-        let ids = |(&a, &b): (&u32, &u32)| {
-            pack(sides.first.ids[a as usize], sides.second.ids[b as usize])
-        };
-        began.extend(first.iter().zip(second).map(ids));
+        for (&a, &b) in first.iter().zip(second) {
+            let (a, b) = (a as usize, b as usize);
+            let key = pack(sides.first.ids[a], sides.second.ids[b]);
+            if sides.first.boxes[a].overlaps(&sides.second.boxes[b]) {
+                changes.began.push(key);
+            } else {
+                changes.ended.push(key);
+            }
+        }
         self.found.clear();
     }
 
     /// Asks the second tree about each changed box of the first; nothing in the second may have
     /// changed unless the two are one.
-    fn ask_changed<const D: usize>(&mut self, sides: Sides<'_, D>) {
-        let slots = sides.first.changed_slots();
-        if slots.is_empty() || sides.second.live == 0 {
-            return;
+    fn ask_changed(&mut self, sides: Sides<'_, D>) {
+        let mut slots = core::mem::take(&mut self.slots);
+        sides.first.list_changed_slots(&mut slots);
+        if !slots.is_empty() && sides.second.live > 0 {
+            let run = |range: Range<usize>, out: &mut TaskList, scratch: &mut Scratch<D>| {
+                with_kernel!(sides.first.lanes, kernel => {
+                    super::query::ask(kernel, sides, &slots[range], out, scratch);
+                });
+            };
+            let chunks = Chunks { count: slots.len(), size: UPPER_CHUNK };
+            chunks.run(&mut self.found, &mut self.desks, run);
         }
-        let run = |range: core::ops::Range<usize>, out: &mut TaskList, scratch: &mut Scratch| {
-            with_kernel!(sides.first.lanes, kernel => {
-                super::query::ask(kernel, sides, &slots[range], out, scratch);
-            });
-        };
-        let chunks = Chunks { count: slots.len(), size: UPPER_CHUNK };
-        chunks.run(&mut self.found, &mut self.scratch, run);
+        self.slots = slots;
     }
 
-    fn join<const D: usize>(&mut self, sides: Sides<'_, D>) {
+    fn join(&mut self, sides: Sides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
             return;
@@ -132,28 +157,28 @@ impl Joiner {
         for layer in (1..=top).rev() {
             self.next.clear();
             let tasks = &self.tasks;
-            let run = |range: core::ops::Range<usize>, out: &mut TaskList, _: &mut Scratch| {
+            let run = |range: Range<usize>, out: &mut TaskList, _: &mut Scratch<D>| {
                 with_kernel!(sides.first.lanes, kernel => {
                     expand(kernel, sides, layer, tasks.part(range), out);
                 });
             };
             let chunks = Chunks { count: tasks.len(), size: UPPER_CHUNK };
-            chunks.run(&mut self.next, &mut self.scratch, run);
+            chunks.run(&mut self.next, &mut self.desks, run);
             core::mem::swap(&mut self.tasks, &mut self.next);
         }
         let tasks = &self.tasks;
-        let run = |range: core::ops::Range<usize>, out: &mut TaskList, scratch: &mut Scratch| {
+        let run = |range: Range<usize>, out: &mut TaskList, scratch: &mut Scratch<D>| {
             with_kernel!(sides.first.lanes, kernel => {
                 join_leaves(kernel, sides, tasks.part(range), out, scratch);
             });
         };
         let chunks = Chunks { count: tasks.len(), size: LEAF_CHUNK };
-        chunks.run(&mut self.found, &mut self.scratch, run);
+        chunks.run(&mut self.found, &mut self.desks, run);
     }
 
     /// The first tasks: all pairs of blocks at the highest layer that both trees have. One of the
     /// trees has a single block there.
-    fn seed<const D: usize>(&mut self, sides: Sides<'_, D>, top: usize) {
+    fn seed(&mut self, sides: Sides<'_, D>, top: usize) {
         self.tasks.clear();
         for a in 0..sides.first.layers[top].blocks.len() {
             for b in 0..sides.second.layers[top].blocks.len() {
@@ -171,39 +196,42 @@ struct Chunks {
 
 impl Chunks {
     /// Appends to `out` what `work` makes of every chunk, in the order of the chunks.
-    fn run<F>(&self, out: &mut TaskList, scratch: &mut Scratch, work: F)
+    fn run<const D: usize, F>(&self, out: &mut TaskList, desks: &mut Desks<D>, work: F)
     where
-        F: Fn(core::ops::Range<usize>, &mut TaskList, &mut Scratch) + Sync,
+        F: Fn(Range<usize>, &mut TaskList, &mut Scratch<D>) + Sync,
     {
         #[cfg(feature = "parallel")]
         if self.count >= super::PARALLEL_FROM && rayon::current_num_threads() > 1 {
-            return self.run_parallel(out, work);
+            return self.run_parallel(out, &mut desks.parallel, work);
         }
         for chunk in 0..self.count.div_ceil(self.size) {
-            work(self.range(chunk), out, scratch);
+            work(self.range(chunk), out, &mut desks.scratch);
         }
     }
 
-    fn range(&self, chunk: usize) -> core::ops::Range<usize> {
+    fn range(&self, chunk: usize) -> Range<usize> {
         chunk * self.size..self.count.min((chunk + 1) * self.size)
     }
 
     #[cfg(feature = "parallel")]
-    fn run_parallel<F>(&self, out: &mut TaskList, work: F)
-    where
-        F: Fn(core::ops::Range<usize>, &mut TaskList, &mut Scratch) + Sync,
+    fn run_parallel<const D: usize, F>(
+        &self,
+        out: &mut TaskList,
+        desks: &mut Vec<(TaskList, Scratch<D>)>,
+        work: F,
+    ) where
+        F: Fn(Range<usize>, &mut TaskList, &mut Scratch<D>) + Sync,
     {
         use rayon::prelude::*;
-        let one = |scratch: &mut Scratch, chunk: usize| {
-            let mut list = TaskList::default();
-            work(self.range(chunk), &mut list, scratch);
-            list
-        };
-        let chunks = 0..self.count.div_ceil(self.size);
-        let lists: Vec<TaskList> = chunks.into_par_iter().map_init(Scratch::default, one).collect();
-        for list in &lists {
-            out.append(list);
+        let chunks = self.count.div_ceil(self.size);
+        if desks.len() < chunks {
+            desks.resize_with(chunks, Default::default);
         }
+        desks[..chunks].par_iter_mut().enumerate().for_each(|(chunk, (list, scratch))| {
+            list.clear();
+            work(self.range(chunk), list, scratch);
+        });
+        desks[..chunks].iter().for_each(|(list, _)| out.append(list));
     }
 }
 
@@ -217,9 +245,9 @@ fn expand<K: Kernel, const D: usize>(
     out: &mut TaskList,
 ) {
     let (layer_a, layer_b) = (&sides.first.layers[layer], &sides.second.layers[layer]);
-    let (blocks_a, changed_a) = (&layer_a.blocks[..], &layer_a.changed[..]);
-    let (blocks_b, changed_b) = (&layer_b.blocks[..], &layer_b.changed[..]);
-    let (bounds_b, children) = (&layer_b.bounds[..], &sides.first.layers[layer - 1].bounds[..]);
+    let (blocks_a, changed_a) = (&layer_a.reaches[..], &layer_a.changed[..]);
+    let (blocks_b, changed_b) = (&layer_b.reaches[..], &layer_b.changed[..]);
+    let (bounds_b, children) = (&layer_b.reach[..], &sides.first.layers[layer - 1].reach[..]);
     for (&a, &b) in first.iter().zip(second) {
         let block_b = &blocks_b[b as usize];
         let changed_a = u32::from(changed_a[a as usize]);
@@ -241,60 +269,82 @@ fn expand<K: Kernel, const D: usize>(
     }
 }
 
-/// Turns pairs of leaf blocks into pairs of slots that began.
+/// Turns pairs of leaf blocks into pairs of slots that began or ended.
 #[inline(always)]
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
     sides: Sides<'_, D>,
     (first, second): (&[u32], &[u32]),
     out: &mut TaskList,
-    scratch: &mut Scratch,
+    scratch: &mut Scratch<D>,
 ) {
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
-    let (blocks_b, changed_b) = (&leaves_b.blocks[..], &leaves_b.changed[..]);
-    let (bounds_b, boxes) = (&leaves_b.bounds[..], &sides.first.boxes[..]);
-    let Scratch { tasks: lanes, met, .. } = scratch;
+    let (before_a, changed_b) = (&sides.first.before[..], &leaves_b.changed[..]);
+    let (reach_b, boxes) = (&leaves_b.reach[..], Boxes::of(sides));
+    let lanes = &mut scratch.tasks;
     lanes.clear();
     for (&a, &b) in first.iter().zip(second) {
-        let mut mask = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
+        let reach = &reach_b[b as usize];
+        let changed = u32::from(changed_a[a as usize]);
+        let mut mask = kernel.overlaps(&blocks_a[a as usize], reach);
+        if changed != 0 {
+            mask |= kernel.overlaps(&before_a[a as usize], reach);
+        }
         if changed_b[b as usize] == 0 {
-            mask &= u32::from(changed_a[a as usize]);
+            mask &= changed;
         }
         kernel.push(lanes, b, a * small(LANES), mask);
     }
     let (blocks, slots) = lanes.parts();
-    met.clear();
-    met.resize(blocks.len(), Met::default());
-    let mut count = 0;
     for (&b, &slot) in blocks.iter().zip(slots) {
-        let (a, lane) = (slot / small(LANES), slot % small(LANES));
-        let mask = kernel.overlaps(&blocks_b[b as usize], &boxes[slot as usize]);
-        // Arithmetic in place of branches: how these go, no processor foresees.
-        let is_diagonal = sides.is_self & (a == b);
-        let upper = 0xfffe << lane | u32::from(is_diagonal).wrapping_sub(1);
-        let is_changed = u32::from(changed_a[a as usize]) >> lane & 1;
-        let changed = u32::from(changed_b[b as usize]) | 0_u32.wrapping_sub(is_changed);
-        let mask = mask & upper & changed;
-        met[count] = Met { slot, block: b, mask };
-        count += usize::from(mask != 0);
-    }
-    for &Met { slot, block, mask } in &met[..count] {
-        let mask = mask & !overlapped_before(kernel, sides, slot, block);
+        // Arithmetic in place of a branch: how it goes, no processor foresees.
+        let is_diagonal = sides.is_self & (slot / small(LANES) == b);
+        let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
+        let mask = boxes.differing(kernel, slot, b) & upper;
         if mask != 0 {
-            kernel.push(out, slot, block * small(LANES), mask);
+            kernel.push(out, slot, b * small(LANES), mask);
         }
     }
 }
 
-/// The lanes of block `b` of the second tree that overlapped the first tree's slot before.
-#[inline(always)]
-pub(super) fn overlapped_before<K: Kernel, const D: usize>(
-    kernel: K,
-    sides: Sides<'_, D>,
-    slot: u32,
-    b: u32,
-) -> u32 {
-    let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-    kernel.overlaps(&sides.second.before[b as usize], &sides.first.before[block].lane(lane))
+/// The boxes of both sides, now and before.
+#[derive(Clone, Copy)]
+pub(super) struct Boxes<'a, const D: usize> {
+    now_a: &'a [Bounds<D>],
+    before_a: &'a [Block<D>],
+    now_b: &'a [Block<D>],
+    before_b: &'a [Block<D>],
+}
+
+impl<'a, const D: usize> Boxes<'a, D> {
+    #[inline(always)]
+    pub(super) fn of(sides: Sides<'a, D>) -> Self {
+        let (first, second) = (sides.first, sides.second);
+        let (now_b, before_b) = (&second.layers[0].blocks[..], &second.before[..]);
+        // Of equal length: told once rather than asked for each pair.
+        let now_b = &now_b[..before_b.len()];
+        Self { now_a: &first.boxes, before_a: &first.before, now_b, before_b }
+    }
+
+    /// The lanes of block `b` of the second tree whose overlap with the first tree's slot is not
+    /// what it was before. None where neither changed.
+    #[inline(always)]
+    pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> u32 {
+        let (slot, b) = (slot as usize, b as usize);
+        let before = self.before_a[slot / LANES].lane(slot % LANES);
+        kernel.overlaps(&self.now_b[b], &self.now_a[slot])
+            ^ kernel.overlaps(&self.before_b[b], &before)
+    }
+}
+
+impl<const D: usize> Tree<D> {
+    /// The box around an object now and before, unless it strayed.
+    #[inline]
+    pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
+        let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
+        let (now, before) = (&self.boxes[slot as usize], self.before[block].lane(lane));
+        let is_near = self.layers[0].reach[block].contains(&before);
+        if is_near { now.merged(&before) } else { *now }
+    }
 }

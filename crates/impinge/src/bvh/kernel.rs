@@ -6,6 +6,8 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 
+use super::slabs::Slabs;
+use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
 
 /// Which vectors the kernels use. The results do not depend on it.
@@ -142,6 +144,20 @@ pub(super) trait Kernel: Copy {
     /// The smallest box around all lanes.
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D>;
 
+    /// The lanes that the moving box may enter by `limit`, and when, or a little before. Never
+    /// without a lane that it enters.
+    fn enter<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32;
+
+    /// The triangles that the line may cross between zero and `limit`. Never without one of which an
+    /// exact test might say so.
+    fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32;
+
     /// Appends `(first, base + lane)` for every lane of the mask, in ascending order.
     fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32);
 }
@@ -157,6 +173,20 @@ impl Kernel for Scalar {
 
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D> {
         (0..LANES).fold(Bounds::EMPTY, |all, lane| all.merged(&block.lane(lane)))
+    }
+
+    fn enter<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        self.enter_block(block, slabs, limit, keys)
+    }
+
+    fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32 {
+        self.crossed_triangles(triangles, line, limit)
     }
 
     fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32) {
@@ -206,6 +236,22 @@ impl<S: Simd> Kernel for Wide<S> {
     }
 
     #[inline(always)]
+    fn enter<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        self.enter_block(block, slabs, limit, keys)
+    }
+
+    #[inline(always)]
+    fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32 {
+        self.crossed_triangles(triangles, line, limit)
+    }
+
+    #[inline(always)]
     fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32) {
         if !packs_lanes(self.0.level()) {
             return push_bits(list, first, base, mask);
@@ -250,7 +296,7 @@ fn packs_lanes(level: Level) -> bool {
 /// The lower half of a mask of sixteen lanes.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "sixteen lanes make sixteen bits")]
-const fn low_half(mask: u64) -> u32 {
+pub(super) const fn low_half(mask: u64) -> u32 {
     mask as u32
 }
 

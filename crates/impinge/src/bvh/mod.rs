@@ -12,10 +12,11 @@
 //! Slots are in a balanced k-d order, so that a block holds neighbours; which lane an object has
 //! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set`],
 //! [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`], then the [`Joiner`] for the pairs that
-//! began, then [`Tree::settle`] and [`Tree::maintain`].
+//! began and ended, then [`Tree::settle`] and [`Tree::maintain`].
 //!
 //! **No set of pairs is kept.** A pair began exactly if the boxes overlap and those of before did
-//! not; so the join compares the two and reports beginnings only.
+//! not, and ended if it is the other way round; so the join compares the two and reports what
+//! differs.
 //!
 //! The tree knows no shapes and no user data. Its boxes are always `f32`; [`Bounds::enclosing`]
 //! rounds outwards. Every result is a function of the calls made: it does not depend on the
@@ -26,11 +27,16 @@ mod bounds;
 mod farthest;
 mod join;
 mod kernel;
+mod near_first;
 mod order;
 mod ordered;
 mod query;
+mod refit;
 mod schedule;
+mod slabs;
+mod still;
 mod tree;
+mod triangles;
 mod validate;
 mod visit;
 
@@ -39,11 +45,13 @@ mod tests;
 
 pub use block::{Block, LANES};
 pub use bounds::Bounds;
-pub use join::Joiner;
+pub use join::{Changes, Joiner};
 pub use kernel::Lanes;
+pub(crate) use near_first::RayProbe;
 pub use ordered::{Frontier, Keys};
+pub(crate) use slabs::Slabs;
 pub use tree::{NONE, Tree};
+pub(crate) use triangles::{ShearedLine, Triangles};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
-#[cfg(feature = "parallel")]
 pub(crate) const PARALLEL_FROM: usize = 2000;

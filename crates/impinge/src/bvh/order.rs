@@ -73,7 +73,7 @@ pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
 
 /// What moves with an object from slot to slot.
 #[derive(Clone, Copy, Debug)]
-struct Load<const D: usize> {
+pub(super) struct Load<const D: usize> {
     bounds: Bounds<D>,
     before: Bounds<D>,
     id: u32,
@@ -81,23 +81,26 @@ struct Load<const D: usize> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// The live objects in the slots from `start` on, in slot order.
-    pub(super) fn items_from(&self, start: usize) -> Vec<Item<D>> {
+    /// Lists the live objects in the slots from `start` on, in slot order.
+    pub(super) fn list_items(&self, start: usize, items: &mut Vec<Item<D>>) {
         let slots = self.ids[start..self.end].iter().zip(&self.boxes[start..self.end]);
         let live = slots.filter(|&(&id, _)| id != NONE);
-        live.map(|(&id, bounds)| Item { center: bounds.center(), id }).collect()
+        items.clear();
+        items.extend(live.map(|(&id, bounds)| Item { center: bounds.center(), id }));
     }
 
     /// Gives the slots from `start` (a block boundary) on to the listed ids, in that order, and
     /// drops the blocks left over. Every object in those slots must be listed once.
-    pub(super) fn rearrange(&mut self, start: usize, ids: impl ExactSizeIterator<Item = u32>) {
-        let count = ids.len();
-        let loads: Vec<Load<D>> = ids.map(|id| self.load(id)).collect();
+    pub(super) fn rearrange(&mut self, start: usize, ids: &[u32]) {
+        let mut loads = core::mem::take(&mut self.loads);
+        loads.clear();
+        loads.extend(ids.iter().map(|&id| self.load(id)));
         self.layers[0].changed[start / LANES..].fill(0);
         for (offset, load) in loads.iter().enumerate() {
             self.unload(start + offset, load);
         }
-        self.end = start + count;
+        self.loads = loads;
+        self.end = start + ids.len();
         self.drop_blocks_after_end();
         for block in start / LANES..self.before.len() {
             self.touch(block);

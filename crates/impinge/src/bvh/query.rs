@@ -4,12 +4,12 @@
 //! tests of one layer do not depend on each other.
 
 use super::LANES;
-use super::join::{Scratch, Sides, overlapped_before};
+use super::join::{Boxes, Scratch, Sides};
 use super::kernel::Kernel;
 use super::tree::small;
 
-/// Appends `(slot of the first tree, slot of the second)` for each pair that began with one of
-/// the listed changed slots. In a tree of its own, a pair of two changed slots is reported by the
+/// Appends `(slot of the first tree, slot of the second)` for each pair that began or ended with one
+/// of the listed changed slots. In a tree of its own, a pair of two changed slots is reported by the
 /// lower one.
 #[inline(always)]
 pub(super) fn ask<K: Kernel, const D: usize>(
@@ -17,34 +17,34 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     sides: Sides<'_, D>,
     slots: &[u32],
     out: &mut super::kernel::TaskList,
-    scratch: &mut Scratch,
+    scratch: &mut Scratch<D>,
 ) {
     debug_assert!(!sides.second.is_stale, "queries need a refitted tree");
-    let Scratch { tasks, next, .. } = scratch;
+    let Scratch { tasks, next, reaches } = scratch;
     tasks.clear();
-    for &slot in slots {
-        tasks.push(slot, 0);
+    reaches.clear();
+    for (query, &slot) in (0..).zip(slots) {
+        tasks.push(query, 0);
+        reaches.push(sides.first.slot_reach(slot));
     }
     for layer in sides.second.layers.iter().skip(1).rev() {
         next.clear();
         let (queries, blocks) = tasks.parts();
-        for (&slot, &block) in queries.iter().zip(blocks) {
-            let query = &sides.first.boxes[slot as usize];
-            let mask = kernel.overlaps(&layer.blocks[block as usize], query);
-            kernel.push(next, slot, block * small(LANES), mask);
+        for (&query, &block) in queries.iter().zip(blocks) {
+            let mask = kernel.overlaps(&layer.reaches[block as usize], &reaches[query as usize]);
+            kernel.push(next, query, block * small(LANES), mask);
         }
         core::mem::swap(tasks, next);
     }
-    let leaves = &sides.second.layers[0];
+    let (leaves, boxes) = (&sides.second.layers[0], Boxes::of(sides));
     let (queries, blocks) = tasks.parts();
-    for (&slot, &block) in queries.iter().zip(blocks) {
-        let mut mask =
-            kernel.overlaps(&leaves.blocks[block as usize], &sides.first.boxes[slot as usize]);
+    for (&query, &block) in queries.iter().zip(blocks) {
+        let slot = slots[query as usize];
+        let mut mask = boxes.differing(kernel, slot, block);
         if sides.is_self {
             mask &= !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
         }
         if mask != 0 {
-            mask &= !overlapped_before(kernel, sides, slot, block);
             kernel.push(out, slot, block * small(LANES), mask);
         }
     }

@@ -6,7 +6,7 @@
 //! step depends on the time taken, so results are the same on every machine.
 
 use super::order::{Item, sort, split};
-use super::{LANES, NONE, Tree};
+use super::{LANES, Tree};
 
 /// Growth of the leaf surface per object that starts a renewal.
 const WORN: f64 = 1.2;
@@ -16,6 +16,8 @@ const LOOK_EVERY: u32 = 4;
 const SORTED_AT_ONCE: usize = 1024;
 /// The least number of items that a step handles, so that small trees renew in few steps.
 const LEAST_BUDGET: usize = 2048;
+/// One object in so many came or went elsewhere while the snapshot was sorted: it is worth nothing.
+const LATE: usize = 4;
 /// Objects that may come or go in any case before the order is renewed.
 const SLACK: usize = 64;
 
@@ -33,15 +35,39 @@ pub(super) struct Schedule<const D: usize> {
     parts: Vec<(usize, usize)>,
     /// Calls without a renewal; wraps.
     calls: u32,
+    /// Blocks were written to since the surface was looked at.
+    is_used: bool,
+    /// Objects that came, or went elsewhere, since the snapshot was taken: it knows nothing of where
+    /// they are. Some may be listed twice or have gone.
+    late: Vec<u32>,
+    /// Memory for a new order, and by id whether an object has its place in it.
+    order: Vec<u32>,
+    is_placed: Vec<bool>,
 }
 
 impl<const D: usize> Default for Schedule<D> {
     fn default() -> Self {
-        Self { base: None, ordered: 0, fresh: 0, snapshot: Vec::new(), parts: Vec::new(), calls: 0 }
+        Self {
+            base: None,
+            ordered: 0,
+            fresh: 0,
+            snapshot: Vec::new(),
+            parts: Vec::new(),
+            calls: 0,
+            is_used: true,
+            late: Vec::new(),
+            order: Vec::new(),
+            is_placed: Vec::new(),
+        }
     }
 }
 
 impl<const D: usize> Tree<D> {
+    /// Objects came since the last refit.
+    pub(super) const fn has_new(&self) -> bool {
+        self.end > self.schedule.fresh
+    }
+
     /// Sorts the objects that came since the last refit among themselves, or everything if they
     /// are a third of all.
     pub(super) fn sort_new(&mut self) {
@@ -50,19 +76,53 @@ impl<const D: usize> Tree<D> {
             self.rebuild();
         } else if new > LANES {
             let start = self.schedule.fresh / LANES * LANES;
-            let mut items = self.items_from(start);
+            let mut items = Vec::new();
+            self.list_items(start, &mut items);
             sort(&mut items);
-            self.rearrange(start, items.iter().map(|item| item.id));
+            let ids: Vec<u32> = items.iter().map(|item| item.id).collect();
+            self.rearrange(start, &ids);
         }
         self.schedule.fresh = self.end;
     }
 
+    /// Notes that boxes changed, so that the surface is worth a look.
+    pub(super) fn note_use(&mut self) {
+        self.schedule.is_used = true;
+    }
+
     /// Sorts everything at once.
     pub fn rebuild(&mut self) {
-        let mut items = self.items_from(0);
+        let mut items = core::mem::take(&mut self.schedule.snapshot);
+        self.list_items(0, &mut items);
         sort(&mut items);
-        self.rearrange(0, items.iter().map(|item| item.id));
-        self.schedule = Schedule { ordered: self.end, fresh: self.end, ..Schedule::default() };
+        let mut ids = core::mem::take(&mut self.schedule.order);
+        ids.clear();
+        ids.extend(items.iter().map(|item| item.id));
+        self.rearrange(0, &ids);
+        (self.schedule.snapshot, self.schedule.order) = (items, ids);
+        self.schedule.begin(self.end, self.end);
+    }
+
+    /// Notes that an object is not where a snapshot may have it.
+    #[inline]
+    pub(super) fn note_late(&mut self, id: u32) {
+        if !self.schedule.snapshot.is_empty() {
+            self.schedule.late.push(id);
+        }
+    }
+
+    /// Notes the same of all changed objects of blocks that strayed.
+    pub(super) fn note_strayed(&mut self) {
+        if !self.schedule.snapshot.is_empty() {
+            let mut late = core::mem::take(&mut self.schedule.late);
+            late.extend(self.strayed());
+            self.schedule.late = late;
+        }
+    }
+
+    /// All objects are in order; those that come are new.
+    pub(super) fn declare_ordered(&mut self) {
+        self.schedule.begin(self.end, self.end);
     }
 
     /// Does this step's share of keeping the order; call it after [`Self::settle`].
@@ -76,6 +136,10 @@ impl<const D: usize> Tree<D> {
         }
         if self.schedule.snapshot.is_empty() {
             self.start_if_worn();
+        } else if self.schedule.late.len() * LATE > self.live {
+            self.rebuild();
+            self.refit_layers(&[]);
+            self.settle();
         } else if self.schedule.parts.is_empty() {
             self.apply_snapshot();
         } else {
@@ -87,10 +151,13 @@ impl<const D: usize> Tree<D> {
     /// step would spend its time on.
     fn start_if_worn(&mut self) {
         self.schedule.calls = self.schedule.calls.wrapping_add(1);
-        let looks = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        let looks = is_due && core::mem::take(&mut self.schedule.is_used);
         if self.is_spoilt() || (looks && self.is_worn()) {
-            self.schedule.snapshot = self.items_from(0);
-            self.schedule.parts = vec![(0, self.live)];
+            let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
+            self.list_items(0, &mut snapshot);
+            self.schedule.snapshot = snapshot;
+            self.schedule.parts.push((0, self.live));
         }
     }
 
@@ -107,29 +174,43 @@ impl<const D: usize> Tree<D> {
         came > self.live / 16 + SLACK || holes > self.live / 4 + SLACK
     }
 
-    /// Moves the objects to the sorted places: those removed since are skipped, those added since
-    /// follow at the end.
+    /// Moves the objects to the sorted places: those removed since are skipped, and those that the
+    /// snapshot does not know follow at the end, sorted among themselves.
     fn apply_snapshot(&mut self) {
-        let mut listed = vec![false; self.slots.len()];
-        let mut ids = Vec::with_capacity(self.live);
-        let sorted = core::mem::take(&mut self.schedule.snapshot);
-        for item in &sorted {
-            if self.contains(item.id) {
-                listed[item.id as usize] = true;
-                ids.push(item.id);
-            }
-        }
+        let mut ids = core::mem::take(&mut self.schedule.order);
+        let mut is_placed = core::mem::take(&mut self.schedule.is_placed);
+        let mut sorted = core::mem::take(&mut self.schedule.snapshot);
+        is_placed.resize(self.slots.len(), false);
+        ids.clear();
+        ids.extend(sorted.iter().map(|item| item.id).filter(|&id| self.contains(id)));
+        ids.iter().for_each(|&id| is_placed[id as usize] = true);
+        self.schedule.late.iter().for_each(|&id| is_placed[id as usize] = false);
+        ids.retain(|&id| is_placed[id as usize]);
         let ordered = ids.len();
-        let others = self.ids[..self.end].iter();
-        ids.extend(others.filter(|&&id| id != NONE && !listed[id as usize]));
-        self.rearrange(0, ids.into_iter());
-        self.refit_layers();
+        self.list_items(0, &mut sorted);
+        sorted.retain(|item| !is_placed[item.id as usize]);
+        sort(&mut sorted);
+        ids.iter().for_each(|&id| is_placed[id as usize] = false);
+        ids.extend(sorted.iter().map(|item| item.id));
+        self.rearrange(0, &ids);
+        self.schedule.snapshot = sorted;
+        (self.schedule.order, self.schedule.is_placed) = (ids, is_placed);
+        self.schedule.begin(ordered, self.end);
+        self.refit_layers(&[]);
         self.settle();
-        self.schedule = Schedule { ordered, fresh: self.end, ..Schedule::default() };
     }
 }
 
 impl<const D: usize> Schedule<D> {
+    /// Begins a new round after the order was renewed; keeps the memory.
+    fn begin(&mut self, ordered: usize, fresh: usize) {
+        (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
+        (self.calls, self.is_used) = (0, true);
+        self.snapshot.clear();
+        self.parts.clear();
+        self.late.clear();
+    }
+
     /// Sorts parts of the snapshot until `budget` items have been handled; always at least one.
     fn sort_some(&mut self, budget: usize) {
         let mut done = 0;

@@ -1,9 +1,9 @@
 //! Trees alone against lists: joins in every regime, searches, and the order of the nearest.
 
-use super::{Bounds, Frontier, Joiner, Keys, Lanes, Tree};
+use super::{Bounds, Changes, Frontier, Joiner, Keys, Lanes, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::Point;
-use crate::pairs::pack;
+use crate::pairs::{pack, unpack};
 
 /// Numbers from a linear congruential generator, below `bound`.
 fn next(state: &mut u64, bound: u32) -> u32 {
@@ -19,6 +19,17 @@ fn small_float(value: u32) -> f32 {
 fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
     let lo: [f32; D] = core::array::from_fn(|_| small_float(next(state, 2 * side)) / 2.0);
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
+}
+
+/// A box as large, up to `reach` halves away along each axis.
+fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, reach: u32) -> Bounds<D> {
+    let shift: [f32; D] = core::array::from_fn(|_| {
+        small_float(next(state, 2 * reach + 1)) / 2.0 - small_float(reach) / 2.0
+    });
+    Bounds {
+        lo: core::array::from_fn(|axis| old.lo[axis] + shift[axis]),
+        hi: core::array::from_fn(|axis| old.hi[axis] + shift[axis]),
+    }
 }
 
 /// A tree and what it should hold: by id, the box now and the box at the last settling.
@@ -42,14 +53,18 @@ impl<const D: usize> Twin<D> {
         twin
     }
 
-    /// Moves, removes or adds about one object in `rarity`.
-    fn change(&mut self, state: &mut u64, side: u32, rarity: u32) {
+    /// Moves, removes or adds about one object in `rarity`; moves go up to `reach` halves along each
+    /// axis, or anywhere.
+    fn change(&mut self, state: &mut u64, (side, reach): (u32, u32), rarity: u32) {
         for id in self.first..self.list.len() {
             let number = u32::try_from(id).expect("small");
             if next(state, rarity) != 0 {
                 continue;
             }
-            let bounds = random_box(state, side);
+            let bounds = match &self.list[id] {
+                Some((now, _)) if reach < 2 * side => near(now, state, reach),
+                _ => random_box(state, side),
+            };
             match &mut self.list[id] {
                 Some(_) if next(state, 5) == 0 => {
                     self.tree.remove(number);
@@ -81,19 +96,23 @@ impl<const D: usize> Twin<D> {
     }
 }
 
-/// The pairs of different objects that overlap and did not before.
-fn began<const D: usize>(first: &Twin<D>, second: &Twin<D>) -> Vec<u64> {
-    let mut keys = Vec::new();
+/// The pairs of different objects that overlap and did not before, and those that did and do not.
+fn differences<const D: usize>(first: &Twin<D>, second: &Twin<D>) -> Changes {
+    let mut changes = Changes::default();
     for (a, (now1, before1)) in first.objects() {
         for (b, (now2, before2)) in second.objects() {
-            if a != b && now1.overlaps(now2) && !before1.overlaps(before2) {
-                keys.push(pack(a, b));
+            match (now1.overlaps(now2), before1.overlaps(before2)) {
+                (true, false) if a != b => changes.began.push(pack(a, b)),
+                (false, true) => changes.ended.push(pack(a, b)),
+                _ => {}
             }
         }
     }
-    keys.sort_unstable();
-    keys.dedup();
-    keys
+    for keys in [&mut changes.began, &mut changes.ended] {
+        keys.sort_unstable();
+        keys.dedup();
+    }
+    changes
 }
 
 fn sorted(mut keys: Vec<u64>) -> Vec<u64> {
@@ -101,34 +120,59 @@ fn sorted(mut keys: Vec<u64>) -> Vec<u64> {
     keys
 }
 
-/// `rarity1` and `rarity2`: how many of the objects of the two trees change in a step.
-fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32) {
+/// Compares what a join found with what it must find; returns how many of each kind it found.
+fn check_changes<const D: usize>(
+    found: Changes,
+    (first, second): (&Twin<D>, &Twin<D>),
+) -> (usize, usize) {
+    let expected = differences(first, second);
+    let strayed: Vec<u32> = first.tree.strayed().chain(second.tree.strayed()).collect();
+    let counts = (found.began.len(), found.ended.len());
+    let ended = sorted(found.ended);
+    assert!(sorted(found.began) == expected.began, "began");
+    assert!(ended.windows(2).all(|two| two[0] < two[1]), "each once");
+    assert!(ended.iter().all(|key| expected.ended.binary_search(key).is_ok()), "ended in truth");
+    for key in expected.ended.iter().filter(|key| ended.binary_search(key).is_err()) {
+        let (a, b) = unpack(*key);
+        assert!(strayed.contains(&a) || strayed.contains(&b), "({a}, {b}) ended unnoticed");
+    }
+    counts
+}
+
+/// `rarity1` and `rarity2`: how many of the objects of the two trees change in a step; `reach`: how
+/// far those go that stay.
+fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32) {
     let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
     let mut first = Twin::<D>::new(&mut state, 0, 700, side);
     let mut second = Twin::<D>::new(&mut state, 700, 90, side);
-    let (mut joiner, mut found) = (Joiner::default(), 0);
-    for step in 0..25 {
-        first.change(&mut state, side, rarity1);
-        second.change(&mut state, side, rarity2);
-        let (mut own, mut across) = (Vec::new(), Vec::new());
+    let (mut joiner, mut found) = (Joiner::default(), (0, 0));
+    for _ in 0..25 {
+        first.change(&mut state, (side, reach), rarity1);
+        second.change(&mut state, (side, reach), rarity2);
+        let (mut own, mut across) = (Changes::default(), Changes::default());
         joiner.self_join(&first.tree, &mut own);
         joiner.cross_join(&first.tree, &second.tree, &mut across);
-        found += own.len() + across.len();
-        assert!(sorted(own) == began(&first, &first), "step {step}: within the first");
-        assert!(sorted(across) == began(&first, &second), "step {step}: across");
+        for counts in
+            [check_changes(own, (&first, &first)), check_changes(across, (&first, &second))]
+        {
+            found = (found.0 + counts.0, found.1 + counts.1);
+        }
         first.settle();
         second.settle();
     }
-    assert!(found > 1000, "{found} beginnings");
+    assert!(found.0 > 1000, "{} beginnings", found.0);
+    assert!(found.1 > 1000 || reach > 4, "{} ends", found.1);
 }
 
 #[test]
 fn joins_in_every_regime() {
-    check_joins::<2>(20, 1, 1);
-    check_joins::<2>(20, 40, 1000);
-    check_joins::<3>(8, 1000, 2);
-    check_joins::<3>(8, 30, 30);
-    check_joins::<3>(8, 2, 1000);
+    for reach in [2, 1000] {
+        check_joins::<2>(20, 1, 1, reach);
+        check_joins::<2>(20, 40, 1000, reach);
+        check_joins::<3>(8, 1000, 2, reach);
+        check_joins::<3>(8, 30, 30, reach);
+        check_joins::<3>(8, 2, 1000, reach);
+    }
 }
 
 #[test]
@@ -137,7 +181,7 @@ fn searches_find_what_a_list_finds() {
     let mut twin = Twin::<3>::new(&mut state, 0, 600, 10);
     let mut found_any = 0;
     for _ in 0..60 {
-        twin.change(&mut state, 10, 10);
+        twin.change(&mut state, (10, 1000), 10);
         twin.settle();
         let mut query = random_box(&mut state, 10);
         if next(&mut state, 4) == 0 {

@@ -1,6 +1,6 @@
-//! The tree: storage, single changes, and the pass that makes the upper layers true again.
+//! The tree: storage and single changes.
 
-use super::kernel::{Kernel, with_kernel};
+use super::order::Load;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
 
@@ -8,22 +8,45 @@ use super::{Block, Bounds, LANES, Lanes};
 pub const NONE: u32 = u32::MAX;
 
 /// One layer: blocks, and beside each its bounds and which of its lanes changed.
+///
+/// A join looks for what was near as well as for what is: for it stand beside all that the bounds of
+/// the boxes now and before. Where nothing changed, the two are the same.
 #[derive(Clone, Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
+    /// By block: the bounds of its boxes now and before.
+    pub(super) reach: Vec<Bounds<D>>,
+    /// Above the lowest layer: the reach of the blocks below, in blocks.
+    pub(super) reaches: Vec<Block<D>>,
     pub(super) changed: Vec<u16>,
 }
 
 impl<const D: usize> Layer<D> {
-    const fn new() -> Self {
-        Self { blocks: Vec::new(), bounds: Vec::new(), changed: Vec::new() }
+    pub(super) const fn new() -> Self {
+        Self {
+            blocks: Vec::new(),
+            bounds: Vec::new(),
+            reach: Vec::new(),
+            reaches: Vec::new(),
+            changed: Vec::new(),
+        }
     }
 
+    /// Sets the number of blocks of the lowest layer; new ones are empty.
     pub(super) fn resize(&mut self, blocks: usize) {
         self.blocks.resize(blocks, Block::EMPTY);
         self.bounds.resize(blocks, Bounds::EMPTY);
+        self.reach.resize(blocks, Bounds::EMPTY);
         self.changed.resize(blocks, 0);
+    }
+
+    /// Makes a layer above the lowest one of so many empty blocks.
+    pub(super) fn empty(&mut self, blocks: usize) {
+        self.resize(0);
+        self.resize(blocks);
+        self.reaches.clear();
+        self.reaches.resize(blocks, Block::EMPTY);
     }
 }
 
@@ -50,6 +73,12 @@ pub struct Tree<const D: usize> {
     /// Leaf blocks written to since the last [`Self::settle`], and the same as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
+    /// Leaf blocks whose reach leaves out what was before; see [`Self::strayed`].
+    pub(super) strayed: Vec<u32>,
+    /// Memory for objects on the move from slot to slot.
+    pub(super) loads: Vec<Load<D>>,
+    /// Memory for lists of blocks.
+    pub(super) dirty: Vec<u32>,
     /// Lanes with their change bit set.
     pub(super) changed: usize,
     /// The number of leaf blocks changed, so that the upper layers must be laid out anew.
@@ -86,6 +115,9 @@ impl<const D: usize> Tree<D> {
             live: 0,
             touched: Vec::new(),
             is_touched: Vec::new(),
+            strayed: Vec::new(),
+            loads: Vec::new(),
+            dirty: Vec::new(),
             changed: 0,
             is_restructured: false,
             is_stale: false,
@@ -123,6 +155,11 @@ impl<const D: usize> Tree<D> {
         self.slot(id).map(|slot| &self.boxes[slot])
     }
 
+    /// The box of the object at the last [`Self::settle`]: empty for one that is new.
+    pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
+        self.slot(id).map(|slot| self.before[slot / LANES].lane(slot % LANES))
+    }
+
     fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)
@@ -156,6 +193,7 @@ impl<const D: usize> Tree<D> {
         self.ids[slot] = id;
         self.end = self.end.max(slot + 1);
         self.live += 1;
+        self.note_late(id);
         self.write(slot, bounds);
         self.before[slot / LANES].set_lane(slot % LANES, bounds);
         slot
@@ -176,6 +214,25 @@ impl<const D: usize> Tree<D> {
             self.touch(slot / LANES);
         }
         self.mark_changed(slot);
+    }
+
+    /// Announces that the object has another box, which the next [`Self::refit_from`] fetches.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    #[inline]
+    pub(crate) fn set_later(&mut self, id: u32) {
+        let slot = self.slots[id as usize] as usize;
+        let (block, bit) = (slot / LANES, 1 << (slot % LANES));
+        let mask = &mut self.layers[0].changed[block];
+        let was_unchanged = *mask == 0;
+        self.changed += usize::from(*mask & bit == 0);
+        *mask |= bit;
+        self.is_stale = true;
+        // A block with changed lanes is listed already.
+        if was_unchanged {
+            self.touch(block);
+        }
     }
 
     /// Makes all pairs of the object begin anew: as if it had not been there before.
@@ -249,7 +306,8 @@ impl<const D: usize> Tree<D> {
         hole.unwrap_or_else(|| self.append_slot())
     }
 
-    /// A free lane of the block that a descent along the least growth ends in.
+    /// A free lane near where a descent along the least growth ends: of the last sixteen blocks, that
+    /// with a free lane which grows least.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
@@ -259,12 +317,17 @@ impl<const D: usize> Tree<D> {
                 let own = &children[*child];
                 own.merged(bounds).half_surface() - own.half_surface()
             };
-            block = (block * LANES..last)
-                .min_by(|a, b| growth(a).total_cmp(&growth(b)))
-                .unwrap_or_default();
+            let near = (block * LANES..last).filter(|&child| layer > 1 || self.has_hole(child));
+            block = near.min_by(|a, b| growth(a).total_cmp(&growth(b)))?;
         }
         let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
+    }
+
+    /// A lane of the leaf block is free. The search keeps no count of it, since it is short.
+    fn has_hole(&self, block: usize) -> bool {
+        let slots = &self.ids[block * LANES..(block + 1) * LANES];
+        slots.iter().fold(false, |found, &id| found | (id == NONE))
     }
 
     /// The slot after the last one in use, in a new block if need be.
@@ -285,118 +348,13 @@ impl<const D: usize> Tree<D> {
         self.is_restructured = true;
     }
 
-    /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
-    pub fn refit(&mut self) {
-        self.sort_new();
-        self.refit_layers();
-    }
-
-    pub(super) fn refit_layers(&mut self) {
-        if self.is_stale {
-            for &block in &self.touched {
-                let block = block as usize;
-                let boxes = self.boxes[block * LANES..].first_chunk();
-                let boxes = boxes.expect("every block has sixteen slots");
-                self.layers[0].blocks[block].set_all(boxes);
-            }
-        }
-        let many = self.touched.len() * 4 > self.before.len();
-        with_kernel!(self.lanes, kernel => {
-            if self.is_restructured || many {
-                self.refit_all(kernel);
-            } else {
-                self.refit_touched(kernel);
-            }
-        });
-        self.is_restructured = false;
-        self.is_stale = false;
-    }
-
-    /// Lays the upper layers out for the number of leaf blocks, every lane empty.
-    fn shape_layers(&mut self) {
-        let (mut layer, mut blocks) = (0, self.before.len());
-        while blocks > 1 {
-            (layer, blocks) = (layer + 1, blocks.div_ceil(LANES));
-            if self.layers.len() <= layer {
-                self.layers.push(Layer::new());
-            }
-            self.layers[layer].resize(0);
-            self.layers[layer].resize(blocks);
-        }
-        self.layers.truncate(layer + 1);
-    }
-
-    #[inline(always)]
-    fn refit_all<K: Kernel>(&mut self, kernel: K) {
-        if self.is_restructured {
-            self.shape_layers();
-        }
-        for index in 0..self.layers.len() {
-            let (below, above) = self.layers.split_at_mut(index + 1);
-            let layer = &mut below[index];
-            for (block, bounds) in layer.blocks.iter().zip(&mut layer.bounds) {
-                *bounds = kernel.bounds(block);
-            }
-            let Some(parent) = above.first_mut() else { break };
-            parent.changed.fill(0);
-            for (block, bounds) in layer.bounds.iter().enumerate() {
-                parent.blocks[block / LANES].set_lane(block % LANES, bounds);
-                let is_changed = u16::from(layer.changed[block] != 0);
-                parent.changed[block / LANES] |= is_changed << (block % LANES);
-            }
-        }
-    }
-
-    /// Walks up from the touched leaf blocks only.
-    #[inline(always)]
-    fn refit_touched<K: Kernel>(&mut self, kernel: K) {
-        self.touched.sort_unstable();
-        let mut dirty = self.touched.clone();
-        for index in 0..self.layers.len() {
-            let (below, above) = self.layers.split_at_mut(index + 1);
-            let layer = &mut below[index];
-            for &block in &dirty {
-                let block = block as usize;
-                let bounds = kernel.bounds(&layer.blocks[block]);
-                layer.bounds[block] = bounds;
-                let Some(parent) = above.first_mut() else { continue };
-                parent.blocks[block / LANES].set_lane(block % LANES, &bounds);
-                let is_changed = u16::from(layer.changed[block] != 0);
-                parent.changed[block / LANES] |= is_changed << (block % LANES);
-            }
-            to_parents(&mut dirty);
-        }
-    }
-
-    /// Declares the present boxes those of before: nothing has changed.
-    pub fn settle(&mut self) {
-        let mut dirty = core::mem::take(&mut self.touched);
-        for &block in &dirty {
-            let block = block as usize;
-            self.before[block] = self.layers[0].blocks[block];
-            self.is_touched[block] = false;
-        }
-        if self.changed > 0 {
-            let mut blocks = dirty.clone();
-            blocks.sort_unstable();
-            for layer in &mut self.layers {
-                for &block in &blocks {
-                    layer.changed[block as usize] = 0;
-                }
-                to_parents(&mut blocks);
-            }
-        }
-        dirty.clear();
-        self.touched = dirty;
-        self.changed = 0;
-    }
-
     /// Forgets every object and keeps the memory.
     pub fn clear(&mut self) {
         self.resize_leaves(0);
         self.shape_layers();
         self.slots.clear();
         self.touched.clear();
+        self.strayed.clear();
         self.schedule = Schedule::default();
         (self.end, self.live, self.changed) = (0, 0, 0);
         (self.is_restructured, self.is_stale) = (false, false);
@@ -408,8 +366,8 @@ impl<const D: usize> Tree<D> {
     }
 
     /// The slots of changed lanes, ascending if the touched blocks are.
-    pub(super) fn changed_slots(&self) -> Vec<u32> {
-        let mut slots = Vec::with_capacity(self.changed);
+    pub(super) fn list_changed_slots(&self, slots: &mut Vec<u32>) {
+        slots.clear();
         for &block in &self.touched {
             let mut mask = self.layers[0].changed[block as usize];
             while mask != 0 {
@@ -417,14 +375,17 @@ impl<const D: usize> Tree<D> {
                 mask &= mask - 1;
             }
         }
-        slots
     }
-}
 
-/// Replaces ascending block numbers by those of their parents, each once.
-fn to_parents(blocks: &mut Vec<u32>) {
-    for block in blocks.iter_mut() {
-        *block /= small(LANES);
+    /// Changed objects (by id) of whose pairs the [`super::Joiner`] need not have reported those
+    /// that ended: objects that were elsewhere before, and their changed neighbours. As of the last
+    /// refit.
+    pub fn strayed(&self) -> impl Iterator<Item = u32> + '_ {
+        let changed = move |&block: &u32| {
+            let mask = self.layers[0].changed[block as usize];
+            let lanes = (0..LANES).filter(move |lane| mask >> lane & 1 == 1);
+            lanes.map(move |lane| self.ids[block as usize * LANES + lane])
+        };
+        self.strayed.iter().flat_map(changed)
     }
-    blocks.dedup();
 }

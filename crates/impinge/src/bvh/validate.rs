@@ -13,6 +13,7 @@ impl<const D: usize> Tree<D> {
         self.validate_leaves()?;
         if !self.is_stale {
             self.validate_layers()?;
+            self.validate_reach()?;
         }
         self.validate_changes()
     }
@@ -72,8 +73,9 @@ impl<const D: usize> Tree<D> {
             kept == real || (!is_exact && (is_empty || kept.contains(real)))
         };
         for (index, layer) in self.layers.iter().enumerate() {
-            if layer.blocks.len() != layer.bounds.len() || layer.blocks.len() != layer.changed.len()
-            {
+            let lengths = [layer.bounds.len(), layer.reach.len(), layer.changed.len()];
+            let reaches = if index > 0 { layer.blocks.len() } else { 0 };
+            if lengths != [layer.blocks.len(); 3] || layer.reaches.len() != reaches {
                 return Err(format!("the arrays of layer {index} differ in length"));
             }
             for (block, kept) in layer.blocks.iter().zip(&layer.bounds) {
@@ -92,9 +94,25 @@ impl<const D: usize> Tree<D> {
             for lane in 0..parent.blocks.len() * LANES {
                 let kept = parent.blocks[lane / LANES].lane(lane % LANES);
                 let real = layer.bounds.get(lane).copied().unwrap_or(Bounds::EMPTY);
-                if kept != real {
+                let kept_reach = parent.reaches[lane / LANES].lane(lane % LANES);
+                let reach = layer.reach.get(lane).copied().unwrap_or(Bounds::EMPTY);
+                if kept != real || kept_reach != reach {
                     return Err(format!("lane {lane} of layer {} is not its child", index + 1));
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// A join's bounds hold what is and, but for blocks that strayed, what was.
+    fn validate_reach(&self) -> Result<(), String> {
+        for (block, reach) in self.layers[0].reach.iter().enumerate() {
+            let has_strayed = self.strayed.iter().any(|&other| other as usize == block);
+            let now = bounds_of(&self.layers[0].blocks[block]);
+            let before = bounds_of(&self.before[block]);
+            let holds = |inner: &Bounds<D>| *inner == Bounds::EMPTY || reach.contains(inner);
+            if !(holds(&now) && (has_strayed || holds(&before))) {
+                return Err(format!("the reach {reach:?} of block {block} leaves boxes out"));
             }
         }
         Ok(())

@@ -48,6 +48,9 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// The point of the set that lies lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
 
+    /// Both cores are hulls of points: there are neither round faces nor branches with a bend.
+    fn is_flat(&self) -> bool;
+
     /// The normals of the flat round faces of either core that a normal is nearly perpendicular to, as
     /// normals from the first core to the second.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
@@ -69,6 +72,7 @@ pub(super) struct Pair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     scale: N,
     /// 1 / `scale`, exactly.
     shrink: N,
+    is_flat: bool,
 }
 
 /// A solid's reach; found without squaring where that leaves the range of the numbers.
@@ -106,7 +110,13 @@ where
         let shrink = quarter / scale;
         let translation = pose12.translation * shrink;
         let scale = scale / quarter;
-        Some(Self { solid1, solid2, rotation: pose12.rotation, translation, scale, shrink })
+        let rotation = pose12.rotation;
+        Some(Self { solid1, solid2, rotation, translation, scale, shrink, is_flat: false })
+    }
+
+    /// The same where both cores are known to be hulls of points.
+    pub(super) fn between_flat_cores(self) -> Self {
+        Self { is_flat: true, ..self }
     }
 
     /// The length of one unit.
@@ -149,6 +159,10 @@ where
         Vertex { point: on2 - on1, on1, on2 }
     }
 
+    fn is_flat(&self) -> bool {
+        self.is_flat
+    }
+
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {
         let toward1 = self.rotation.tr_mul(&-normal);
         let face2 = self.solid2.round_face(&toward1);
@@ -187,6 +201,10 @@ impl<N: Real, const D: usize> Difference<N, D> for Moved<'_, N, D> {
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D> {
         let vertex = self.inner.lowest(normal);
         Vertex { point: vertex.point + self.by, ..vertex }
+    }
+
+    fn is_flat(&self) -> bool {
+        self.inner.is_flat()
     }
 
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {

@@ -176,7 +176,11 @@ fn climb_on<N: Real>(
     for _ in 0..CLIMBS {
         let Some(mut start) = starts.iter().copied().reduce(higher) else { break };
         starts.retain(|other| other.normal.dot(&start.normal) < N::lit(SAME_CLIMB));
-        climb(difference, &mut start);
+        // Where Newton's method leads to points that prove a peak, there is nothing left to climb.
+        let near = lowest(hull.vertices(), &start.normal);
+        if polish(difference, &mut start, &near).is_none() {
+            climb(difference, &mut start);
+        }
         best.improve(&start);
     }
     settles(difference, best);

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::Candidate;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, noise, tolerance};
 use super::newton::settles;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
@@ -39,8 +39,6 @@ struct Search<N: Real, const D: usize> {
     last: Candidate<N, D>,
     /// The length of the nearest point so far: an upper bound.
     upper: N,
-    /// The last support point, if the simplex has not taken it.
-    spare: Vertex<N, D>,
     /// The gap between the bounds at which the search stops.
     gap: N,
     /// The lower bound that counts is that of the last normal, across which the points lie, not that
@@ -60,7 +58,16 @@ where
     S: Difference<N, D>,
 {
     let mut search = Search::new(Candidate::along(difference, *start));
-    match search.run(difference, limit) {
+    search.gap = if difference.is_flat() { gap() } else { rough_gap() };
+    let mut outcome = search.run(difference, limit);
+    if matches!(outcome, Outcome::Apart) && !difference.is_flat() {
+        if let Some(polished) = search.polished(difference) {
+            return Some(polished);
+        }
+        search.gap = gap();
+        outcome = search.run(difference, limit);
+    }
+    match outcome {
         Outcome::Beyond => None,
         Outcome::Overlap => Some(search.finish_overlap(difference)),
         Outcome::Apart => Some(search.finish(difference)),
@@ -96,14 +103,13 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             best: first,
             last: first,
             upper: N::INFINITY,
-            spare: first.vertex,
             gap: gap(),
             for_points: true,
         }
     }
 
     fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {
-        let mut nearest = Nearest::corner(0, &self.simplex.points()[0]);
+        let mut nearest = N::nearest(self.simplex.points());
         for _ in 0..ROUNDS {
             // Written so that NaN counts as an overlap, which ends by caps alone.
             let away = nearest.squared > noise::<N>() * noise();
@@ -113,7 +119,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             self.upper = nearest.squared.sqrt();
             let candidate = Candidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
-            (self.last, self.spare) = (candidate, candidate.vertex);
+            self.last = candidate;
             if self.best.height > limit {
                 return Outcome::Beyond;
             }
@@ -131,17 +137,16 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         Outcome::Apart
     }
 
-    /// Takes the spare point into the simplex; `None`, and nothing done, if that brings the origin
-    /// no nearer: the arithmetic is at its end.
+    /// Takes the last support point into the simplex; `None`, and nothing done, if that brings the
+    /// origin no nearer: the arithmetic is at its end.
     fn advanced(&mut self, nearest: &Nearest<N, D>) -> Option<Nearest<N, D>> {
-        let mut grown = self.simplex;
-        grown.push(self.spare);
-        let next = N::nearest(grown.points());
+        self.simplex.push(self.last.vertex);
+        let next = N::nearest(self.simplex.points());
         if next.squared >= nearest.squared {
+            self.simplex.pop();
             return None;
         }
-        grown.keep(&next.weights);
-        self.simplex = grown;
+        self.simplex.keep(&next.weights);
         Some(next)
     }
 
@@ -169,7 +174,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             bundle.push(self.best.vertex);
             return locate(difference, &self.best, &bundle);
         }
-        bundle.extend([self.best.vertex, self.spare]);
+        bundle.extend([self.best.vertex, self.last.vertex]);
         refine(difference, &mut bundle, &mut self.best);
         let near = lowest(&bundle, &self.best.normal);
         let apart = match polish(difference, &mut self.best, &near) {
@@ -192,6 +197,15 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         N::deepest(difference, &self.simplex)
     }
 
+    /// The answer by Newton's method from where the search stands, if it leads to points that prove it:
+    /// these lie as far apart as the normal says, so no other does better.
+    fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
+        let mut best = self.best;
+        let mix = polish(difference, &mut best, self.simplex.vertices())?;
+        let is_apart = best.height > noise();
+        (is_apart && mix.meets_within(&best, N::TWO * gap())).then(|| placed(&best, &mix, N::HALF))
+    }
+
     /// The answer where the bounds meet. Of normals that do, that of the nearest point is taken if
     /// the points of the nearest point lie across from each other along no other.
     fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
@@ -209,6 +223,12 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         }
         settle(difference, &best, &mix, self.simplex.vertices())
     }
+}
+
+/// The gap at which curved cores are handed to Newton's method, which takes it from there: 2⁻⁹ in
+/// `f32`, 2⁻¹⁹ in `f64`.
+fn rough_gap<N: Real>() -> N {
+    N::TWO * tolerance::<N>().sqrt()
 }
 
 /// The gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.

@@ -1,6 +1,6 @@
 //! Algorithms on convex sets, known by their support points: no shapes, no pairs, no state.
 //!
-//! [`separation2`] and [`separation3`] give the signed distance of two rounded convex solids. They
+//! [`separation`] gives the signed distance of two rounded convex solids. They
 //! run on the cores: the difference of the cores (all `b − a`) is searched for its point nearest to
 //! the origin ([`gjk`]) or, where it holds the origin, for its nearest supporting plane (`epa2`,
 //! `epa3`). A normal `n` is never trusted for how it was found, but for its *certificate*: the
@@ -34,43 +34,9 @@ mod witness;
 pub(crate) use separation::Separation;
 pub(crate) use simplex::Simplicial;
 
-use crate::math::{Pose, Real};
+use crate::math::Pose;
 use crate::shape::SupportMap;
 use difference::{Pair, noise};
-
-/// How far two rounded solids of the plane are apart, or how deep they overlap.
-///
-/// See [`separation`].
-#[allow(dead_code, reason = "an entry point for the floors above")]
-pub(crate) fn separation2<N: Real, A, B>(
-    a: &A,
-    b: &B,
-    pose12: &Pose<N, 2>,
-    limit: N,
-) -> Option<Separation<N, 2>>
-where
-    A: SupportMap<N, 2> + ?Sized,
-    B: SupportMap<N, 2> + ?Sized,
-{
-    separation(a, b, pose12, limit)
-}
-
-/// How far two rounded solids of space are apart, or how deep they overlap.
-///
-/// See [`separation`].
-#[allow(dead_code, reason = "an entry point for the floors above")]
-pub(crate) fn separation3<N: Real, A, B>(
-    a: &A,
-    b: &B,
-    pose12: &Pose<N, 3>,
-    limit: N,
-) -> Option<Separation<N, 3>>
-where
-    A: SupportMap<N, 3> + ?Sized,
-    B: SupportMap<N, 3> + ?Sized,
-{
-    separation(a, b, pose12, limit)
-}
 
 /// The signed distance of two rounded solids, its normal and the points it lies between, in the
 /// frame of the first; `pose12` is the pose of the second in that frame.
@@ -103,10 +69,38 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let (rounding1, rounding2) = (a.rounding(), b.rounding());
-    let pair = Pair::new(a, b, pose12)?;
+    of_pair(&Pair::new(a, b, pose12)?, (a.rounding(), b.rounding()), limit)
+}
+
+/// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
+/// that is done about curved ones.
+pub(crate) fn flat_separation<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    limit: N,
+) -> Option<Separation<N, D>>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12)?.between_flat_cores();
+    of_pair(&pair, (a.rounding(), b.rounding()), limit)
+}
+
+fn of_pair<N, A, B, const D: usize>(
+    pair: &Pair<'_, N, A, B, D>,
+    (rounding1, rounding2): (N, N),
+    limit: N,
+) -> Option<Separation<N, D>>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
     let core_limit = (limit + rounding1 + rounding2) / pair.scale();
     let slack = noise::<N>() * (N::ONE + core_limit.abs());
-    let found = gjk::solve(&pair, &pair.start(), core_limit + slack)?;
+    let found = gjk::solve(pair, &pair.start(), core_limit + slack)?;
     Some(pair.restored(&found).rounded(rounding1, rounding2))
 }

@@ -51,6 +51,9 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     best: &mut Candidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<Mix<N, D>> {
+    if difference.is_flat() {
+        return None;
+    }
     try_round_faces(difference, best);
     let mut current = *best;
     let mut sides = active(difference, &current, vertices)?;

@@ -142,6 +142,11 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         self.len += 1;
     }
 
+    /// Takes back the last [`Self::push`].
+    pub(super) fn pop(&mut self) {
+        self.len -= 1;
+    }
+
     /// Drops the points without weight, and remembers the weights of the others.
     pub(super) fn keep(&mut self, weights: &[N; 4]) {
         let mut kept = 0;

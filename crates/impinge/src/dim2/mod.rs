@@ -118,6 +118,8 @@ pub mod query {
     pub type Ray<N> = crate::query::Ray<N, 2>;
     /// Where and when a ray meets a solid.
     pub type RayIntersection<N> = crate::query::RayIntersection<N, 2>;
+    /// See [`crate::query::RayBatch`].
+    pub type RayBatch<'a, N> = crate::query::RayBatch<'a, N, 2>;
     /// The point of a solid that is nearest to a given one.
     pub type PointProjection<N> = crate::query::PointProjection<N, 2>;
     /// The points of two solids that are nearest to each other.

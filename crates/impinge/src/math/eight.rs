@@ -3,6 +3,7 @@
 use fearless_simd::{Select, Simd, SimdFloat, f32x8};
 
 /// A scalar of which eight make a vector, for every instruction set.
+#[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Eight: Sized {
     /// Eight of them: one register, or two or four.
     type Lanes<S: Simd>: Wide<S, Scalar = Self>;
@@ -22,6 +23,7 @@ impl Eight for f64 {
 /// Used with the operations of IEEE 754 alone (sums, products, quotients, roots, comparisons), so
 /// that each lane has the bits that the scalar would have. `Scalar` is another name for `Element`,
 /// which generic code cannot equate with its `N` without losing nalgebra's operators on `N`.
+#[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Wide<S: Simd>: SimdFloat<S> {
     /// What one lane holds.
     type Scalar;

@@ -1,11 +1,17 @@
 //! The links of each object: a cache line of its own, and a run of further lines if it has many.
 
+use super::places::Places;
+
 /// Links in one line.
 const PER_LINE: usize = 8;
 /// Links in the line that every object has, beside what describes the rest.
 const INLINE: usize = PER_LINE - 1;
 /// The class of a run that is not there.
 const NO_RUN: u32 = 31;
+/// The class from which on an object is heavy: more than 135 links came. It stays so until its run
+/// is given back, so that objects do not come and go between the two. Searching the seventeen lines
+/// of the heaviest light object costs about what the table does.
+const HEAVY: u32 = 5;
 
 /// One end of a pair, as the object at the other end sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -74,6 +80,24 @@ pub(super) struct Lines {
     pool: Vec<Line>,
     /// Starts of abandoned runs, by class.
     free: Vec<Vec<u32>>,
+    /// The places of the links of heavy objects.
+    places: Places,
+}
+
+/// Where among the first `count` links that to the partner stands. All are looked at: where a search
+/// ends, no processor foresees.
+#[inline]
+fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
+    let hit = |at: usize| u32::from(links[at].partner == partner) << at;
+    let hits = (0..links.len()).fold(0, |hits, at| hits | hit(at));
+    let place = hits.trailing_zeros();
+    ((place as usize) < count.min(links.len())).then_some(place)
+}
+
+/// The link from an object to a partner, as one number.
+#[inline]
+fn directed(object: u32, partner: u32) -> u64 {
+    u64::from(object) << 32 | u64::from(partner)
 }
 
 /// A position or count as the `u32` it is stored as.
@@ -111,9 +135,15 @@ impl Lines {
         head.links.iter().chain(rest).take(count).copied()
     }
 
+    /// The last link of the object, if it has any.
+    pub(super) fn last_link(&self, object: u32) -> Option<Link> {
+        let last = self.count(object).checked_sub(1)?;
+        Some(self.link(object, small(last)))
+    }
+
     /// The link at `place` among the links of the object.
     #[inline]
-    pub(super) fn link(&self, object: u32, place: u32) -> Link {
+    fn link(&self, object: u32, place: u32) -> Link {
         let head = &self.heads[object as usize];
         if let Some(link) = head.links.get(place as usize) {
             return *link;
@@ -124,7 +154,7 @@ impl Lines {
 
     /// The link at `place` among the links of the object, to write.
     #[inline]
-    pub(super) fn link_mut(&mut self, object: u32, place: u32) -> &mut Link {
+    fn link_mut(&mut self, object: u32, place: u32) -> &mut Link {
         let head = &mut self.heads[object as usize];
         let place = place as usize;
         if place < INLINE {
@@ -134,9 +164,50 @@ impl Lines {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Adds a link and says at which place.
+    /// The object has so many links that it should not be searched.
     #[inline]
-    pub(super) fn push(&mut self, object: u32, link: Link) -> u32 {
+    fn is_heavy(&self, object: u32) -> bool {
+        self.heads.get(object as usize).is_some_and(|head| (HEAVY..NO_RUN).contains(&head.class()))
+    }
+
+    /// The place of the link to the partner among the links of the object.
+    #[inline]
+    fn find(&self, object: u32, partner: u32) -> Option<u32> {
+        let head = self.heads.get(object as usize)?;
+        let count = head.count() as usize;
+        let place = place_in(&head.links, count, partner);
+        if place.is_some() || head.class() == NO_RUN {
+            return place;
+        }
+        if head.class() >= HEAVY {
+            return self.places.get(directed(object, partner));
+        }
+        let (start, beyond) = (head.start as usize, count.saturating_sub(INLINE));
+        let lines = self.pool[start..start + beyond.div_ceil(PER_LINE)].iter();
+        lines.enumerate().find_map(|(at, line)| {
+            let place = place_in(&line.links, beyond - at * PER_LINE, partner)?;
+            Some(small(INLINE + at * PER_LINE) + place)
+        })
+    }
+
+    /// Where the pair stands in the dense array, if the two have one: asks the one with fewer links.
+    #[inline]
+    pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
+        let a_is_lighter = self.count(a) <= self.count(b);
+        let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
+        Some(self.link(from, self.find(from, to)?).pair as usize)
+    }
+
+    /// Tells the link from the object to the partner, which must be there, where the pair stands.
+    #[inline]
+    pub(super) fn set_pair(&mut self, object: u32, link: Link) {
+        let place = self.find(object, link.partner).expect("both ends of a pair have links");
+        *self.link_mut(object, place) = link;
+    }
+
+    /// Adds a link.
+    #[inline]
+    pub(super) fn push(&mut self, object: u32, link: Link) {
         let head = &mut self.heads[object as usize];
         let count = head.count();
         if count as usize == head.capacity() {
@@ -144,7 +215,28 @@ impl Lines {
         }
         self.heads[object as usize].set_count(count + 1);
         *self.link_mut(object, count) = link;
-        count
+        if self.is_heavy(object) {
+            self.places.set(directed(object, link.partner), count);
+        }
+    }
+
+    /// Takes the link to the partner out, if it is there, and says where the pair stands. The
+    /// object's last link takes its place.
+    #[inline]
+    pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
+        let place = self.find(object, partner)?;
+        let last = self.heads[object as usize].count() - 1;
+        let (taken, moved) = (self.link(object, place), self.link(object, last));
+        *self.link_mut(object, place) = moved;
+        self.heads[object as usize].set_count(last);
+        if self.is_heavy(object) {
+            self.places.set(directed(object, moved.partner), place);
+            self.places.remove(directed(object, partner));
+        }
+        if last as usize == INLINE {
+            self.release(object);
+        }
+        Some(taken.pair as usize)
     }
 
     /// Gives the object a run, or moves its run to one of twice the size.
@@ -159,6 +251,18 @@ impl Lines {
         self.pool.copy_within(from..from + (1 << old_class), start as usize);
         self.free[old_class as usize].push(old_start);
         self.heads[object as usize].set_run(start, old_class + 1);
+        if old_class + 1 == HEAVY {
+            self.enter_places(object);
+        }
+    }
+
+    /// Enters the links of an object that became heavy.
+    #[cold]
+    fn enter_places(&mut self, object: u32) {
+        for place in 0..self.heads[object as usize].count() {
+            let partner = self.link(object, place).partner;
+            self.places.set(directed(object, partner), place);
+        }
     }
 
     fn run(&self, object: u32) -> (u32, u32) {
@@ -179,23 +283,13 @@ impl Lines {
         })
     }
 
-    /// Takes the link at `place` out; the object's last link moves there and is returned, unless
-    /// it was the one taken.
-    #[inline]
-    pub(super) fn swap_remove(&mut self, object: u32, place: u32) -> Option<Link> {
-        let last = self.heads[object as usize].count() - 1;
-        let moved = self.link(object, last);
-        *self.link_mut(object, place) = moved;
-        self.heads[object as usize].set_count(last);
-        if last as usize == INLINE {
-            self.release(object);
-        }
-        (place != last).then_some(moved)
-    }
-
-    /// Gives the run of an object back to the pool.
+    /// Gives the run of an object back to the pool; what it has left fits its head.
     fn release(&mut self, object: u32) {
         let (start, class) = self.run(object);
+        if class >= HEAVY {
+            let links = self.heads[object as usize].links;
+            links.iter().for_each(|link| self.places.remove(directed(object, link.partner)));
+        }
         self.free[class as usize].push(start);
         self.heads[object as usize].set_run(0, NO_RUN);
     }
@@ -205,6 +299,7 @@ impl Lines {
         self.heads.clear();
         self.pool.clear();
         self.free.clear();
+        self.places.clear();
     }
 
     /// Checks that no two runs share a line, none leaves the pool, and none is overfull.
@@ -223,6 +318,24 @@ impl Lines {
             }
         }
         let fits = |head: &Head| head.count() as usize <= head.capacity();
-        self.heads.iter().all(fits).then_some(()).ok_or("a run is overfull".to_owned())
+        self.heads.iter().all(fits).then_some(()).ok_or("a run is overfull".to_owned())?;
+        self.validate_places()
+    }
+
+    /// Every link of a heavy object is listed, and no other.
+    fn validate_places(&self) -> Result<(), String> {
+        let mut heavy = 0;
+        for object in (0..small(self.heads.len())).filter(|&object| self.is_heavy(object)) {
+            for (place, link) in (0..).zip(self.links(object)) {
+                if self.places.get(directed(object, link.partner)) != Some(place) {
+                    return Err(format!("link {place} of the heavy {object} is lost"));
+                }
+            }
+            heavy += self.count(object);
+        }
+        let listed = self.places.len();
+        (heavy == listed)
+            .then_some(())
+            .ok_or(format!("{heavy} links of heavy ones, {listed} listed"))
     }
 }

@@ -8,13 +8,14 @@
 //! * each object has one line of 64 bytes with its first seven links `(partner, pair index)`; what
 //!   is beyond that stands in a run of such lines, in a pool that all objects share. A run that is
 //!   full moves to one of twice the size;
-//! * each pair remembers where its two links stand, so that an end with ten thousand partners is
-//!   never searched: only the end with fewer partners is.
+//! * a link is found by looking through these lines. Of objects with more than about a hundred
+//!   partners the links stand in a hash table too, so that ten thousand partners are not searched.
 //!
 //! The table knows no boxes and no objects, only numbers. It grows to the largest number it has
 //! seen, so numbers should be dense. Its order is a function of the calls made and of nothing else.
 
 mod lines;
+mod places;
 mod table;
 
 pub use table::{Inserted, PairTable, Removed, pack, unpack};

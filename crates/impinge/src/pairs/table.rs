@@ -4,13 +4,11 @@ use super::lines::{Lines, Link, small};
 
 /// A set of unordered pairs; see the module's page for its layout.
 ///
-/// A number may be paired with any number, itself included. Finding a pair costs the smaller of the two
-/// partner counts; adding and removing by index cost constant time.
+/// A number may be paired with any number, itself included. Finding, adding and removing a pair cost
+/// constant time.
 #[derive(Clone, Debug, Default)]
 pub struct PairTable {
     pairs: Vec<(u32, u32)>,
-    /// Where the links of the two ends stand among the links of those objects, by pair.
-    places: Vec<(u32, u32)>,
     lines: Lines,
 }
 
@@ -88,17 +86,13 @@ impl PairTable {
     /// out until there is none takes an object out.
     #[must_use]
     pub fn any_pair_of(&self, a: u32) -> Option<usize> {
-        let last = self.lines.count(a).checked_sub(1)?;
-        Some(self.lines.link(a, small(last)).pair as usize)
+        Some(self.lines.last_link(a)?.pair as usize)
     }
 
     /// Where the pair stands in [`Self::pairs`], in either order of its ends.
     #[must_use]
     pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
-        let a_is_lighter = self.lines.count(a) <= self.lines.count(b);
-        let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
-        let link = self.lines.links(from).find(|link| link.partner == to)?;
-        Some(link.pair as usize)
+        self.lines.pair_of(a, b)
     }
 
     /// Adds the pair unless it is there.
@@ -112,23 +106,38 @@ impl PairTable {
     /// Adds a pair that the caller knows not to be there; constant time.
     pub fn insert_new(&mut self, a: u32, b: u32) -> usize {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
+        let index = self.pairs.len();
+        self.pairs.push((a, b));
+        self.link(index, a, b);
+        index
+    }
+
+    /// Takes the pair of `old` out, if it is there, and puts that of `new`, which the caller knows not
+    /// to be there, in its place: no other pair moves. Returns where it stands. Constant time.
+    pub fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
+        let index = self.unlink(old)?;
+        debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
+        self.link(index, new.0, new.1);
+        Some(index)
+    }
+
+    /// Writes the pair to `index` and gives both ends their links.
+    fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.pairs[index] = (low, high);
         self.lines.reach(high);
-        let pair = small(self.pairs.len());
-        let low_place = self.lines.push(low, Link { partner: high, pair });
+        let pair = small(index);
+        self.lines.push(low, Link { partner: high, pair });
         // A number paired with itself has one link, which stands for both ends.
-        let is_alone = low == high;
-        let high_place =
-            if is_alone { low_place } else { self.lines.push(high, Link { partner: low, pair }) };
-        self.pairs.push((low, high));
-        self.places.push((low_place, high_place));
-        self.pairs.len() - 1
+        if low != high {
+            self.lines.push(high, Link { partner: low, pair });
+        }
     }
 
     /// Takes the pair out, if it is there.
     pub fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
-        let index = self.index_of(a, b)?;
-        Some(self.remove_at(index))
+        let index = self.unlink((a, b))?;
+        Some(self.close_gap(index))
     }
 
     /// Takes out the pair that stands at `index`; constant time.
@@ -136,14 +145,23 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn remove_at(&mut self, index: usize) -> Removed {
-        let (low, high) = self.pairs[index];
-        let (low_place, high_place) = self.places[index];
-        self.unlink(low, low_place);
-        if low != high {
-            self.unlink(high, high_place);
+        self.unlink(self.pairs[index]);
+        self.close_gap(index)
+    }
+
+    /// Takes the links of the pair out, if it is there, and says where it stands.
+    #[inline]
+    fn unlink(&mut self, (a, b): (u32, u32)) -> Option<usize> {
+        let index = self.lines.remove(a, b)?;
+        if a != b {
+            self.lines.remove(b, a);
         }
+        Some(index)
+    }
+
+    /// Moves the last pair to where one without links stands.
+    fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
-        self.places.swap_remove(index);
         let was_last = index == self.pairs.len();
         if !was_last {
             self.relink(index);
@@ -151,30 +169,27 @@ impl PairTable {
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
     }
 
-    /// Takes the link at `place` out of the object's links and tells the pair of the link that
-    /// moved there.
-    fn unlink(&mut self, object: u32, place: u32) {
-        let Some(moved) = self.lines.swap_remove(object, place) else { return };
-        let places = &mut self.places[moved.pair as usize];
-        if object <= moved.partner {
-            places.0 = place;
-        }
-        if object >= moved.partner {
-            places.1 = place;
-        }
-    }
-
     /// Tells both links of the pair at `index` that it stands there.
     fn relink(&mut self, index: usize) {
-        let ((low, high), (low_place, high_place)) = (self.pairs[index], self.places[index]);
-        self.lines.link_mut(low, low_place).pair = small(index);
-        self.lines.link_mut(high, high_place).pair = small(index);
+        let ((low, high), pair) = (self.pairs[index], small(index));
+        self.lines.set_pair(low, Link { partner: high, pair });
+        self.lines.set_pair(high, Link { partner: low, pair });
+    }
+
+    /// Brings what is known of the ends of some packed pairs into the cache: several waits for memory
+    /// pass at once where the changes that follow would wait one by one. Changes nothing.
+    #[inline]
+    pub(crate) fn fetch(&self, keys: &[u64]) {
+        let count = |key: u64| {
+            let (low, high) = unpack(key);
+            self.count(low).wrapping_add(self.count(high))
+        };
+        core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
     }
 
     /// Takes out every pair.
     pub fn clear(&mut self) {
         self.pairs.clear();
-        self.places.clear();
         self.lines.clear();
     }
 
@@ -184,18 +199,12 @@ impl PairTable {
     /// What is wrong, in words.
     pub fn validate(&self) -> Result<(), String> {
         self.lines.validate()?;
-        if self.places.len() != self.pairs.len() {
-            return Err("places out of step with pairs".to_owned());
-        }
-        for (index, (&(low, high), &(low_place, high_place))) in
-            self.pairs.iter().zip(&self.places).enumerate()
-        {
-            let pair = small(index);
-            let from_low = low_place < small(self.count(low))
-                && self.lines.link(low, low_place) == Link { partner: high, pair };
-            let from_high = high_place < small(self.count(high))
-                && self.lines.link(high, high_place) == Link { partner: low, pair };
-            if !(low <= high && from_low && from_high) {
+        for (index, &(low, high)) in self.pairs.iter().enumerate() {
+            let pair = Some(small(index));
+            let mut ends = [(low, high), (high, low)].into_iter().map(|(from, to)| {
+                self.lines.links(from).find(|link| link.partner == to).map(|link| link.pair)
+            });
+            if low > high || ends.any(|end| end != pair) {
                 return Err(format!("pair {index} = ({low}, {high}) is linked wrongly"));
             }
         }
@@ -281,6 +290,40 @@ mod tests {
         table.clear();
         table.validate().expect("sound");
         assert!(table.is_empty(), "cleared");
+    }
+
+    #[test]
+    fn many_objects_with_many_partners() {
+        // All pairs of 180 numbers: every one is heavy.
+        let mut table = PairTable::new();
+        for b in 0..180 {
+            (0..=b).for_each(|a| _ = table.insert(b, a));
+        }
+        table.validate().expect("sound");
+        assert_eq!(table.len(), 180 * 181 / 2, "each with each, and with itself");
+        // Removals and replacements until all but a few are light again.
+        let (mut state, mut set) = (3, BTreeSet::new());
+        set.extend(table.pairs().iter().map(|&(a, b)| pack(a, b)));
+        for step in 0..16_000_u32 {
+            let (a, b) = (next(&mut state, 180), next(&mut state, 180));
+            let index = usize::try_from(next(&mut state, small(set.len()))).expect("small");
+            if table.index_of(a, b).is_none() && step % 8 == 0 {
+                let (old1, old2) = table.pairs()[index];
+                assert_eq!(table.replace((old2, old1), (a, b)), Some(index), "step {step}");
+                assert!(set.remove(&pack(old1, old2)) && set.insert(pack(a, b)), "step {step}");
+                assert_eq!(table.index_of(b, a), Some(index), "no pair moves");
+            } else {
+                let (old1, old2) = table.pairs()[index];
+                table.remove_at(index);
+                assert!(set.remove(&pack(old1, old2)), "step {step}");
+            }
+            if step % 1000 == 0 {
+                table.validate().expect("sound");
+            }
+            assert_eq!(table.index_of(a, b).is_some(), set.contains(&pack(a, b)), "step {step}");
+        }
+        table.validate().expect("sound");
+        assert!((100..4000).contains(&table.len()), "{} pairs are left", table.len());
     }
 
     #[test]

@@ -75,6 +75,11 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// If a box is inverted or holds a NaN, which [`Aabb`] refuses but arithmetic on boxes can yield,
     /// or if 32 bits cannot number the boxes.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
+        Self::try_from_vec(boxes.to_vec())
+    }
+
+    /// [`Self::try_from_boxes`] of boxes that are no longer needed.
+    pub(crate) fn try_from_vec(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         (N::tables().partitioning.build)(boxes)
     }
 
@@ -355,22 +360,19 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
     }
 
     /// See [`Self::try_from_boxes`].
-    pub(crate) fn build(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
+    pub(crate) fn build(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         let count = count(boxes.len())?;
         let (lanes, mut unbounded) = (Lanes::detect(), Vec::new());
-        let mut tree = Tree::new(lanes);
-        check(boxes)?;
-        for (id, aabb) in (0..count).zip(boxes) {
+        check(&boxes)?;
+        let bounded = (0..count).zip(&boxes).filter_map(|(id, aabb)| {
             let tight = Bounds::enclosing(aabb);
-            if tight.is_finite() {
-                tree.insert_still(id, &tight);
-            } else {
+            if !tight.is_finite() {
                 unbounded.push(id);
             }
-        }
-        tree.refit();
-        tree.settle();
-        Ok(Self { boxes: boxes.to_vec(), bounds: around(boxes), tree, unbounded, lanes })
+            tight.is_finite().then_some((id, tight))
+        });
+        let tree = Tree::of_still(lanes, bounded);
+        Ok(Self { bounds: around(&boxes), boxes, tree, unbounded, lanes })
     }
 
     /// See [`Self::try_refit`].
@@ -430,6 +432,24 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         found: &mut dyn FnMut(u32, N) -> N,
     ) {
         self.search().by_time(sweep, max_time, found);
+    }
+
+    /// [`Self::by_time`] in no exact order, which is faster.
+    pub(crate) fn near_first(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().near_first(sweep, max_time, found);
+    }
+
+    pub(crate) const fn packed(&self) -> &Tree<D> {
+        &self.tree
+    }
+
+    pub(crate) fn unbounded(&self) -> &[u32] {
+        &self.unbounded
     }
 
     pub(crate) fn by_distance(

@@ -1,7 +1,7 @@
 //! Searches of trees whose boxes stand for exact ones: the trees propose, the exact boxes decide.
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::{Block, Bounds, Frontier, Keys, LANES, Lanes, Tree};
+use crate::bvh::{Block, Bounds, Frontier, Keys, LANES, Lanes, Slabs, Tree};
 use crate::math::{Point, Real, Vector, min};
 
 /// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
@@ -111,6 +111,32 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
             object: |id: u32| Some(self.exact[id as usize].distance_to_aabb(aabb)),
         };
         self.best_first(limit, &keys, found);
+    }
+
+    /// [`Self::by_time`] in no exact order, but near ones first.
+    pub(crate) fn near_first(
+        &self,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        mut found: impl FnMut(u32, N) -> N,
+    ) {
+        let Sweep { aabb, velocity } = sweep;
+        if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
+            return;
+        }
+        let mut lowest = limit;
+        let mut decide = |id: u32| {
+            let enter = self.exact[id as usize].sweep_interval(aabb, velocity);
+            if let Some((enter, _)) = enter.filter(|&(enter, _)| enter <= lowest) {
+                lowest = min(lowest, found(id, enter));
+            }
+            lowest
+        };
+        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
+        let size = self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max);
+        let slabs = Slabs::new(aabb, velocity, size);
+        let first = slabs.limit(first);
+        self.lanes.visit_near_first(&self.trees, &slabs, first, |id| slabs.limit(decide(id)));
     }
 
     fn best_first(

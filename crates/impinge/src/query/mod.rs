@@ -31,7 +31,7 @@ pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{
-    BoxJob, box_contacts2, contacts2, contacts3, tangents2, tangents3, update_box_pairs3,
+    BoxJob, contacts2, contacts3, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
     witness_features2, witness_features3,
 };
 pub use manifold_view::{ContactPoint, ManifoldView};
@@ -39,6 +39,6 @@ pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
-pub use ray::{RayCast, RayIntersection};
+pub use ray::{RayBatch, RayCast, RayIntersection};
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};

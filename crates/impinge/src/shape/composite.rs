@@ -8,7 +8,7 @@
 use smallvec::SmallVec;
 
 use super::{FeatureId, Geometry, Segment, Shape, Triangle};
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
@@ -31,6 +31,22 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
 
     /// Where to look for parts.
     fn search(&self) -> &dyn PartSearch<N, D>;
+
+    /// Calls `visit` with the parts that a ray may hit at or before the time `limit`, and their numbers:
+    /// none is left out that it hits, and each comes once at most. `visit` returns the new limit, which
+    /// never grows; a negative one ends the search. Near parts first is better, but no order is promised.
+    ///
+    /// `around` is a box around the ray's origin that holds what rounding has made of it. The default
+    /// asks [`Self::search`]; a composite that can tell more than by boxes may do so.
+    fn parts_along(
+        &self,
+        ray: &Ray<N, D>,
+        around: &Aabb<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
+    ) {
+        self.search().cast(around, &ray.dir, limit, &mut |part, _| visit(part, self.part(part)));
+    }
 
     /// What holds the parts together, where they are pieces of one surface: so that the seams
     /// between them are not taken for edges. `None` for solids side by side.

@@ -1,7 +1,7 @@
 //! Cones, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, radial_of};
+use super::round::{Disk, axial, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -77,6 +77,29 @@ impl<N: Real> Cone<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
         Some(line.x * radial_of(direction).norm() + line.y * direction.y)
+    }
+}
+
+impl<N: Real> Cone<N> {
+    /// The apex, base, rim or round side that a point of the surface lies on, up to `noise`; `None` for
+    /// a cone that is hardly thicker than the noise.
+    pub(crate) fn part_at<const D: usize>(
+        &self,
+        point: &Point<N, D>,
+        noise: N,
+    ) -> Option<FeatureId> {
+        let least = N::lit(4.0) * noise;
+        if self.half_height <= least || self.radius <= least {
+            return None;
+        }
+        let (y, aside) = axial(point);
+        Some(if y <= noise - self.half_height {
+            if aside >= self.radius - noise { FeatureId::Edge(0) } else { FeatureId::Face(0) }
+        } else if y >= self.half_height - N::TWO * noise && aside <= N::TWO * noise {
+            FeatureId::Vertex(0)
+        } else {
+            FeatureId::Face(1)
+        })
     }
 }
 

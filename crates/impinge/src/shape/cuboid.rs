@@ -74,6 +74,23 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 }
 
+impl<N: Real, const D: usize> Cuboid<N, D> {
+    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a point
+    /// inside, or of a box that is hardly thicker than the noise.
+    pub(crate) fn part_at(&self, point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+        let mut free = 0;
+        for axis in 0..D {
+            let half = self.half_extents[axis];
+            if half <= N::lit(4.0) * noise {
+                return None;
+            }
+            free |= u32::from(point[axis].abs() < half - noise) << axis;
+        }
+        let part = Part::<D> { free, corner: signs(&point.coords) };
+        (free != Part::<D>::ALL).then(|| part.name())
+    }
+}
+
 /// A vertex, edge or face: the points of the box whose coordinates on the `free` axes range, while
 /// the others are those of `corner`. Both are sets of axes as bits, `corner` of those with the
 /// positive sign.

@@ -1,7 +1,7 @@
 //! Cylinders, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, radial_of};
+use super::round::{Disk, axial, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -64,6 +64,29 @@ impl<N: Real> Cylinder<N> {
 impl<N: Real> Cylinder<N> {
     fn disk(&self, y: N) -> Disk<N> {
         Disk { radius: self.radius, y }
+    }
+}
+
+impl<N: Real> Cylinder<N> {
+    /// The cap, rim or round side that a point of the surface lies on, up to `noise`; `None` for a
+    /// cylinder that is hardly thicker than the noise.
+    pub(crate) fn part_at<const D: usize>(
+        &self,
+        point: &Point<N, D>,
+        noise: N,
+    ) -> Option<FeatureId> {
+        let least = N::lit(4.0) * noise;
+        if self.half_height <= least || self.radius <= least {
+            return None;
+        }
+        let (y, aside) = axial(point);
+        let side = u32::from(y < N::ZERO);
+        let is_at_end = y.abs() >= self.half_height - noise;
+        Some(if is_at_end && aside >= self.radius - noise {
+            FeatureId::Edge(side)
+        } else {
+            FeatureId::Face(if is_at_end { side } else { 2 })
+        })
     }
 }
 

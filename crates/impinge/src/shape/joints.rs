@@ -46,6 +46,11 @@ impl Joints {
         Self { of_vertex, starts, parts: listed }
     }
 
+    /// The number of vertices.
+    pub(super) const fn vertices(&self) -> usize {
+        self.of_vertex.len()
+    }
+
     /// The joint of a vertex.
     #[inline]
     pub(super) fn of(&self, vertex: u32) -> u32 {

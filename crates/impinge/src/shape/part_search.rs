@@ -3,7 +3,7 @@
 use super::PartSearch;
 use crate::bounding_volume::Aabb;
 use crate::math::{Space, Vector};
-use crate::partitioning::BoxTree;
+use crate::partitioning::{BoxTree, Sweep};
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
     fn bounds(&self) -> Aabb<N, D> {
@@ -25,7 +25,8 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
         limit: N,
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
-        self.visit_cast(aabb, velocity, limit, |index, enter| visit(number(index), enter));
+        let sweep = Sweep { aabb: *aabb, velocity: *velocity };
+        (N::tables().partitioning.near_first)(self, &sweep, limit, visit);
     }
 }
 

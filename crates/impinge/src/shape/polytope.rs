@@ -1,5 +1,6 @@
 //! The common core of convex polygons and convex hulls: vertices, faces, edges and who meets whom.
 
+use core::array::from_fn;
 use core::ops::Range;
 
 use super::FeatureId;
@@ -17,6 +18,8 @@ use crate::math::{Point, Real, Vector, max, unit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(super) vertices: Vec<Point<N, D>>,
+    /// The vertices again, some at a time, coordinate by coordinate; the last one fills the rest.
+    pub(super) blocks: Vec<[[N; LANES]; D]>,
     pub(super) faces: Vec<PolytopeFace<N, D>>,
     /// The vertices of all faces, one loop after the other.
     pub(super) loops: Vec<u32>,
@@ -33,6 +36,9 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
 }
+
+/// How many vertices are looked at side by side.
+const LANES: usize = 4;
 
 /// A flat face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,15 +128,34 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// The index of a vertex farthest along a direction: the first of equals.
+    ///
+    /// Written for the compiler to keep each array in one register.
     pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
-        let (mut best, mut height) = (0, self.vertices[0].coords.dot(direction));
-        for (index, vertex) in self.vertices.iter().enumerate().skip(1) {
-            let candidate = vertex.coords.dot(direction);
-            if candidate > height {
-                (best, height) = (index, candidate);
+        let (mut heights, mut places) = (heights(&self.blocks[0], direction), [0_u32; LANES]);
+        for (place, block) in (1_u32..).zip(&self.blocks[1..]) {
+            let candidates = self::heights(block, direction);
+            for lane in 0..LANES {
+                let is_higher = candidates[lane] > heights[lane];
+                heights[lane] = if is_higher { candidates[lane] } else { heights[lane] };
+                places[lane] = if is_higher { place } else { places[lane] };
             }
         }
-        best
+        let index = |lane: usize| places[lane] as usize * LANES + lane;
+        (1..LANES)
+            .fold((heights[0], index(0)), |best, lane| {
+                let is_tie = heights[lane] == best.0 && index(lane) < best.1;
+                if heights[lane] > best.0 || is_tie { (heights[lane], index(lane)) } else { best }
+            })
+            .1
+    }
+
+    /// What [`Self::blocks`] holds.
+    pub(super) fn blocks_of(vertices: &[Point<N, D>]) -> Vec<[[N; LANES]; D]> {
+        let block = |some: &[Point<N, D>]| {
+            let last = some.len() - 1;
+            from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
+        };
+        vertices.chunks(LANES).map(block).collect()
     }
 
     /// The largest distance of a vertex from the origin.
@@ -154,6 +179,21 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         };
         self.fan_directions = self.fans.iter().map(direction).collect();
     }
+}
+
+/// How far the vertices of a block reach along a direction.
+#[inline]
+fn heights<N: Real, const D: usize>(
+    block: &[[N; LANES]; D],
+    direction: &Vector<N, D>,
+) -> [N; LANES] {
+    let mut sums = from_fn(|lane| block[0][lane] * direction[0]);
+    for axis in 1..D {
+        for lane in 0..LANES {
+            sums[lane] += block[axis][lane] * direction[axis];
+        }
+    }
+    sums
 }
 
 /// A count of vertices, edges or faces as it is stored.

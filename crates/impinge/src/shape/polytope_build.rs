@@ -31,6 +31,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     fn from_vertices(vertices: Vec<Point<N, D>>, center: Point<N, D>) -> Self {
         Self {
             reach: Self::reach_of(&vertices),
+            blocks: Self::blocks_of(&vertices),
             vertices,
             faces: Vec::new(),
             loops: Vec::new(),

@@ -30,6 +30,47 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    /// The face, side or vertex that a point of the surface lies on, up to `noise`, of those that face
+    /// the unit vector `direction`.
+    pub(crate) fn part_at(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+        noise: N,
+    ) -> FeatureId {
+        match self.part_toward(direction, Tilt::usual()) {
+            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+            Part::Side(side) => {
+                self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
+            }
+            Part::Face(index) => {
+                let face = &self.faces[index as usize];
+                let end = self.end_at(self.face_vertices(face), point, noise);
+                let side = || {
+                    let mut sides = self.face_sides(face).iter();
+                    sides.find(|&&side| self.is_on_side(side, point, noise)).copied()
+                };
+                end.or_else(|| side().map(Self::side_id)).unwrap_or(FeatureId::Face(index))
+            }
+        }
+    }
+
+    /// The first of some vertices that a point coincides with.
+    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+        let near = N::lit(4.0) * noise * noise;
+        let is_near =
+            |&&vertex: &&u32| (point - self.vertices[vertex as usize]).norm_squared() <= near;
+        vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
+    }
+
+    /// Whether a point lies on the line of a side.
+    fn is_on_side(&self, side: u32, point: &Point<N, D>, noise: N) -> bool {
+        let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
+        let (along, arm) = (b - a, point - a);
+        let aside = arm - along * (along.dot(&arm) / along.norm_squared());
+        aside.norm_squared() <= noise * noise
+    }
+
     /// The side at a vertex that leans least along a direction, and the sine by which it does.
     fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
         let mut best: Option<(u32, N)> = None;

@@ -3,6 +3,12 @@
 use super::{CurvedSupport, Feature, FeatureId};
 use crate::math::{Point, Real, Vector, max, unit};
 
+/// How far a point lies along the y axis and from it.
+pub(super) fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
+    let squares = (0..D).filter(|&axis| axis != 1).map(|axis| point[axis] * point[axis]);
+    (point[1], squares.fold(N::ZERO, |sum, square| sum + square).sqrt())
+}
+
 /// The points within `radius` of the y axis at height `y`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disk<N: Real> {

@@ -114,6 +114,35 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
+    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where the
+    /// unit vector `direction` points; `None` of a triangle whose corners lie on a line, and for a
+    /// point inside one of the plane.
+    pub(crate) fn part_at(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+        noise: N,
+    ) -> Option<FeatureId> {
+        let corners = self.corners();
+        let to = |index: usize| point - corners[index];
+        if let Some(corner) =
+            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * noise * noise)
+        {
+            return Some(vertex_id(corner));
+        }
+        let is_on = |&side: &usize| {
+            let (along, arm) = (corners[(side + 1) % 3] - corners[side], to(side));
+            let aside = arm - along * (along.dot(&arm) / along.norm_squared());
+            aside.norm_squared() <= noise * noise
+        };
+        let mut touched = (0..3).filter(is_on);
+        match (touched.next(), touched.next()) {
+            (Some(side), None) => Some(side_id::<D>(side)),
+            (None, _) if D > 2 => Some(FeatureId::Face(u32::from(self.ring(direction)[1] == 2))),
+            _ => None,
+        }
+    }
+
     fn support_corner(&self, direction: &Vector<N, D>) -> usize {
         let support = self.core_support(direction);
         (0..3).find(|&index| self.corners()[index] == support).unwrap_or(0)

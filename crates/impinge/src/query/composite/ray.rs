@@ -27,15 +27,14 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     visit: &mut dyn FnMut(RayIntersection<N, D>) -> N,
 ) {
     let RayQuestion { ray, max_time, solid } = question;
-    let (mut latest, search) = (*max_time, parts.search());
-    let Some(start) = around_point(&ray.origin, &search.bounds()) else { return };
+    let mut latest = *max_time;
+    let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
     // Written so that a time that is not a number is before the start.
     let asks = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
     if !asks {
         return;
     }
-    search.cast(&start, &ray.dir, loosened(latest), &mut |index, _| {
-        let part = parts.part(index);
+    parts.parts_along(ray, &start, loosened(latest), &mut |index, part| {
         let local = ray.inverse_transformed_by(&part.pose);
         let hit = part.solid.as_shape().cast_local_ray(&local, *solid);
         if let Some(hit) = hit.filter(|hit| hit.toi <= latest) {

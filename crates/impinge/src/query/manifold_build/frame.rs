@@ -34,6 +34,12 @@ pub(super) struct Candidate<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Candidate<N, D> {
+    /// The nearest pair of points, which lie on the given parts.
+    pub(super) fn alone(witness: &Separation<N, D>, features: [FeatureId; 2]) -> Self {
+        let (point1, distance) = (witness.point1, witness.distance);
+        Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept_id: None }
+    }
+
     pub(super) fn named(&self, id: u32) -> RawPoint<N, D> {
         let [feature1, feature2] = self.features;
         RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id }
@@ -49,11 +55,10 @@ impl<N: Real, const D: usize> Frame<N, D> {
         request: &ManifoldRequest<N>,
         tangents: [Vector<N, D>; 2],
     ) -> Self {
-        let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
         Self {
             witness: *witness,
             tangents,
-            tolerance: N::lit(ROUNDING_ERRORS) * N::EPSILON * size,
+            tolerance: rounding(pair),
             prediction: request.prediction,
             sine: request.sine,
         }
@@ -109,7 +114,18 @@ impl<N: Real, const D: usize> Frame<N, D> {
     }
 }
 
+/// The length below which all is rounding errors of the pair's size.
+#[inline]
+pub(super) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+    let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
+    N::lit(ROUNDING_ERRORS) * N::EPSILON * size
+}
+
 /// The reach of a solid with its rounding; half-spaces have none.
+#[inline]
 fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
+    if let Kind::Ball(ball) = kind {
+        return ball.radius();
+    }
     Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
 }

@@ -12,6 +12,7 @@
 //! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
 mod along;
+mod ball;
 mod box_faces;
 mod box_lanes;
 mod box_sides;
@@ -22,12 +23,13 @@ mod names;
 mod overlap;
 mod patch;
 mod reduce;
+mod segments;
 #[cfg(test)]
 pub(super) mod tests;
 mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between};
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs3};
+pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
@@ -85,11 +87,20 @@ pub(crate) fn contacts3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
+    if let Kind::Ball(_) = pair.first {
+        return ball::build(pair, separation_in_space(pair, request.prediction), out);
+    }
     if box_faces::build(pair, request, out) {
         return;
     }
     match separation_in_space(pair, request.prediction) {
-        Some(separation) => build3(pair, &separation, request, out),
+        Some(separation) => match segments::crossing_parts(pair, &separation, request) {
+            Some(parts) => {
+                out.normal = separation.normal;
+                names::settle_alone(&Candidate::alone(&separation, parts), out);
+            }
+            None => build3(pair, &separation, request, out),
+        },
         None => out.points.clear(),
     }
 }
@@ -100,19 +111,15 @@ pub(crate) fn contacts2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
+    if let Kind::Ball(_) = pair.first {
+        return ball::build(pair, separation_in_plane(pair, request.prediction), out);
+    }
     if box_sides::build(pair, request, out) {
         return;
     }
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
-    }
-}
-
-/// The manifolds of pairs of rectangles, one by one.
-pub(crate) fn box_contacts2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
-    for job in jobs {
-        contacts2(&job.pair(), job.request, job.raw);
     }
 }
 
@@ -129,7 +136,10 @@ fn build<N: Real, const D: usize>(
     }
     out.normal = frame.normal();
     if let Kind::Ball(_) = pair.first {
-        return names::settle_alone(&of_ball(pair, frame), out);
+        let touched = ball::known_part(pair, &frame.witness)
+            .unwrap_or_else(|| ball::shown_at_witness(pair, frame));
+        let parts = [FeatureId::Face(0), touched];
+        return names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
     }
     let mut candidates = Candidates::new();
     fill(pair, frame, &mut candidates);
@@ -172,13 +182,6 @@ fn choose_admitted<N: Real, const D: usize>(
     });
     choose(candidates, (distance, tolerance), limit, out);
     true
-}
-
-/// The only point of a ball and another solid: the witness.
-fn of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>, frame: &Frame<N, D>) -> Candidate<N, D> {
-    let mut second = Facet::boundary(Which::Second);
-    face(&mut second, pair.second, Some(&pair.pose12), frame);
-    at_witness_between(frame, [FeatureId::Face(0), at_witness(&second, frame)])
 }
 
 /// The corners of the common area, and the witness if it is none of them.
@@ -230,17 +233,7 @@ fn add_witness<N: Real, const D: usize>(
 ) {
     let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
     out.retain(|candidate| is_shared || candidate.features != features);
-    out.push(at_witness_between(frame, features));
-}
-
-/// The witness as a candidate between two parts.
-fn at_witness_between<N: Real, const D: usize>(
-    frame: &Frame<N, D>,
-    features: [FeatureId; 2],
-) -> Candidate<N, D> {
-    let (point1, distance) = (frame.witness.point1, frame.witness.distance);
-    let flat = Vector::<N, 2>::zeros();
-    Candidate { point1, distance, flat, features, kept_id: None }
+    out.push(Candidate::alone(&frame.witness, features));
 }
 
 /// The candidate that stands for the witness: of those whose distance is the smallest but for

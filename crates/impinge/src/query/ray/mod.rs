@@ -5,6 +5,7 @@
 //! One table per dimension (`ray2`, `ray3`) says which file answers for which shape.
 
 mod ball;
+mod batch;
 mod capsule;
 mod clip;
 mod cone;
@@ -24,6 +25,7 @@ mod triangle2;
 mod triangle3;
 mod volume;
 
+pub use batch::RayBatch;
 pub(crate) use span::Span;
 
 use core::cmp::Ordering;
@@ -32,8 +34,10 @@ use super::composite::RayQuestion;
 use super::point::length;
 use super::{PointProjection, PointQuery};
 use crate::bounding_volume::Ray;
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
-use crate::shape::{FeatureId, Shape};
+use crate::math::{
+    AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max, max_component, min,
+};
+use crate::shape::{FeatureId, Kind, Shape};
 
 /// Where and when a ray first meets a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +94,54 @@ pub trait RayCast<N: Real, const D: usize> {
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>>;
+
+    /// [`Self::cast_local_ray_until`] for many rays: `hits[i]` becomes the answer about `batch.rays[i]`, to
+    /// the bit. With the feature `parallel` on several threads, with the same answers.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Point, Vector};
+    /// use impinge::dim3::query::Ray;
+    /// use impinge::dim3::shape::Ball;
+    /// use impinge::query::{RayBatch, RayCast};
+    ///
+    /// let rays = [0.0, 0.5, 3.0].map(|y| Ray::new(Point::new(-4.0_f32, y, 0.0), Vector::x()));
+    /// let mut hits = [None; 3];
+    /// Ball::new(1.0).cast_local_rays(&RayBatch::new(&rays).until(10.0), &mut hits);
+    /// assert_eq!(hits[0].map(|hit| hit.toi), Some(3.0));
+    /// assert_eq!(hits[1], Ball::new(1.0).cast_local_ray(&rays[1], true));
+    /// assert_eq!(hits[2], None, "it passes above");
+    /// ```
+    ///
+    /// # Panics
+    /// If there are not as many places as rays.
+    #[track_caller]
+    fn cast_local_rays(
+        &self,
+        batch: &RayBatch<'_, N, D>,
+        hits: &mut [Option<RayIntersection<N, D>>],
+    ) {
+        let RayBatch { max_time, solid, .. } = *batch;
+        batch.each(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
+    }
+
+    /// [`Self::first_hit_with_ray`] for many rays, as [`Self::cast_local_rays`].
+    ///
+    /// # Panics
+    /// If there are not as many places as rays.
+    #[track_caller]
+    fn cast_rays<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        batch: &RayBatch<'_, N, D>,
+        hits: &mut [Option<RayIntersection<N, D>>],
+    ) {
+        let pose = Pose::from_isometry(m);
+        let local: Vec<_> = batch.rays.iter().map(|r| r.inverse_transformed_by(&pose)).collect();
+        self.cast_local_rays(&RayBatch { rays: &local, ..*batch }, hits);
+        for hit in hits.iter_mut().flatten() {
+            hit.normal = pose.vector(&hit.normal);
+        }
+    }
 
     /// The first hits on each part of a composite by `max_time`, sorted by time and then by part, in the
     /// local frame. Of a convex solid that is its first hit.
@@ -201,9 +253,19 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
             });
             return first;
         }
-        let project = |point: &_| self.project_local_point(point);
-        let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(self.geometry().0, ray));
+        let kind = self.geometry().0;
+        let project = |point: &_| may_hold(kind, point).then(|| self.project_local_point(point));
+        let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(kind, ray));
         hit.filter(|hit| hit.toi <= max_time)
+    }
+
+    fn cast_local_rays(
+        &self,
+        batch: &RayBatch<'_, N, D>,
+        hits: &mut [Option<RayIntersection<N, D>>],
+    ) {
+        let RayBatch { max_time, solid, .. } = *batch;
+        batch.each_in_chunks(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
     }
 
     fn local_ray_hits(
@@ -261,12 +323,12 @@ fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D
 
 /// What all shapes have in common: rays that are no rays, and the length of the direction.
 ///
-/// `span` is asked for finite rays whose largest component of the direction is between 1 and 2: the
+/// `project` is asked where a ray may start inside; `None` is far from that. `span` is asked for finite rays whose largest component of the direction is between 1 and 2: the
 /// direction is divided by a power of two, which loses nothing, so that its powers stay in range.
 fn cast<N: Real, const D: usize>(
     ray: &Ray<N, D>,
     solid: bool,
-    project: impl FnOnce(&Point<N, D>) -> (PointProjection<N, D>, FeatureId),
+    project: impl FnOnce(&Point<N, D>) -> Option<(PointProjection<N, D>, FeatureId)>,
     span: impl FnOnce(&Ray<N, D>) -> Option<Span<N, D>>,
 ) -> Option<RayIntersection<N, D>> {
     if !ray.origin.iter().chain(ray.dir.iter()).all(|x| x.is_finite_number()) {
@@ -274,7 +336,7 @@ fn cast<N: Real, const D: usize>(
     }
     let speed = max_component(&ray.dir);
     if speed == N::ZERO {
-        let (nearest, feature) = project(&ray.origin);
+        let (nearest, feature) = project(&ray.origin)?;
         let on_boundary = length(&(ray.origin - nearest.point)) == N::ZERO;
         let hits = if solid { nearest.is_inside } else { on_boundary };
         return hits.then(|| at_start(feature));
@@ -283,11 +345,28 @@ fn cast<N: Real, const D: usize>(
     let hit = span(&Ray::new(ray.origin, ray.dir / unit)).and_then(|span| span.first_hit(solid));
     let Some(hit) = hit else {
         // By rounding, a crossing at the start may seem to lie before it.
-        let start = if solid { Some(project(&ray.origin)) } else { None };
+        let start = if solid { project(&ray.origin) } else { None };
         return start
             .filter(|(nearest, _)| nearest.is_inside)
             .map(|(_, feature)| at_start(feature));
     };
     let toi = hit.toi / unit;
     toi.is_finite_number().then_some(RayIntersection { toi, ..hit })
+}
+
+/// False where a solid is certainly too far from a point to hold it: a quick look at triangles, which most
+/// rays that come near do not hit.
+fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
+    let Kind::Triangle(triangle) = kind else { return true };
+    let [a, b, c] = triangle.corners();
+    let largest = |corner: &Point<N, D>| max_component(&corner.coords);
+    let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));
+    // Twice what a point may be beside a thin set.
+    let slack = N::lit(16.0) * N::EPSILON * scale * N::TWO;
+    (0..D).all(|axis| {
+        let low = min(min(a[axis], b[axis]), c[axis]);
+        let high = max(max(a[axis], b[axis]), c[axis]);
+        let is_beside = point[axis] < low - slack || point[axis] > high + slack;
+        !is_beside
+    })
 }

@@ -3,7 +3,7 @@
 use super::segment::{Names, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector, cross, cross2, unit_or};
+use crate::math::{Point, Real, Vector, cross, cross2, unit, unit_or};
 use crate::shape::{FeatureId, Triangle};
 
 /// Through the inside, else along the triangle: there the sides answer, each within rounding.
@@ -81,7 +81,8 @@ fn crossing<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>, t: N) -> Crossi
     let normal = cross(&(b - a), &(c - a));
     let from_front = normal.dot(&ray.dir) <= N::ZERO;
     let facing = if from_front { normal } else { -normal };
-    let against = unit_or(&-ray.dir, Vector::<N, 3>::zeros());
+    let normal = unit(&facing).map(|(normal, _)| normal);
+    let against = || unit_or(&-ray.dir, Vector::<N, 3>::zeros());
     let face = if from_front { 0 } else { 1 };
-    Crossing::new(t, unit_or(&facing, against), FeatureId::Face(face))
+    Crossing::new(t, normal.unwrap_or_else(against), FeatureId::Face(face))
 }

@@ -14,7 +14,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         ray: &Ray<N, D>,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
-        let project = |point: &_| self.project_point_with_feature(point);
+        let project = |point: &_| Some(self.project_point_with_feature(point));
         cast(ray, solid, project, |ray| cuboid::span([self.mins(), self.maxs()], ray))
     }
 
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
         let (center, radius) = (self.center(), self.radius());
-        let project = |point: &_| self.project_point_with_feature(point);
+        let project = |point: &_| Some(self.project_point_with_feature(point));
         cast(ray, solid, project, |ray| ball::around(center, radius, FeatureId::Face(0), ray))
     }
 

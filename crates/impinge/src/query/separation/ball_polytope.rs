@@ -36,15 +36,24 @@ fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> Projection<N
     let (distance, outward) = (height(highest, center), highest.normal);
     let flat = Projection { distance, outward, point: center - outward * distance };
     // Written so that NaN ends here too.
-    if distance > N::ZERO { project_from_outside(hull, center, &flat) } else { flat }
+    if distance > N::ZERO { project_from_outside(hull, center, (highest, &flat)) } else { flat }
 }
 
-/// A point outside; `flat` is how the face that it is highest above sees it.
+/// A point outside; `flat` is how the plane of the face that it is highest above sees it.
+///
+/// Mostly the nearest point lies on that very face, and the supporting plane there proves it.
 fn project_from_outside<N: Real>(
     hull: &Polytope<N, 3>,
     center: &Point<N, 3>,
-    flat: &Projection<N, 3>,
+    (highest, flat): (&PolytopeFace<N, 3>, &Projection<N, 3>),
 ) -> Projection<N, 3> {
+    let noise = noise(hull.reach() + center.coords.norm());
+    let certain =
+        |seen: &Projection<N, 3>| seen.outward.dot(&(center - hull.core_support(&seen.outward)));
+    let seen = project_on_face(hull, highest, center);
+    if certain(&seen) + noise / N::lit(4.0) >= seen.distance {
+        return seen;
+    }
     let mut best: Option<Projection<N, 3>> = None;
     for face in hull.faces().iter().filter(|face| height(face, center) > N::ZERO) {
         let seen = project_on_face(hull, face, center);
@@ -54,8 +63,7 @@ fn project_from_outside<N: Real>(
     }
     let mut best = best.unwrap_or(*flat);
     // The offset from a side is mostly rounding where the point is close: a face may know better.
-    let certain = best.outward.dot(&(center - hull.core_support(&best.outward)));
-    if certain + noise(hull.reach() + center.coords.norm()) < flat.distance {
+    if certain(&best) + noise < flat.distance {
         best.outward = flat.outward;
     }
     best

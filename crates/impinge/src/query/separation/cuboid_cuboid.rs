@@ -31,7 +31,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     if attained {
         return (found.distance <= limit).then_some(found);
     }
-    general::space(pair, limit)
+    general::of_flat_cores(pair, limit)
 }
 
 /// The points where the boxes face each other along an axis.

@@ -1,7 +1,8 @@
 //! Any two convex solids: the general algorithm, and what it takes to agree with the others.
 
+use super::flat_core::FlatCore;
 use super::wrong_kinds;
-use crate::convex::{Separation, separation2, separation3};
+use crate::convex::{self, Separation, Simplicial};
 use crate::math::{Pose, Real, max};
 use crate::query::Pair;
 use crate::shape::{Geometry, SupportMap};
@@ -21,8 +22,8 @@ fn maps<'a, N: Real, const D: usize>(
 /// bound that is off by rounding, and the exact comparison is made with the final distance. Zero or
 /// more: of solids that overlap, bounds may be off by more than the depth found in the end.
 fn loosened<N: Real, const D: usize>(
-    map1: &dyn SupportMap<N, D>,
-    map2: &dyn SupportMap<N, D>,
+    map1: &(impl SupportMap<N, D> + ?Sized),
+    map2: &(impl SupportMap<N, D> + ?Sized),
     pose12: &Pose<N, D>,
     limit: N,
 ) -> N {
@@ -32,16 +33,27 @@ fn loosened<N: Real, const D: usize>(
     max(limit, N::ZERO) + relative * (sizes + pose12.translation.norm() + limit.abs())
 }
 
-/// The separation of any two convex solids of the plane.
-pub(super) fn plane<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+/// The separation of any two convex solids.
+pub(super) fn separation<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
     let (map1, map2) = maps(pair);
-    let found = separation2(map1, map2, &pair.pose12, loosened(map1, map2, &pair.pose12, limit));
+    let loosened = loosened(map1, map2, &pair.pose12, limit);
+    let found = convex::separation(map1, map2, &pair.pose12, loosened);
     found.filter(|found| found.distance <= limit)
 }
 
-/// The separation of any two convex solids of space.
-pub(super) fn space<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    let (map1, map2) = maps(pair);
-    let found = separation3(map1, map2, &pair.pose12, loosened(map1, map2, &pair.pose12, limit));
+/// The separation of two solids whose cores are hulls of points: the same, with all in one place for
+/// the compiler.
+pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) else {
+        wrong_kinds(pair)
+    };
+    let loosened = loosened(&map1, &map2, &pair.pose12, limit);
+    let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened);
     found.filter(|found| found.distance <= limit)
 }

@@ -1,5 +1,7 @@
 //! Convex outlines in the plane: what segments, triangles, boxes and polygons have in common.
 
+use core::array::from_fn;
+
 use smallvec::{SmallVec, smallvec};
 
 use super::wrong_kinds;
@@ -36,7 +38,7 @@ impl<N: Real> Outline<N> {
     }
 
     /// Vertices that repeat the one before count once: beside a side of no length there would be no
-    /// [`Self::tip`].
+    /// bisector.
     fn new(mut vertices: SmallVec<[Point<N, 2>; 8]>, rounding: N) -> Self {
         vertices.dedup();
         if vertices.len() > 1 && vertices.first() == vertices.last() {
@@ -123,18 +125,27 @@ impl<N: Real> Outline<N> {
         if at > 0 { at - 1 } else { self.vertices.len() - 1 }
     }
 
-    /// The outward bisector at a vertex whose angle is sharper than a right angle; `None` at a
-    /// blunter one, and beside a side of no length.
+    /// Visits the directions that may be the best to part the outline from another: for each vertex the
+    /// outward normal of the side that starts there and, where the angle is sharper than a right
+    /// angle, the outward bisector.
     ///
-    /// An axis that sides alone would not try: it keeps the directions tried less than a right angle
+    /// Sides alone would not try the latter: it keeps the directions tried less than a right angle
     /// apart, so that flat outlines (segments, slivers) that point at each other are told apart.
-    pub(super) fn tip(&self, at: usize) -> Option<Vector<N, 2>> {
-        let (before, after) = (self.normals[self.previous(at)]?, self.normals[at]?);
-        if before.dot(&after) >= N::ZERO {
-            return None;
+    /// Beside a side of no length there is none.
+    #[inline]
+    pub(super) fn visit_axes(&self, visit: &mut impl FnMut(Vector<N, 2>)) {
+        let Some(mut before) = self.normals.last().copied() else { return };
+        for &after in &self.normals {
+            after.into_iter().for_each(&mut *visit);
+            if let (Some(before), Some(after)) = (before, after)
+                && before.dot(&after) < N::ZERO
+            {
+                // The normals turned back by a quarter are the directions of the sides.
+                let tip = unit(&(left_of(&before) - left_of(&after)));
+                tip.into_iter().for_each(|(tip, _)| visit(tip));
+            }
+            before = after;
         }
-        // The normals turned back by a quarter are the directions of the sides.
-        unit(&(left_of(&before) - left_of(&after))).map(|(tip, _)| tip)
     }
 
     /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
@@ -164,6 +175,35 @@ impl<N: Real> Outline<N> {
             }
         }
         ends
+    }
+}
+
+/// How many vertices [`Reach`] measures side by side.
+const LANES: usize = 8;
+
+/// How far an outline reaches along many directions: as [`Outline::height`], with the vertices side by
+/// side where there are few.
+pub(super) struct Reach<'a, N: Real> {
+    outline: &'a Outline<N>,
+    /// The coordinates, the last vertex again and again in the rest.
+    lanes: Option<([N; LANES], [N; LANES])>,
+}
+
+impl<'a, N: Real> Reach<'a, N> {
+    pub(super) fn of(outline: &'a Outline<N>) -> Self {
+        let vertices = outline.vertices.as_slice();
+        let last = vertices.len() - 1;
+        let at = |lane: usize| vertices[if lane < last { lane } else { last }];
+        let lanes = || (from_fn(|lane| at(lane).x), from_fn(|lane| at(lane).y));
+        Self { outline, lanes: (last < LANES).then(lanes) }
+    }
+
+    #[inline]
+    pub(super) fn along(&self, direction: &Vector<N, 2>) -> N {
+        let Some((xs, ys)) = &self.lanes else { return self.outline.height(direction) };
+        let heights: [N; LANES] = from_fn(|lane| direction.x * xs[lane] + direction.y * ys[lane]);
+        let halves: [N; LANES / 2] = from_fn(|lane| max(heights[lane + 4], heights[lane]));
+        max(max(halves[2], halves[0]), max(halves[3], halves[1]))
     }
 }
 

@@ -6,7 +6,7 @@
 //! while it is positive, so that the nearest points are ends of, or lie on, the sides next to the
 //! best normal.
 
-use super::outline::Outline;
+use super::outline::{Outline, Reach};
 use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
@@ -59,20 +59,16 @@ fn axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>, normal: Vector<N,
 
 /// The direction of the largest gap among the normals of all sides and the tips.
 fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
+    let (reach1, reach2) = (Reach::of(outline1), Reach::of(outline2));
     let mut best: Option<Axis<N>> = None;
     let mut attempt = |normal: Vector<N, 2>| {
-        let tried = axis(outline1, outline2, normal);
-        if best.is_none_or(|best| tried.gap > best.gap) {
-            best = Some(tried);
+        let gap = -reach2.along(&-normal) - reach1.along(&normal);
+        if best.is_none_or(|best| gap > best.gap) {
+            best = Some(Axis { gap, normal });
         }
     };
-    for at in 0..outline1.vertices.len() {
-        outline1.normals[at].into_iter().chain(outline1.tip(at)).for_each(&mut attempt);
-    }
-    for at in 0..outline2.vertices.len() {
-        let normals = outline2.normals[at].into_iter().chain(outline2.tip(at));
-        normals.map(|normal| -normal).for_each(&mut attempt);
-    }
+    outline1.visit_axes(&mut attempt);
+    outline2.visit_axes(&mut |normal| attempt(-normal));
     // Two points have no sides: the direction between them will do.
     best.unwrap_or_else(|| {
         let between = unit(&(outline2.vertices[0] - outline1.vertices[0]));

@@ -32,31 +32,52 @@ fn best_normal<N: Real>(
     ends2: &[Point<N, 3>; 2],
     offset: &Vector<N, 3>,
 ) -> Vector<N, 3> {
+    let reach = ends1.iter().chain(ends2).fold(N::ZERO, |most, p| max(p.coords.norm(), most));
+    let mut widest = Widest { ends1, ends2, noise: noise(reach), best: None };
+    let direct = unit(offset).map(|(along, _)| along);
+    widest.consider(direct);
+    // No normal leaves a larger gap than the distance, but for less than the noise.
+    let is_best =
+        widest.best.is_some_and(|(gap, _)| gap + widest.noise / N::lit(4.0) >= offset.norm());
+    if let Some(normal) = direct.filter(|_| is_best) {
+        return normal;
+    }
     let axes = [ends1, ends2].map(|ends| unit(&(ends[1] - ends[0])).map(|(axis, _)| axis));
     let across = match axes {
         [Some(axis1), Some(axis2)] => unit(&cross(&axis1, &axis2)).map(|(across, _)| across),
         _ => None,
     };
-    let reach = ends1.iter().chain(ends2).fold(N::ZERO, |most, p| max(p.coords.norm(), most));
-    let mut best: Option<(N, Vector<N, 3>)> = None;
-    let candidates = [
-        unit(offset).map(|(along, _)| along),
-        axes[0].and_then(|axis| made_perpendicular(offset, &axis)),
-        axes[1].and_then(|axis| made_perpendicular(offset, &axis)),
-        across,
-        across.map(|across| -across),
-        axes[0].map(|axis| perpendicular_to(&axis)),
-        axes[0].map(|axis| -perpendicular_to(&axis)),
-        axes[1].map(|axis| perpendicular_to(&axis)),
-        axes[1].map(|axis| -perpendicular_to(&axis)),
-    ];
-    for normal in candidates.into_iter().flatten() {
-        let gap = gap_along(&normal, ends1, ends2);
-        if best.is_none_or(|(widest, _)| gap > widest + noise(reach)) {
-            best = Some((gap, normal));
+    for axis in axes {
+        widest.consider(axis.and_then(|axis| made_perpendicular(offset, &axis)));
+    }
+    widest.consider_both(across);
+    for axis in axes {
+        widest.consider_both(axis.map(|axis| perpendicular_to(&axis)));
+    }
+    widest.best.map_or_else(first_axis, |(_, normal)| normal)
+}
+
+/// The normal that leaves the widest gap between two segments; of those that differ by noise the first.
+struct Widest<'a, N: Real> {
+    ends1: &'a [Point<N, 3>; 2],
+    ends2: &'a [Point<N, 3>; 2],
+    noise: N,
+    best: Option<(N, Vector<N, 3>)>,
+}
+
+impl<N: Real> Widest<'_, N> {
+    fn consider(&mut self, normal: Option<Vector<N, 3>>) {
+        let Some(normal) = normal else { return };
+        let gap = gap_along(&normal, self.ends1, self.ends2);
+        if self.best.is_none_or(|(widest, _)| gap > widest + self.noise) {
+            self.best = Some((gap, normal));
         }
     }
-    best.map_or_else(first_axis, |(_, normal)| normal)
+
+    fn consider_both(&mut self, normal: Option<Vector<N, 3>>) {
+        self.consider(normal);
+        self.consider(normal.map(|normal| -normal));
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Which algorithm serves which pair of kinds in the plane.
 
 use super::{
-    Algorithm, Table, ball_ball, ball_cuboid, ball_ellipsoid, ball_segment, ball_tapered, flipped,
-    general, look_up, plane_any, polygon_polygon, rounded,
+    Algorithm, Table, ball_ball, ball_cuboid, ball_ellipsoid, ball_polygon, ball_segment,
+    ball_tapered, flipped, general, look_up, plane_any, polygon_polygon, rounded,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -16,11 +16,12 @@ impl<N: Real> Plane<N> {
         let bb: Algorithm<N, 2> = ball_ball::separation;
         let bs: Algorithm<N, 2> = ball_segment::separation;
         let bc: Algorithm<N, 2> = ball_cuboid::separation;
+        let bh: Algorithm<N, 2> = ball_polygon::separation;
         let oo: Algorithm<N, 2> = polygon_polygon::separation;
         let be: Algorithm<N, 2> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 2> = ball_tapered::separation;
         let rr: Algorithm<N, 2> = rounded::separation;
-        let gg: Algorithm<N, 2> = general::plane;
+        let gg: Algorithm<N, 2> = general::separation;
         let gp: Algorithm<N, 2> = plane_any::separation;
         let pp: Algorithm<N, 2> = plane_any::plane_plane;
         let gx: Algorithm<N, 2> = composite::separation;
@@ -29,7 +30,7 @@ impl<N: Real> Plane<N> {
         // (neither occurs in the plane), ellipsoid, tapered capsule, rounded, support map, plane,
         // composite.
         [
-            [bb, bs, bs, oo, bc, oo, gg, gg, be, bt, rr, gg, gp, gx],
+            [bb, bs, bs, oo, bc, bh, gg, gg, be, bt, rr, gg, gp, gx],
             [__, oo, oo, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, oo, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],

@@ -26,7 +26,8 @@ impl<N: Real> Space<N> {
         let be: Algorithm<N, 3> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 3> = ball_tapered::separation;
         let rr: Algorithm<N, 3> = rounded::separation;
-        let gg: Algorithm<N, 3> = general::space;
+        let gg: Algorithm<N, 3> = general::separation;
+        let ff: Algorithm<N, 3> = general::of_flat_cores;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -35,11 +36,11 @@ impl<N: Real> Space<N> {
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
-            [__, ss, ss, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, ss, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, gg, gg, gg, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, gg, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, gg, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, ss, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, ff, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],

@@ -36,10 +36,11 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         check_parts(&triangles, vertices.len())?;
         let topology = Topology::new(&vertices, &triangles);
         let boxes = boxes_of(&vertices, &triangles);
-        let tree = BoxTree::try_from_boxes(&boxes).map_err(refused)?;
+        let tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
         let normals = normals_of(&vertices, &triangles);
         Ok(Self {
             is_cycle: topology.is_cycle,
+            packed: (table::<N, D>().packed)(&tree, &vertices, &triangles),
             vertices,
             triangles,
             topology,
@@ -126,6 +127,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.try_refit(&boxes).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);
+        self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
         Ok(())
     }

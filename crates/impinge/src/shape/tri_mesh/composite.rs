@@ -1,8 +1,9 @@
 //! A mesh as a shape: a union of triangles that know their neighbours.
 
 use super::super::segment::length_of;
+use super::rays::RayBounds;
 use super::{TriMesh, table};
-use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::bounding_volume::{Aabb, BoundingSphere, Ray};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::partitioning::BoxTree;
 use crate::shape::{
@@ -21,6 +22,16 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
 
     fn search(&self) -> &dyn PartSearch<N, D> {
         &self.tree
+    }
+
+    fn parts_along(
+        &self,
+        ray: &Ray<N, D>,
+        around: &Aabb<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
+    ) {
+        (table().parts_along)(self, &RayBounds { ray, around, limit }, visit);
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, D>> {

@@ -3,8 +3,11 @@
 use core::fmt;
 
 use super::TriMesh;
+use super::rays::RayBounds;
+use crate::bvh::Triangles;
 use crate::math::{Point, Real, Vector};
-use crate::shape::FeatureId;
+use crate::partitioning::BoxTree;
+use crate::shape::{FeatureId, Part};
 
 /// Function pointers for one dimension.
 #[derive(Clone, Copy)]
@@ -14,7 +17,15 @@ pub(crate) struct MeshTable<N: Real, const D: usize> {
     pub(super) normal: Option<NormalFn<N, D>>,
     pub(super) admits: AdmitsFn<N, D>,
     pub(super) snapped: SnappedFn<N, D>,
+    /// The triangles as rays look at them, in the order of the tree; none where boxes are enough.
+    pub(super) packed: PackedFn<N, D>,
+    pub(super) parts_along: AlongFn<N, D>,
 }
+
+type PackedFn<N, const D: usize> =
+    fn(&BoxTree<N, D>, &[Point<N, D>], &[[u32; 3]]) -> Vec<Triangles>;
+type AlongFn<N, const D: usize> =
+    fn(&TriMesh<N, D>, &RayBounds<'_, N, D>, &mut dyn FnMut(u32, Part<'_, N, D>) -> N);
 
 type NormalFn<N, const D: usize> = fn(&[Point<N, D>; 3]) -> Vector<N, D>;
 type AdmitsFn<N, const D: usize> = fn(&TriMesh<N, D>, u32, FeatureId, &Vector<N, D>) -> bool;
@@ -25,6 +36,8 @@ impl<N: Real> MeshTable<N, 2> {
         normal: None,
         admits: TriMesh::<N, 2>::admits_in_plane,
         snapped: TriMesh::<N, 2>::snapped_in_plane,
+        packed: |_, _, _| Vec::new(),
+        parts_along: TriMesh::<N, 2>::boxes_along,
     };
 }
 
@@ -33,6 +46,8 @@ impl<N: Real> MeshTable<N, 3> {
         normal: Some(super::surface3::normal_of),
         admits: TriMesh::<N, 3>::admits_in_space,
         snapped: TriMesh::<N, 3>::snapped_in_space,
+        packed: TriMesh::<N, 3>::packed,
+        parts_along: TriMesh::<N, 3>::triangles_along,
     };
 }
 

@@ -35,8 +35,35 @@ pub(super) struct Topology {
     pub(super) is_cycle: bool,
 }
 
-/// A side by its ends, the smaller joint first, and whose it is.
-type Side = ([u32; 2], u32, u8);
+/// A side that has a joint for its lower end: the other end, whose side it is and which, and whether
+/// it leads away from the joint.
+type Side = (u32, u32, u8, bool);
+
+/// All sides with two ends, by their lower ends, and by joint where its sides end.
+fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<Side>, Vec<usize>) {
+    let each = |visit: &mut dyn FnMut(u32, Side)| {
+        for (index, triangle) in (0..).zip(triangles) {
+            let [a, b, c] = triangle.map(|vertex| joints.of(vertex));
+            for (side, [from, to]) in (0..).zip([[a, b], [b, c], [c, a]]) {
+                if from != to {
+                    visit(from.min(to), (from.max(to), index, side, from < to));
+                }
+            }
+        }
+    };
+    let mut next = vec![0; joints.vertices()];
+    each(&mut |joint, _| next[joint as usize] += 1);
+    let mut total = 0;
+    for count in &mut next {
+        total += core::mem::replace(count, total);
+    }
+    let mut sides = vec![(0, 0, 0, false); total];
+    each(&mut |joint, side| {
+        sides[next[joint as usize]] = side;
+        next[joint as usize] += 1;
+    });
+    (sides, next)
+}
 
 impl Topology {
     pub(super) fn new<N: Real, const D: usize>(
@@ -44,24 +71,17 @@ impl Topology {
         triangles: &[[u32; 3]],
     ) -> Self {
         let joints = Joints::new(vertices, triangles);
-        let mut sides: Vec<Side> = Vec::with_capacity(3 * triangles.len());
-        for (index, triangle) in (0..).zip(triangles) {
-            let [a, b, c] = triangle.map(|vertex| joints.of(vertex));
-            for (side, [from, to]) in (0..).zip([[a, b], [b, c], [c, a]]) {
-                if from != to {
-                    sides.push(([from.min(to), from.max(to)], index, side));
-                }
-            }
-        }
-        sides.sort_unstable();
         let mut across = vec![[BORDER; 3]; triangles.len()];
-        let mut is_cycle = true;
-        for group in sides.chunk_by(|a, b| a.0 == b.0) {
-            link(group, &mut across);
-            let is_forward = |&&([from, _], index, side): &&Side| {
-                joints.of(triangles[index as usize][usize::from(side)]) == from
-            };
-            is_cycle &= 2 * group.iter().filter(is_forward).count() == group.len();
+        let (mut is_cycle, (mut sides, ends)) = (true, sides_by_joint(&joints, triangles));
+        let mut start = 0;
+        for end in ends {
+            let own = &mut sides[core::mem::replace(&mut start, end)..end];
+            own.sort_unstable();
+            for group in own.chunk_by(|a, b| a.0 == b.0) {
+                link(group, &mut across);
+                let forward = group.iter().filter(|side| side.3).count();
+                is_cycle &= 2 * forward == group.len();
+            }
         }
         Self { joints, across, is_cycle }
     }
@@ -84,8 +104,8 @@ impl Topology {
 /// Tells each triangle of a side about the others. They are in ascending order, one without area
 /// perhaps twice.
 fn link(group: &[Side], across: &mut [[u32; 3]]) {
-    for &(_, own, side) in group {
-        let mut others = group.iter().map(|&(_, index, _)| index).filter(|&index| index != own);
+    for &(_, own, side, _) in group {
+        let mut others = group.iter().map(|&(_, index, ..)| index).filter(|&index| index != own);
         let first = others.next();
         let has_more = others.next().is_some();
         let found = if has_more { SEVERAL } else { first.unwrap_or(BORDER) };

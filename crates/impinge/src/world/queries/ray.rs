@@ -4,7 +4,8 @@ use super::QueryFilter;
 use super::ranking::Ranking;
 use super::search::Probe;
 use crate::math::Space;
-use crate::query::{Ray, RayCast, RayIntersection};
+use crate::narrow_phase::CollisionObjectHandle;
+use crate::query::{Ray, RayBatch, RayCast, RayIntersection};
 use crate::world::bodies::Body;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
@@ -91,6 +92,47 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
         self.ranked_hits(ray, Ranking::new(1, max_time), solid, filter).pop()
+    }
+
+    /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that
+    /// `batch.rays[i]` meets first and where, to the bit. The caller keeps the places from frame to frame.
+    ///
+    /// On the calling thread, whatever the features: a world may hold what is not to be shared. Those
+    /// that can be shared may be asked from several threads, each with a share of the rays.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point, Vector};
+    /// use impinge::dim2::query::{Ray, RayBatch};
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (ball, contacts) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Contacts(0.0, 0.0));
+    /// let position = Isometry::translation(5.0, 0.0);
+    /// let target = world.add(position, ball, CollisionGroups::new(), contacts, ());
+    ///
+    /// let rays = [0.0, 9.0].map(|y| Ray::new(Point::new(0.0, y), Vector::x()));
+    /// let mut hits = [None; 2];
+    /// world.cast_rays(&RayBatch::new(&rays), &QueryFilter::new(), &mut hits);
+    /// assert_eq!(hits[0].map(|(handle, hit)| (handle, hit.toi)), Some((target, 4.0)));
+    /// assert_eq!(hits[1], None);
+    /// ```
+    ///
+    /// # Panics
+    /// If there are not as many places as rays.
+    #[track_caller]
+    pub fn cast_rays(
+        &self,
+        batch: &RayBatch<'_, N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+        hits: &mut [Option<(CollisionObjectHandle, RayIntersection<N, D>)>],
+    ) {
+        batch.each(hits, |ray| {
+            let found = self.first_ray_hit(ray, batch.max_time, batch.solid, filter);
+            found.map(|(object, hit)| (object.handle(), hit))
+        });
     }
 
     /// The objects that a ray meets, at `max_time` at the latest, and where it first meets each of them:

@@ -42,7 +42,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
         visit: &mut dyn FnMut(&CollisionObjectHandle) -> N,
     ) {
         match self {
-            Self::Ray(ray) => broad_phase.visit_ray(ray, limit, visit),
+            Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
             Self::Near(own) => broad_phase.visit_nearest(own, limit, visit),
             Self::Cast(own, velocity) => broad_phase.visit_cast(own, velocity, limit, visit),
         }

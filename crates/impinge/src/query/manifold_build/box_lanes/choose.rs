@@ -14,9 +14,8 @@ pub(super) struct Choice<'a, N: Real> {
     pub(super) lane: usize,
     /// The slots that hold a candidate, by bits.
     pub(super) valid: u32,
-    /// Those with the smallest distance but for rounding, and the first with the smallest.
+    /// Those with the smallest distance but for rounding.
     pub(super) level: u32,
-    pub(super) deepest: usize,
     pub(super) gap: N,
     pub(super) prediction: N,
     pub(super) tolerance: N,
@@ -30,7 +29,7 @@ pub(super) struct Kept {
 
 impl Kept {
     /// Takes over the numbers; no two old points share their names, nor do two slots.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of<N: Real>(old: &RawManifold<N, 3>, naming: &Naming, valid: u32) -> Self {
         let mut kept = Self { slots: 0, ids: [0; SLOTS] };
         for point in &old.points {
@@ -43,12 +42,12 @@ impl Kept {
         kept
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn id(&self, slot: usize) -> Option<u32> {
         self.has(slot).then(|| self.ids[slot])
     }
 
-    #[inline]
+    #[inline(always)]
     fn has(&self, slot: usize) -> bool {
         self.slots >> slot & 1 == 1
     }
@@ -62,7 +61,7 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    #[inline]
+    #[inline(always)]
     fn all(valid: u32) -> Self {
         let mut all = Self { len: 0, slots: [0; SLOTS] };
         for slot in ones(valid) {
@@ -71,22 +70,23 @@ impl Chosen {
         all
     }
 
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, slot: usize) {
         self.slots[self.len] = slot.to_le_bytes()[0];
         self.len += 1;
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) const fn len(&self) -> usize {
         self.len
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         self.slots[..self.len].iter().map(|&slot| usize::from(slot))
     }
 
+    #[inline(always)]
     fn insert(&mut self, place: usize, slot: usize) {
         self.slots.copy_within(place..self.len, place + 1);
         self.slots[place] = slot.to_le_bytes()[0];
@@ -95,7 +95,7 @@ impl Chosen {
 }
 
 /// The numbers of the bits that are set, upwards.
-#[inline]
+#[inline(always)]
 fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     core::iter::from_fn(move || {
         let slot = bits.trailing_zeros() as usize;
@@ -105,12 +105,12 @@ fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
 }
 
 impl<N: Real> Choice<'_, N> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn distance(&self, slot: usize) -> N {
         min(max(self.slots.height[slot][self.lane], self.gap), self.prediction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn flat(&self, slot: usize) -> [N; 2] {
         let [x, y] = &self.slots.flat;
         [x[slot][self.lane], y[slot][self.lane]]
@@ -118,14 +118,15 @@ impl<N: Real> Choice<'_, N> {
 
     /// The candidate that stands for the witness: of those whose distance is the smallest but for
     /// rounding one that the previous manifold held, then the deepest.
-    #[inline]
+    #[inline(always)]
     pub(super) fn deepest(&self, kept: &Kept) -> usize {
         let old = self.level & kept.slots;
-        if old == 0 { self.deepest } else { self.lowest(old) }
+        let level = if self.level == 0 { self.valid } else { self.level };
+        self.lowest(if old == 0 { level } else { old })
     }
 
     /// The first of some slots with the smallest distance of them.
-    #[inline]
+    #[inline(always)]
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
         if slots.count_ones() > 1 {
@@ -140,7 +141,7 @@ impl<N: Real> Choice<'_, N> {
     }
 
     /// At most `limit` candidates.
-    #[inline]
+    #[inline(always)]
     pub(super) fn chosen(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
         if self.valid.count_ones() as usize <= limit {
             Chosen::all(self.valid)
@@ -150,6 +151,7 @@ impl<N: Real> Choice<'_, N> {
     }
 
     /// The deepest, then whatever adds most to the outline, as `reduce::chosen` has it.
+    #[inline(always)]
     fn outline(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
         let mut outline = Outline::new(deepest, self.flat(deepest), self.tolerance);
         let rest = self.by_depth(self.valid & !(1 << deepest), kept);
@@ -163,7 +165,7 @@ impl<N: Real> Choice<'_, N> {
     }
 
     /// Slots by distance; of equals the first comes first.
-    #[inline]
+    #[inline(always)]
     fn by_depth(&self, slots: u32, kept: &Kept) -> Rest<N> {
         let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS] }, [0_i64; SLOTS]);
         for slot in ones(slots) {
@@ -216,14 +218,14 @@ struct OutlineSide<N: Real> {
 }
 
 impl<N: Real> Outline<N> {
-    #[inline]
+    #[inline(always)]
     fn new(slot: usize, flat: [N; 2], tolerance: N) -> Self {
         let mut chosen = Chosen { len: 0, slots: [0; SLOTS] };
         chosen.push(slot);
         Self { chosen, corners: [flat; SLOTS], tolerance }
     }
 
-    #[inline]
+    #[inline(always)]
     fn insert(&mut self, place: usize, slot: usize, flat: [N; 2]) {
         self.corners.copy_within(place..self.chosen.len, place + 1);
         self.corners[place] = flat;
@@ -232,6 +234,7 @@ impl<N: Real> Outline<N> {
 
     /// The candidate that adds most and its place in the outline; `None` if none adds more than
     /// rounding errors.
+    #[inline(always)]
     fn best_addition(&self, rest: &Rest<N>, left: u32) -> Option<(usize, usize)> {
         let mut sides: SmallVec<[OutlineSide<N>; 8]> = SmallVec::new();
         if self.chosen.len > 1 {
@@ -254,7 +257,7 @@ impl<N: Real> Outline<N> {
         best
     }
 
-    #[inline]
+    #[inline(always)]
     fn side(&self, at: usize) -> OutlineSide<N> {
         let next = if at + 1 < self.chosen.len { at + 1 } else { 0 };
         let from = self.corners[at];
@@ -265,7 +268,7 @@ impl<N: Real> Outline<N> {
 
 /// The largest area (doubled) that a place spans with a side of the outline from outside, and its
 /// place in the outline.
-#[inline]
+#[inline(always)]
 fn beyond<N: Real>(sides: &[OutlineSide<N>], flat: &Vector<N, 2>) -> (N, usize) {
     let (mut gain, mut best) = (N::ZERO, 0);
     for (at, side) in sides.iter().enumerate() {
@@ -278,7 +281,7 @@ fn beyond<N: Real>(sides: &[OutlineSide<N>], flat: &Vector<N, 2>) -> (N, usize) 
 }
 
 /// A number that is ordered as `total_cmp` orders the scalar.
-#[inline]
+#[inline(always)]
 fn total<N: Real>(value: N) -> i64 {
     let bits = value.as_f64().to_bits().cast_signed();
     if bits < 0 { bits ^ i64::MAX } else { bits }

@@ -7,7 +7,6 @@
 use fearless_simd::{Select, Simd, SimdMask};
 
 use super::LANES;
-use super::axis::lit;
 use super::faces::{Faces, cross};
 use crate::math::{Real, Wide};
 
@@ -30,8 +29,6 @@ pub(super) struct Slots<N: Real> {
     pub(super) valid: [u8; SLOTS],
     /// Those where its distance is the smallest but for rounding.
     pub(super) level: [u8; SLOTS],
-    /// The first of the slots whose distance is the smallest.
-    pub(super) deepest: [N; LANES],
     /// Of each corner: it is at an end of the other face along its first or second axis.
     pub(super) at_end: [[u8; CORNERS]; 2],
     /// It is on the positive side of that axis.
@@ -45,7 +42,6 @@ impl<N: Real> Slots<N> {
             height: [[N::ZERO; LANES]; SLOTS],
             valid: [0; SLOTS],
             level: [0; SLOTS],
-            deepest: [N::ZERO; LANES],
             at_end: [[0; CORNERS]; 2],
             beyond: [[0; CORNERS]; 2],
         }
@@ -91,9 +87,6 @@ pub(super) struct Clip<'a, S, N: Real, V, M> {
     pub(super) slots: &'a mut Slots<N>,
     /// The lowest candidate so far.
     lowest: V,
-    /// The smallest distance that is admitted so far, and its slot.
-    nearest: V,
-    deepest: V,
     /// The largest distance that is admitted, and the largest that is level with the gap.
     most: V,
     level: V,
@@ -113,20 +106,10 @@ where
         limits: Limits<V>,
         slots: &'a mut Slots<N>,
     ) -> Self {
-        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
         let infinity = V::all(simd, N::INFINITY);
-        let deepest = V::all(simd, N::ZERO);
-        Self {
-            simd,
-            faces,
-            limits,
-            slots,
-            lowest: infinity,
-            nearest: infinity,
-            deepest,
-            most,
-            level,
-        }
+        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
+        let level = limits.prediction.simd_le(level).select(infinity, level);
+        Self { simd, faces, limits, slots, lowest: infinity, most, level }
     }
 
     /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
@@ -151,7 +134,6 @@ where
         self.crossings(CORNERS + 4, 0, false);
         self.crossings(CORNERS + 8, 1, true);
         self.crossings(CORNERS + 12, 1, false);
-        self.deepest.store(&mut self.slots.deepest);
         (self.lowest - self.limits.gap).abs().simd_le(self.faces.tolerance)
     }
 
@@ -258,22 +240,12 @@ where
         flat[1].store(&mut self.slots.flat[1][slot]);
         height.store(&mut self.slots.height[slot]);
         self.lowest = (is_there & height.simd_lt(self.lowest)).select(height, self.lowest);
-        let no_nearer = height.larger(self.limits.gap);
-        let is_admitted = is_there & no_nearer.simd_le(self.most);
-        let distance = no_nearer.smaller(self.limits.prediction);
-        let is_nearer = is_admitted & distance.simd_lt(self.nearest);
-        self.nearest = is_nearer.select(distance, self.nearest);
-        self.deepest = is_nearer.select(lit(self.simd, NUMBERS[slot]), self.deepest);
+        // Distances are never less than the gap nor more than the prediction: both pass anyway.
+        let is_admitted = is_there & !height.simd_gt(self.most);
         self.slots.valid[slot] = bits(is_admitted);
-        self.slots.level[slot] = bits(is_admitted & distance.simd_le(self.level));
+        self.slots.level[slot] = bits(is_admitted & !height.simd_gt(self.level));
     }
 }
-
-/// The numbers of the slots.
-const NUMBERS: [f64; SLOTS] = [
-    0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0,
-    17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0,
-];
 
 /// Leaves out corners of the rectangle that are corners of the parallelogram, which are there already.
 #[inline(always)]

@@ -25,7 +25,7 @@ use self::clip::{Clip, Limits, SLOTS, Slots};
 use self::faces::Faces;
 use self::gather::{Boxes, Inputs};
 use self::names::{Naming, Side, parts_at};
-use super::{ManifoldRequest, Pair, RawManifold, contacts3};
+use super::{ManifoldRequest, Pair, RawManifold, contacts2, contacts3};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::RawPoint;
 use crate::shape::{Cuboid, Kind};
@@ -49,7 +49,19 @@ impl<'a, N: Real, const D: usize> BoxJob<'a, N, D> {
     }
 }
 
+/// Brings the manifolds of pairs of boxes of the plane up to date, as [`update_box_pairs3`].
+///
+/// One by one: such a pair is so little work that putting eight side by side costs as much.
+pub(crate) fn update_box_pairs2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
+    for job in jobs {
+        contacts2(&job.pair(), job.request, job.raw);
+    }
+}
+
 /// Brings the manifolds of pairs of boxes up to date: the same bits as [`contacts3`] one by one.
+///
+/// Any number of pairs; the last vector is filled up with leftovers if that is no multiple of eight,
+/// so a few hundred at a time are best.
 pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
     update_at(Level::new(), jobs);
 }
@@ -61,15 +73,17 @@ pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
 fn update_at<N: Real>(level: Level, jobs: &mut [BoxJob<'_, N, 3>]) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = level.as_avx2() {
-        return simd.vectorize(
+        simd.vectorize(
             #[inline(always)]
             || update::<_, N, N::Lanes<_>>(simd, jobs),
         );
     } else if let Some(simd) = level.as_sse2() {
-        return simd.vectorize(
+        simd.vectorize(
             #[inline(always)]
             || update::<_, N, N::Lanes<_>>(simd, jobs),
         );
+    } else {
+        jobs.iter_mut().for_each(|job| contacts3(&job.pair(), job.request, job.raw));
     }
     #[cfg(not(target_arch = "x86_64"))]
     fearless_simd::dispatch!(level, simd => update::<_, N, N::Lanes<_>>(simd, jobs));
@@ -178,6 +192,7 @@ impl<N: Real> Found<N> {
     }
 
     /// The end of one pair.
+    #[inline(always)]
     fn settle(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
         if self.is_apart >> lane & 1 == 1 {
             job.raw.points.clear();
@@ -188,6 +203,7 @@ impl<N: Real> Found<N> {
         }
     }
 
+    #[inline(always)]
     fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
         let sides = Sides::of(columns.byte(6, lane));
         let faces = [sides.rectangle, sides.parallelogram];
@@ -198,7 +214,6 @@ impl<N: Real> Found<N> {
             lane,
             valid: columns.slots(0, lane),
             level: columns.slots(3, lane),
-            deepest: self.slots.deepest[lane].as_f32() as usize,
             gap: self.gap[lane],
             prediction: self.prediction[lane],
             tolerance: self.tolerance[lane],
@@ -220,14 +235,14 @@ impl<N: Real> Found<N> {
         raw.normal = self.vector(&self.normal, lane);
     }
 
-    #[inline]
+    #[inline(always)]
     fn vector(&self, rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
         Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
     }
 
     /// The point of a slot on the first box, in its frame: as `Pose::point` for a rectangle of the
     /// second box.
-    #[inline]
+    #[inline(always)]
     fn point1(&self, lane: usize, slot: usize, sides: &Sides) -> Point<N, 3> {
         let w = sides.rectangle.axis;
         let rise = if sides.is_second { self.slots.height[slot][lane] } else { N::ZERO };
@@ -257,7 +272,7 @@ struct Sides {
 
 impl Sides {
     /// From the bits of `Found::sides`.
-    #[inline]
+    #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
         let side =
@@ -289,13 +304,13 @@ impl Columns {
         ))
     }
 
-    #[inline]
+    #[inline(always)]
     fn byte(&self, row: usize, lane: usize) -> u8 {
         self.0[row][lane & (LANES - 1)]
     }
 
     /// The bits of all slots.
-    #[inline]
+    #[inline(always)]
     fn slots(&self, row: usize, lane: usize) -> u32 {
         let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
         u32::from_le_bytes(bytes)

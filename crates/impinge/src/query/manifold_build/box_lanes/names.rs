@@ -41,14 +41,14 @@ impl FaceNames {
     }
 
     /// The part that bears a name; [`NONE`] for another face's.
-    #[inline]
+    #[inline(always)]
     fn part(&self, id: FeatureId) -> u8 {
         self.part_of.get(index_of(id)).copied().unwrap_or(NONE)
     }
 }
 
 /// Where a feature stands in a list by kind and number; beyond it for what is no part of a box.
-#[inline]
+#[inline(always)]
 const fn index_of(id: FeatureId) -> usize {
     let (kind, number) = match id {
         FeatureId::Vertex(number) => (0, number as usize),
@@ -156,7 +156,7 @@ pub(super) struct Naming {
 
 impl Naming {
     /// For a rectangle of the second box or the first.
-    #[inline]
+    #[inline(always)]
     pub(super) fn new([rectangle, parallelogram]: [Side; 2], is_second: bool, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
         let own = u64::from_le_bytes([
@@ -170,7 +170,7 @@ impl Naming {
     }
 
     /// The names of a candidate, of the first and the second box.
-    #[inline]
+    #[inline(always)]
     pub(super) fn features(&self, slot: usize) -> [FeatureId; 2] {
         let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];
         let below = self.rectangle.parts[usize::from(below)];
@@ -179,7 +179,7 @@ impl Naming {
     }
 
     /// The candidate of these names, among those that there are.
-    #[inline]
+    #[inline(always)]
     pub(super) fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
         let (below, above) = if self.is_second { (second, first) } else { (first, second) };
         let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
@@ -206,7 +206,7 @@ pub(super) struct Side {
 
 /// The part of the other face that each of eight corners lies on, a byte for each: from the bits of
 /// one lane, of which `at_end` and `beyond` have a byte for each corner.
-#[inline]
+#[inline(always)]
 pub(super) fn parts_at(
     lane: usize,
     at_end: &[[u8; CORNERS]; 2],

@@ -1,0 +1,270 @@
+//! The pass that makes the upper layers true again, and the end of a step.
+
+use super::kernel::{Kernel, with_kernel};
+use super::tree::{Layer, small};
+use super::{Block, Bounds, LANES, Lanes, Tree};
+
+/// By how much the boxes of before may enlarge the surface of a leaf block. Beyond that, something
+/// was put elsewhere, and a reach from there to here would meet everything in between.
+const STRAYED: f64 = 2.0;
+/// Up to this many leaf blocks are refitted by one thread.
+#[cfg(feature = "parallel")]
+const PARALLEL_LEAVES: usize = 256;
+
+impl<const D: usize> Tree<D> {
+    /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
+    pub fn refit(&mut self) {
+        self.refit_from(&[]);
+    }
+
+    /// The same, after it has fetched the boxes of changed objects from a list by id; an empty list
+    /// stands for those that the tree was given.
+    ///
+    /// Objects come in no spatial order: to look for the box of each slot takes reads that a processor
+    /// does many of at once, to write each box to its slot does not.
+    pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
+        if self.has_new() {
+            self.fetch_boxes(by_id);
+            by_id = &[];
+            self.sort_new();
+        }
+        self.refit_layers(by_id);
+    }
+
+    pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
+        self.strayed.clear();
+        if !self.touched.is_empty() || self.is_restructured {
+            self.order_touched();
+            let mut dirty = core::mem::take(&mut self.dirty);
+            dirty.clear();
+            if self.is_restructured {
+                self.shape_layers();
+                dirty.extend(0..small(self.before.len()));
+            } else {
+                dirty.extend_from_slice(&self.touched);
+            }
+            self.refit_leaves(&dirty, by_id);
+            self.note_strayed();
+            with_kernel!(self.lanes, kernel => self.refit_above(kernel, &mut dirty));
+            self.dirty = dirty;
+        }
+        self.is_restructured = false;
+        self.is_stale = false;
+    }
+
+    /// Brings the list of touched blocks into ascending order.
+    fn order_touched(&mut self) {
+        if self.touched.is_sorted() {
+            return;
+        }
+        let are_many = self.touched.len() * 4 > self.before.len();
+        if are_many {
+            self.touched.clear();
+            let flagged = (0..).zip(&self.is_touched).filter(|&(_, &is_touched)| is_touched);
+            self.touched.extend(flagged.map(|(block, _)| block));
+        } else {
+            self.touched.sort_unstable();
+        }
+    }
+
+    fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
+        if by_id.is_empty() || !self.is_stale {
+            return;
+        }
+        for &block in &self.touched {
+            let first = block as usize * LANES;
+            let changed = self.layers[0].changed[block as usize];
+            fetch(changed, &self.ids[first..], &mut self.boxes[first..first + LANES], by_id);
+        }
+    }
+
+    /// Lays the upper layers out for the number of leaf blocks, every lane empty.
+    pub(super) fn shape_layers(&mut self) {
+        let (mut layer, mut blocks) = (0, self.before.len());
+        while blocks > 1 {
+            (layer, blocks) = (layer + 1, blocks.div_ceil(LANES));
+            if self.layers.len() <= layer {
+                self.layers.push(Layer::new());
+            }
+            self.layers[layer].empty(blocks);
+        }
+        self.layers.truncate(layer + 1);
+    }
+
+    /// Fills the listed leaf blocks from the boxes one by one, and takes their bounds.
+    fn refit_leaves(&mut self, blocks: &[u32], by_id: &[Bounds<D>]) {
+        let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut self.layers[0];
+        let (before, ids) = (&self.before[..], &self.ids[..]);
+        let is_stale = self.is_stale;
+        let source = Source { before, ids, changed, by_id, is_stale, lanes: self.lanes };
+        let boxes = &mut self.boxes[..];
+        let leaves = Leaves { first: 0, blocks: leaves, bounds, reach, boxes };
+        leaves.refit(&source, blocks, &mut self.strayed);
+    }
+
+    /// Walks up from the listed leaf blocks.
+    #[inline(always)]
+    fn refit_above<K: Kernel>(&mut self, kernel: K, blocks: &mut Vec<u32>) {
+        for index in 1..self.layers.len() {
+            let (below, above) = self.layers.split_at_mut(index);
+            let (layer, parent) = (&below[index - 1], &mut above[0]);
+            for &block in blocks.iter() {
+                let block = block as usize;
+                let (above, lane) = (block / LANES, block % LANES);
+                parent.blocks[above].set_lane(lane, &layer.bounds[block]);
+                parent.reaches[above].set_lane(lane, &layer.reach[block]);
+                parent.changed[above] |= u16::from(layer.changed[block] != 0) << lane;
+            }
+            to_parents(blocks);
+            for &block in blocks.iter() {
+                let block = block as usize;
+                parent.bounds[block] = kernel.bounds(&parent.blocks[block]);
+                parent.reach[block] = kernel.bounds(&parent.reaches[block]);
+            }
+        }
+    }
+
+    /// Declares the present boxes those of before: nothing has changed.
+    pub fn settle(&mut self) {
+        if self.touched.is_empty() {
+            return;
+        }
+        self.note_use();
+        self.order_touched();
+        for &block in &self.touched {
+            let block = block as usize;
+            self.before[block] = self.layers[0].blocks[block];
+            self.is_touched[block] = false;
+        }
+        if self.changed > 0 {
+            let mut dirty = core::mem::take(&mut self.touched);
+            for layer in &mut self.layers {
+                dirty.iter().for_each(|&block| layer.settle(block as usize));
+                to_parents(&mut dirty);
+            }
+            self.touched = dirty;
+        }
+        self.touched.clear();
+        self.strayed.clear();
+        self.changed = 0;
+    }
+}
+
+/// A run of leaf blocks and what is beside them, to be written.
+struct Leaves<'a, const D: usize> {
+    /// The number of the first block.
+    first: usize,
+    blocks: &'a mut [Block<D>],
+    bounds: &'a mut [Bounds<D>],
+    reach: &'a mut [Bounds<D>],
+    boxes: &'a mut [Bounds<D>],
+}
+
+/// What all leaf blocks are computed from.
+struct Source<'a, const D: usize> {
+    before: &'a [Block<D>],
+    ids: &'a [u32],
+    changed: &'a [u16],
+    by_id: &'a [Bounds<D>],
+    is_stale: bool,
+    lanes: Lanes,
+}
+
+impl<const D: usize> Leaves<'_, D> {
+    /// Refits the listed blocks, ascending, which are all in this run. Appends those that strayed.
+    fn refit(mut self, source: &Source<'_, D>, listed: &[u32], strayed: &mut Vec<u32>) {
+        #[cfg(feature = "parallel")]
+        if listed.len() > PARALLEL_LEAVES && rayon::current_num_threads() > 1 {
+            let (near, far) = listed.split_at(listed.len() / 2);
+            let (left, right) = self.split(far[0] as usize);
+            let mut beyond = Vec::new();
+            rayon::join(
+                || left.refit(source, near, strayed),
+                || right.refit(source, far, &mut beyond),
+            );
+            return strayed.append(&mut beyond);
+        }
+        with_kernel!(source.lanes, kernel => {
+            for &block in listed {
+                self.refit_block(kernel, source, block, strayed);
+            }
+        });
+    }
+
+    #[inline(always)]
+    fn refit_block<K: Kernel>(
+        &mut self,
+        kernel: K,
+        source: &Source<'_, D>,
+        block: u32,
+        strayed: &mut Vec<u32>,
+    ) {
+        let (at, block) = (block as usize - self.first, block as usize);
+        let changed = source.changed[block];
+        if source.is_stale {
+            let boxes = self.boxes[at * LANES..].first_chunk_mut();
+            let boxes: &mut [_; LANES] = boxes.expect("every block has sixteen slots");
+            if !source.by_id.is_empty() {
+                fetch(changed, &source.ids[block * LANES..], boxes, source.by_id);
+            }
+            self.blocks[at].set_all(boxes);
+        }
+        let now = kernel.bounds(&self.blocks[at]);
+        self.bounds[at] = now;
+        self.reach[at] = now;
+        if changed != 0 {
+            let both = now.merged(&kernel.bounds(&source.before[block]));
+            if both.half_surface() <= STRAYED * now.half_surface() {
+                self.reach[at] = both;
+            } else {
+                strayed.push(small(block));
+            }
+        }
+    }
+
+    /// Cuts the run before the block.
+    #[cfg(feature = "parallel")]
+    fn split(&mut self, block: usize) -> (Leaves<'_, D>, Leaves<'_, D>) {
+        let (first, count) = (self.first, block - self.first);
+        let (blocks1, blocks2) = self.blocks.split_at_mut(count);
+        let (bounds1, bounds2) = self.bounds.split_at_mut(count);
+        let (reach1, reach2) = self.reach.split_at_mut(count);
+        let (boxes1, boxes2) = self.boxes.split_at_mut(count * LANES);
+        let left = Leaves { first, blocks: blocks1, bounds: bounds1, reach: reach1, boxes: boxes1 };
+        let first = block;
+        (left, Leaves { first, blocks: blocks2, bounds: bounds2, reach: reach2, boxes: boxes2 })
+    }
+}
+
+/// Copies the boxes of changed lanes of a block from a list by id.
+#[inline(always)]
+fn fetch<const D: usize>(
+    mut changed: u16,
+    ids: &[u32],
+    boxes: &mut [Bounds<D>],
+    by_id: &[Bounds<D>],
+) {
+    while changed != 0 {
+        let lane = changed.trailing_zeros() as usize;
+        changed &= changed - 1;
+        boxes[lane] = by_id[ids[lane] as usize];
+    }
+}
+
+impl<const D: usize> Layer<D> {
+    fn settle(&mut self, block: usize) {
+        self.changed[block] = 0;
+        self.reach[block] = self.bounds[block];
+        if let Some(reaches) = self.reaches.get_mut(block) {
+            *reaches = self.blocks[block];
+        }
+    }
+}
+
+/// Replaces ascending block numbers by those of their parents, each once.
+fn to_parents(blocks: &mut Vec<u32>) {
+    for block in blocks.iter_mut() {
+        *block /= small(LANES);
+    }
+    blocks.dedup();
+}

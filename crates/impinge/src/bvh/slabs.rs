@@ -1,0 +1,193 @@
+//! A box that moves, made ready to be held against blocks: the slab test in `f32`, never too strict.
+
+use super::kernel::{Scalar, Wide, low_half};
+use super::{Block, LANES};
+use crate::bounding_volume::Aabb;
+use crate::math::{Real, Vector, max_component};
+use fearless_simd::{Simd, SimdBase, f32x16};
+
+/// Slower than this, in units of the fastest component, counts as this: on the way past a tree that
+/// leads astray by less than the padding.
+const SLOWEST: f32 = f32::from_bits(27 << 23);
+
+/// Rounding units of `f32` by which the moving box is padded, in units of all coordinates.
+const PADDING: f32 = 4.0;
+
+/// Rounding units of `f32` by which quotients may be off.
+const QUOTIENT: f32 = 8.0;
+
+/// A moving box as blocks see it. A ray is a box that is a point.
+///
+/// Times are in units of the velocity divided by a power of two, which brings its largest component
+/// between 1 and 2: then squares and quotients stay in range, whatever the scale.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slabs<const D: usize> {
+    /// The face that meets a box first, by axis, and the other one.
+    front: [f32; D],
+    back: [f32; D],
+    /// One over the velocity, never zero and never infinite.
+    inverse: [f32; D],
+    /// The power of two.
+    unit: f64,
+}
+
+impl<const D: usize> Slabs<D> {
+    /// The box `moving` with a finite velocity, for boxes with coordinates up to `size`.
+    pub(crate) fn new<N: Real>(moving: &Aabb<N, D>, velocity: &Vector<N, D>, size: f32) -> Self {
+        let speed = max_component(velocity);
+        let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
+        let direction = velocity.map(|x| (x / unit).as_f32());
+        let faces = moving.mins().iter().chain(moving.maxs().iter());
+        let reach = faces.map(|x| x.as_f32().abs()).filter(|x| x.is_finite()).fold(size, f32::max);
+        let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
+        let low = |axis: usize| moving.mins()[axis].as_f32_below() - pad;
+        let high = |axis: usize| moving.maxs()[axis].as_f32_above() + pad;
+        let is_back = |axis: usize| direction[axis] < 0.0;
+        Self {
+            front: core::array::from_fn(|axis| if is_back(axis) { low(axis) } else { high(axis) }),
+            back: core::array::from_fn(|axis| if is_back(axis) { high(axis) } else { low(axis) }),
+            inverse: core::array::from_fn(|axis| {
+                let speed = f32::max(direction[axis].abs(), SLOWEST);
+                if is_back(axis) { -1.0 / speed } else { 1.0 / speed }
+            }),
+            unit: unit.as_f64(),
+        }
+    }
+
+    /// A time of the caller's, or a little more, in the units of this; negative for NaN.
+    #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
+    pub(crate) fn limit<N: Real>(&self, time: N) -> f32 {
+        let scaled = time.as_f64() * self.unit;
+        let is_time = scaled >= 0.0;
+        let slack = f64::from(QUOTIENT * f32::EPSILON);
+        if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
+    }
+
+    /// The faces of a block that the box meets first on an axis, and the others.
+    #[inline(always)]
+    fn faces<'a>(&self, block: &'a Block<D>, axis: usize) -> [&'a [f32; LANES]; 2] {
+        let (lo, hi) = (&block.lo[axis], &block.hi[axis]);
+        if self.inverse[axis] < 0.0 { [hi, lo] } else { [lo, hi] }
+    }
+}
+
+/// Times of leaving are stretched by so much: neither they nor those of entering are exact.
+const STRETCH: f32 = 1.0 + QUOTIENT * f32::EPSILON;
+
+impl Scalar {
+    #[inline(always)]
+    pub(super) fn enter_block<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        let mut mask = 0;
+        for (lane, key) in keys.iter_mut().enumerate() {
+            let (mut enter, mut leave) = (0.0_f32, limit);
+            for axis in 0..D {
+                let [near, far] = slabs.faces(block, axis).map(|faces| faces[lane]);
+                let first = (near - slabs.front[axis]) * slabs.inverse[axis];
+                let last = (far - slabs.back[axis]) * slabs.inverse[axis] * STRETCH;
+                enter = if first > enter { first } else { enter };
+                leave = if last < leave { last } else { leave };
+            }
+            *key = enter;
+            mask |= u32::from(enter <= leave) << lane;
+        }
+        mask
+    }
+}
+
+impl<S: Simd> Wide<S> {
+    #[inline(always)]
+    pub(super) fn enter_block<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        let simd = self.0;
+        let mut enter = f32x16::splat(simd, 0.0);
+        let mut leave = f32x16::splat(simd, limit);
+        for axis in 0..D {
+            let [near, far] = slabs.faces(block, axis);
+            let inverse = slabs.inverse[axis];
+            let first = (f32x16::load_array_ref(simd, near) - slabs.front[axis]) * inverse;
+            let last = (f32x16::load_array_ref(simd, far) - slabs.back[axis]) * inverse * STRETCH;
+            enter = first.max(enter);
+            leave = last.min(leave);
+        }
+        enter.store_slice(keys);
+        low_half(fearless_simd::SimdMask::to_bitmask(enter.simd_le(leave)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Bounds;
+    use super::super::kernel::{Kernel, Lanes, with_kernel};
+    use super::*;
+    use crate::math::Point;
+
+    /// Numbers of all sizes, with repeats.
+    fn number(state: &mut u64) -> f32 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
+        let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;
+        match *state >> 40 & 7 {
+            0 => 0.0,
+            1 => small * 1e30,
+            2 => small * 1e-30,
+            _ => small * 0.125,
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_proposes_what_is_hit() {
+        let (state, mut hits, mut proposed) = (&mut 3, 0, 0);
+        for _ in 0..4000 {
+            let mut block = Block::<3>::EMPTY;
+            for lane in 0..LANES - 2 {
+                let lo = [(); 3].map(|()| number(state));
+                let hi = lo.map(|x| x + number(state).abs());
+                block.set_lane(lane, &Bounds { lo, hi });
+            }
+            let origin = Point::<f32, 3>::new(number(state), number(state), number(state));
+            let dir = Vector::<f32, 3>::new(number(state), number(state), number(state));
+            let moving = Aabb::at(origin);
+            let slabs = Slabs::new(&moving, &dir, 4e32);
+            let tight = Slabs::new(&moving, &dir, 0.0);
+            let limit = number(state).abs();
+            let ask = |lanes: Lanes, slabs: &Slabs<3>| {
+                let mut keys = [0.0; LANES];
+                let limit = slabs.limit(limit);
+                (with_kernel!(lanes, kernel => kernel.enter(&block, slabs, limit, &mut keys)), keys)
+            };
+            let (expected, keys) = ask(Lanes::scalar(), &tight);
+            for lanes in Lanes::available() {
+                let (mask, own) = ask(lanes, &tight);
+                assert_eq!(mask, expected, "{lanes:?} {origin} {dir} {block:?}");
+                for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
+                    assert_eq!(own[lane], keys[lane], "{lanes:?}, lane {lane}");
+                }
+            }
+            let (padded, keys) = ask(Lanes::scalar(), &slabs);
+            assert_eq!(padded & expected, expected, "padding takes nothing away");
+            assert_eq!(expected >> (LANES - 2), 0, "nothing is in empty lanes");
+            for lane in 0..LANES - 2 {
+                let Bounds { lo, hi } = block.lane(lane);
+                let exact = Aabb::new(Point::from(lo), Point::from(hi));
+                let hit = exact.sweep_interval(&moving, &dir).filter(|&(enter, _)| enter <= limit);
+                if let Some((enter, _)) = hit {
+                    assert!(padded >> lane & 1 == 1, "{origin} {dir} {exact:?}");
+                    assert!(keys[lane] <= slabs.limit(enter), "a bound of the time");
+                    hits += 1;
+                }
+            }
+            proposed += expected.count_ones();
+        }
+        assert!(hits > 500 && proposed < hits * 3, "{hits} hits, {proposed} proposals");
+    }
+}

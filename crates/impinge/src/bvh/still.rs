@@ -1,0 +1,217 @@
+//! Trees of boxes that stay where they are: made at once, in an order that costs more and serves longer.
+//!
+//! Ranges of slots are cut where the surface area heuristic likes it best (Goldsmith and Salmon 1987;
+//! binned as by Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), but only
+//! between whole blocks of the layer at hand: all blocks but the last stay full, and child and parent
+//! arithmetic. Above a few hundred boxes a sample decides.
+
+use super::tree::small;
+use super::{Bounds, LANES, Lanes, NONE, Tree};
+
+/// Bins along each axis.
+const BINS: usize = 16;
+/// Boxes that are looked at to choose a cut.
+const SAMPLE: usize = 512;
+/// From this many boxes on the two parts are sorted on two threads.
+#[cfg(feature = "parallel")]
+const PARALLEL_SORT: usize = 4096;
+
+/// A box to be given a place.
+#[derive(Clone, Copy, Debug)]
+struct Item<const D: usize> {
+    bounds: Bounds<D>,
+    id: u32,
+}
+
+impl<const D: usize> Item<D> {
+    #[inline]
+    fn middle(&self, axis: usize) -> f32 {
+        self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
+    }
+
+    /// Orders by the middle, ties by id: a total order, so that the result is unique.
+    #[inline]
+    fn key(&self, axis: usize) -> u64 {
+        let bits = self.middle(axis).to_bits();
+        let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
+        u64::from(ordered) << 32 | u64::from(self.id)
+    }
+}
+
+impl<const D: usize> Tree<D> {
+    /// The tree of boxes with different ids, settled.
+    pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
+        let mut items: Vec<_> = boxes.map(|(id, bounds)| Item { bounds, id }).collect();
+        arrange(&mut items);
+        let mut tree = Self::new(lanes);
+        tree.resize_leaves(items.len().div_ceil(LANES));
+        tree.slots.resize(items.iter().map(|item| item.id as usize + 1).max().unwrap_or(0), NONE);
+        for (slot, item) in items.iter().enumerate() {
+            tree.boxes[slot] = item.bounds;
+            tree.ids[slot] = item.id;
+            tree.slots[item.id as usize] = small(slot);
+        }
+        (tree.end, tree.live) = (items.len(), items.len());
+        tree.is_stale = true;
+        for block in 0..tree.before.len() {
+            tree.touch(block);
+        }
+        tree.declare_ordered();
+        tree.refit_layers(&[]);
+        tree.settle();
+        tree
+    }
+}
+
+/// Brings items that start at a whole subtree into order. Each call leaves fewer or smaller children, so
+/// it ends.
+fn arrange<const D: usize>(items: &mut [Item<D>]) {
+    let mut child = LANES;
+    while child * LANES < items.len() {
+        child *= LANES;
+    }
+    if items.len() <= child {
+        return;
+    }
+    let children = items.len().div_ceil(child);
+    let (axis, left) = best_cut(items, child, children);
+    items.select_nth_unstable_by_key(left * child, |item| item.key(axis));
+    let (first, second) = items.split_at_mut(left * child);
+    #[cfg(feature = "parallel")]
+    if first.len() + second.len() >= PARALLEL_SORT {
+        rayon::join(|| arrange(first), || arrange(second));
+        return;
+    }
+    arrange(first);
+    arrange(second);
+}
+
+/// The axis to cut along, and how many of the children go left; the middle of the longest axis, the
+/// first of equals, where no cut has a cost.
+fn best_cut<const D: usize>(items: &[Item<D>], child: usize, children: usize) -> (usize, usize) {
+    let step = items.len().div_ceil(SAMPLE);
+    let mut middles = Bounds::<D>::EMPTY;
+    for item in items.iter().step_by(step) {
+        let middle = core::array::from_fn(|axis| item.middle(axis));
+        middles = middles.merged(&Bounds { lo: middle, hi: middle });
+    }
+    let spread = |axis: usize| middles.hi[axis] * 0.5 - middles.lo[axis] * 0.5;
+    let longest =
+        (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
+    let mut best = (longest, children / 2);
+    let mut least = f64::INFINITY;
+    for axis in 0..D {
+        let bins = Bins::of(items.iter().step_by(step), axis, &middles);
+        bins.each_cut(step, child, children, |left, cost| {
+            if cost < least {
+                (least, best) = (cost, (axis, left));
+            }
+        });
+    }
+    best
+}
+
+/// The boxes of a sample by the place of their middles.
+struct Bins<const D: usize> {
+    bounds: [Bounds<D>; BINS],
+    counts: [usize; BINS],
+}
+
+impl<const D: usize> Bins<D> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of the bins; NaN, of an axis without extent, goes to the first"
+    )]
+    fn of<'a>(items: impl Iterator<Item = &'a Item<D>>, axis: usize, middles: &Bounds<D>) -> Self {
+        let mut bins = Self { bounds: [Bounds::EMPTY; BINS], counts: [0; BINS] };
+        let least = middles.lo[axis];
+        let scale = BINS as f32 / (middles.hi[axis] - least);
+        for item in items {
+            let bin = (((item.middle(axis) - least) * scale) as usize).min(BINS - 1);
+            bins.bounds[bin] = bins.bounds[bin].merged(&item.bounds);
+            bins.counts[bin] += 1;
+        }
+        bins
+    }
+
+    /// Calls `visit` with the number of children on the left and the cost of each cut: what is left of
+    /// it up to the end of the bin that it falls into, and what is right of it from there on.
+    #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
+    fn each_cut(
+        &self,
+        step: usize,
+        child: usize,
+        children: usize,
+        mut visit: impl FnMut(usize, f64),
+    ) {
+        let mut right = [0.0; BINS];
+        let mut all = Bounds::EMPTY;
+        for bin in (0..BINS).rev() {
+            all = all.merged(&self.bounds[bin]);
+            right[bin] = all.half_surface();
+        }
+        let (mut all, mut count, mut next) = (Bounds::EMPTY, 0, 1);
+        for (bin, bounds) in self.bounds.iter().enumerate() {
+            all = all.merged(bounds);
+            count += self.counts[bin] * step;
+            if next >= children || next * child > count {
+                continue;
+            }
+            let left = all.half_surface();
+            while next < children && next * child <= count {
+                let is_even = next * child == count && bin + 1 < BINS;
+                let rest = right[if is_even { bin + 1 } else { bin }];
+                visit(next, left * next as f64 + rest * (children - next) as f64);
+                next += 1;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Unit boxes in rows, and every tenth a thousand times as large.
+    fn boxes(count: u32) -> Vec<Bounds<3>> {
+        let place = |id: u32| {
+            let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));
+            let z = f32::from(u16::try_from(id * 104_729 % 977).expect("small"));
+            let size = if id % 10 == 0 { 1000.0 } else { 1.0 };
+            Bounds { lo: [x, 0.0, z], hi: [x + size, size, z + size] }
+        };
+        (0..count).map(place).collect()
+    }
+
+    #[test]
+    fn every_box_has_a_place_and_every_block_is_full() {
+        for count in [0, 1, 15, 16, 17, 255, 256, 257, 4097, 10_000] {
+            let boxes = boxes(count);
+            let tree = Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().copied()));
+            assert_eq!(tree.validate(), Ok(()), "{count}");
+            assert_eq!(tree.len(), boxes.len(), "{count}");
+            assert!((0..).zip(&boxes).all(|(id, own)| tree.bounds(id) == Some(own)), "{count}");
+        }
+    }
+
+    #[test]
+    fn cuts_by_surface_cost_less_than_halves() {
+        let boxes = boxes(10_000);
+        let still = Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().copied()));
+        let mut moving = Tree::new(Lanes::detect());
+        for (id, bounds) in (0..).zip(&boxes) {
+            moving.insert_still(id, bounds);
+        }
+        moving.refit();
+        let (cut, halved) = (still.leaf_surface(), moving.leaf_surface());
+        assert!(cut < halved, "{cut} against {halved} in k-d order");
+    }
+
+    #[test]
+    fn boxes_at_one_place_are_halved() {
+        let one = Bounds { lo: [1.0; 2], hi: [2.0; 2] };
+        let tree = Tree::of_still(Lanes::detect(), (0..1000).map(|id| (id, one)));
+        assert_eq!(tree.validate(), Ok(()), "all alike");
+    }
+}

@@ -1,0 +1,173 @@
+//! Sixteen triangles side by side, and which of them a line may cross.
+//!
+//! The test is that of signs of areas around the line (Woop, Benthin and Wald, "Watertight
+//! Ray/Triangle Intersection", 2013), in `f32`, with a bound for all that rounding does here and in
+//! whatever test decides: what is sorted out is certainly not crossed.
+
+use super::LANES;
+use super::kernel::{Scalar, Wide, low_half};
+use crate::bounding_volume::{Aabb, Ray};
+use crate::math::{Real, max_component};
+use fearless_simd::{Simd, SimdBase, f32x16};
+
+/// Sixteen triangles in space as a structure of arrays: by corner, then by axis, rounded to nearest.
+///
+/// 576 bytes. Lanes without a triangle hold zeros, and may be proposed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub(crate) struct Triangles {
+    corners: [[[f32; LANES]; 3]; 3],
+}
+
+impl Triangles {
+    /// Sixteen triangles that are the origin.
+    pub(crate) const EMPTY: Self = Self { corners: [[[0.0; LANES]; 3]; 3] };
+
+    /// Puts a triangle into a lane.
+    #[inline]
+    pub(crate) fn set_lane(&mut self, lane: usize, corners: &[[f32; 3]; 3]) {
+        for (own, corner) in self.corners.iter_mut().zip(corners) {
+            for (axis, &x) in own.iter_mut().zip(corner) {
+                axis[lane] = x;
+            }
+        }
+    }
+
+    /// The triangle in a lane.
+    #[inline]
+    pub(crate) fn lane(&self, lane: usize) -> [[f32; 3]; 3] {
+        self.corners.each_ref().map(|corner| corner.each_ref().map(|axis| axis[lane]))
+    }
+}
+
+/// What rounding does to the position of a corner beside the line, in units of `f32`'s rounding and
+/// of how far the corner is from the origin of the line along it and across it.
+///
+/// In halves of that unit: 12 here and 16 in the exact test, for differences, runs along the line and
+/// sums, which make 112 in an area of two such positions; and 83 within which the sides of a triangle
+/// seen edge on are met, which make 235. The rest is reserve.
+const NEAR: f32 = 256.0;
+
+/// The same, in units of all coordinates: those of `f64` are rounded to be here, which makes 8, and a ray
+/// starts on a triangle that is within eight units, which makes 40.
+const FAR: f32 = 64.0;
+
+/// A line, sheared so that it runs along the third of its axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShearedLine {
+    /// Two axes across the line, and the one that it mostly runs along.
+    axes: [usize; 3],
+    origin: [f32; 3],
+    /// How far the line runs along the first two axes per unit of the third.
+    shear: [f32; 2],
+    /// Units of time per length along the third axis, at most 1: those of [`Slabs`](super::Slabs).
+    inverse: f32,
+    /// What rounding does anyway.
+    slack: f32,
+}
+
+impl ShearedLine {
+    /// The line of a ray that is finite and has a direction, for corners with coordinates up to `size`.
+    /// `around` is a box around its origin that holds what rounding made of it before.
+    pub(crate) fn new<N: Real>(ray: &Ray<N, 3>, around: &Aabb<N, 3>, size: f32) -> Self {
+        let along = ray.dir.iamax();
+        let axes = [(along + 1) % 3, (along + 2) % 3, along];
+        let unit = max_component(&ray.dir).power_of_two_below();
+        let origin = axes.map(|axis| ray.origin[axis].as_f32());
+        let share = |axis: usize| (ray.dir[axis] / ray.dir[along]).as_f32();
+        let reach = max_component(&ray.origin.coords).as_f32();
+        let blur = max_component(&(around.maxs() - around.mins())).as_f32();
+        Self {
+            axes,
+            origin,
+            shear: [share(axes[0]), share(axes[1])],
+            inverse: (unit / ray.dir[along]).as_f32(),
+            slack: FAR * f32::EPSILON * if reach > size { reach } else { size } + blur,
+        }
+    }
+}
+
+impl Scalar {
+    /// One lane after another: see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    pub(super) fn crossed_triangles(
+        self,
+        triangles: &Triangles,
+        line: &ShearedLine,
+        limit: f32,
+    ) -> u32 {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let smaller = |a: f32, b: f32| if a < b { a } else { b };
+        let mut mask = 0;
+        for lane in 0..LANES {
+            let seen = triangles.lane(lane).map(|corner| {
+                let at = |k: usize| corner[line.axes[k]] - line.origin[k];
+                let depth = at(2);
+                [at(0) - line.shear[0] * depth, at(1) - line.shear[1] * depth, depth]
+            });
+            let [a, b, c] = seen;
+            let area = |p: [f32; 3], q: [f32; 3]| p[0] * q[1] - p[1] * q[0];
+            let areas = [area(b, c), area(c, a), area(a, b)];
+            let wide = |p: [f32; 3]| larger(p[0].abs(), p[1].abs());
+            let width = larger(larger(wide(a), wide(b)), wide(c));
+            let depth = larger(larger(a[2].abs(), b[2].abs()), c[2].abs());
+            let slack = (width + depth) * (NEAR * f32::EPSILON) + line.slack;
+            let margin = (width + slack) * slack + f32::MIN_POSITIVE;
+            let most = larger(larger(areas[0], areas[1]), areas[2]);
+            let least = smaller(smaller(areas[0], areas[1]), areas[2]);
+            let times = seen.map(|corner| corner[2] * line.inverse);
+            let first = smaller(smaller(times[0], times[1]), times[2]);
+            let last = larger(larger(times[0], times[1]), times[2]);
+            let beside = (most > margin) & (least < -margin);
+            let outside = (first - slack > limit) | (last + slack < 0.0);
+            mask |= u32::from(!(beside | outside)) << lane;
+        }
+        mask
+    }
+}
+
+impl<S: Simd> Wide<S> {
+    /// All lanes at once: see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    #[inline(always)]
+    pub(super) fn crossed_triangles(
+        self,
+        triangles: &Triangles,
+        line: &ShearedLine,
+        limit: f32,
+    ) -> u32 {
+        // Spelled out: what arrays are mapped by is not compiled for the instruction set.
+        let [a, b, c] = &triangles.corners;
+        let (a, b, c) = (seen(self.0, a, line), seen(self.0, b, line), seen(self.0, c, line));
+        let areas = [area(b, c), area(c, a), area(a, b)];
+        let width = wide(a).max(wide(b)).max(wide(c));
+        let depth = a[2].abs().max(b[2].abs()).max(c[2].abs());
+        let slack = (width + depth) * (NEAR * f32::EPSILON) + line.slack;
+        let margin = (width + slack) * slack + f32::MIN_POSITIVE;
+        let most = areas[0].max(areas[1]).max(areas[2]);
+        let least = areas[0].min(areas[1]).min(areas[2]);
+        let [ta, tb, tc] = [a[2] * line.inverse, b[2] * line.inverse, c[2] * line.inverse];
+        let (first, last) = (ta.min(tb).min(tc), ta.max(tb).max(tc));
+        let beside = most.simd_gt(margin) & least.simd_lt(-margin);
+        let outside = (first - slack).simd_gt(limit) | (last + slack).simd_lt(0.0);
+        !low_half(fearless_simd::SimdMask::to_bitmask(beside | outside)) & 0xffff
+    }
+}
+
+/// A corner of each triangle, across the line and along it.
+#[inline(always)]
+fn seen<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f32x16<S>; 3] {
+    let [x, y, along] = line.axes;
+    let depth = f32x16::load_array_ref(simd, &corner[along]) - line.origin[2];
+    let x = f32x16::load_array_ref(simd, &corner[x]) - line.origin[0];
+    let y = f32x16::load_array_ref(simd, &corner[y]) - line.origin[1];
+    [x - depth * line.shear[0], y - depth * line.shear[1], depth]
+}
+
+#[inline(always)]
+fn area<S: Simd>(p: [f32x16<S>; 3], q: [f32x16<S>; 3]) -> f32x16<S> {
+    p[0] * q[1] - p[1] * q[0]
+}
+
+#[inline(always)]
+fn wide<S: Simd>(p: [f32x16<S>; 3]) -> f32x16<S> {
+    p[0].abs().max(p[1].abs())
+}

@@ -1,0 +1,145 @@
+//! Where the links of objects with very many stand: a hash table, so that these are not searched.
+//!
+//! Entries lie where multiplications of the two numbers say (linear probing; Knuth 1973, vol. 3,
+//! § 6.4, with his removal that leaves no graves). Nothing ever walks over the entries, so their
+//! order shows nowhere.
+
+/// The place of an entry without a key.
+const FREE: u32 = u32::MAX;
+/// The least number of entries, once there is one.
+const LEAST: usize = 256;
+
+/// A link, named by its two ends, and its place.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    key: u64,
+    place: u32,
+}
+
+/// From links, named by their two ends, to places.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Places {
+    /// A power of two of entries, at most half of them in use; or none.
+    entries: Vec<Entry>,
+    used: usize,
+}
+
+impl Places {
+    /// The place of the link, if it is in the table.
+    pub(super) fn get(&self, key: u64) -> Option<u32> {
+        if self.entries.is_empty() {
+            return None;
+        }
+        let entry = self.entries[self.place_of(key)];
+        (entry.place != FREE).then_some(entry.place)
+    }
+
+    /// Adds the link, or gives it another place.
+    pub(super) fn set(&mut self, key: u64, value: u32) {
+        if (self.used + 1) * 2 > self.entries.len() {
+            self.grow();
+        }
+        let place = self.place_of(key);
+        self.used += usize::from(self.entries[place].place == FREE);
+        self.entries[place] = Entry { key, place: value };
+    }
+
+    /// Takes the link out, if it is there: entries behind it that could not stand here before move
+    /// up, until one is free.
+    pub(super) fn remove(&mut self, key: u64) {
+        if self.entries.is_empty() {
+            return;
+        }
+        let mask = self.entries.len() - 1;
+        let mut gap = self.place_of(key);
+        if self.entries[gap].place == FREE {
+            return;
+        }
+        self.used -= 1;
+        let mut next = (gap + 1) & mask;
+        while self.entries[next].place != FREE {
+            // How far each stands from where its key would like it: who came past the gap may move.
+            let from_home = next.wrapping_sub(self.home(self.entries[next].key)) & mask;
+            if from_home >= next.wrapping_sub(gap) & mask {
+                self.entries[gap] = self.entries[next];
+                gap = next;
+            }
+            next = (next + 1) & mask;
+        }
+        self.entries[gap].place = FREE;
+    }
+
+    /// Takes everything out.
+    pub(super) fn clear(&mut self) {
+        self.entries.clear();
+        self.used = 0;
+    }
+
+    /// The links in the table.
+    pub(super) const fn len(&self) -> usize {
+        self.used
+    }
+
+    /// The entry of the key, or the free one where it belongs. At most half are in use, so the
+    /// search ends.
+    fn place_of(&self, key: u64) -> usize {
+        let mask = self.entries.len() - 1;
+        let mut place = self.home(key);
+        while self.entries[place].place != FREE && self.entries[place].key != key {
+            place = (place + 1) & mask;
+        }
+        place
+    }
+
+    /// Where the key would like to stand.
+    fn home(&self, key: u64) -> usize {
+        // Numbers from the golden ratio and from SplitMix64 (Steele et al. 2014).
+        let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        (mixed >> 32) as usize & (self.entries.len() - 1)
+    }
+
+    fn grow(&mut self) {
+        let length = (2 * self.entries.len()).max(LEAST);
+        let free = Entry { key: 0, place: FREE };
+        let old = core::mem::replace(&mut self.entries, vec![free; length]);
+        for entry in old.iter().filter(|entry| entry.place != FREE) {
+            let place = self.place_of(entry.key);
+            self.entries[place] = *entry;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn random_calls_agree_with_a_sorted_map() {
+        let (mut state, mut table, mut map) = (5_u64, Places::default(), BTreeMap::new());
+        let mut next = |bound: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
+            (state >> 33) % bound
+        };
+        let mut removed = 0;
+        for step in 0..20_000 {
+            // 30 × 30 keys of two halves, which crowd; every other call takes one out.
+            let key = next(30) << 32 | next(30);
+            if next(2) == 0 {
+                let value = u32::try_from(next(1000)).expect("small");
+                table.set(key, value);
+                map.insert(key, value);
+            } else {
+                table.remove(key);
+                removed += usize::from(map.remove(&key).is_some());
+            }
+            let probe = next(30) << 32 | next(30);
+            assert_eq!(table.get(probe), map.get(&probe).copied(), "step {step}");
+            assert_eq!(table.len(), map.len(), "step {step}");
+        }
+        assert!(removed > 4000, "removals hit: {removed}");
+        table.clear();
+        assert_eq!((table.len(), table.get(5)), (0, None), "cleared");
+    }
+}

@@ -1,0 +1,74 @@
+//! Many rays in one call.
+
+use super::RayIntersection;
+use crate::bounding_volume::Ray;
+use crate::math::Real;
+
+/// Rays that one thread answers at a time; a constant, so that nothing depends on the threads.
+#[cfg(feature = "parallel")]
+const CHUNK: usize = 64;
+
+/// Rays that are asked about together, with what all of them have in common.
+///
+/// See [`RayCast::cast_local_rays`](super::RayCast::cast_local_rays).
+#[derive(Clone, Copy, Debug)]
+pub struct RayBatch<'a, N: Real, const D: usize> {
+    /// The rays.
+    pub rays: &'a [Ray<N, D>],
+    /// Hits after this time do not count; in units of the direction of each ray.
+    pub max_time: N,
+    /// A ray that starts inside hits at time zero; see [`RayCast`](super::RayCast).
+    pub solid: bool,
+}
+
+impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
+    /// Rays without an end, among solids.
+    #[must_use]
+    pub const fn new(rays: &'a [Ray<N, D>]) -> Self {
+        Self { rays, max_time: N::INFINITY, solid: true }
+    }
+
+    /// The same rays up to a time.
+    #[must_use]
+    pub const fn until(self, max_time: N) -> Self {
+        Self { max_time, ..self }
+    }
+
+    /// The same rays among boundaries: those that start inside a shape hit where they leave it.
+    #[must_use]
+    pub const fn hollow(self) -> Self {
+        Self { solid: false, ..self }
+    }
+
+    /// Writes the answer about each ray into the place with its index.
+    #[track_caller]
+    pub(crate) fn each<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {
+        self.check(answers.len());
+        for (ray, place) in self.rays.iter().zip(answers) {
+            *place = answer(ray);
+        }
+    }
+
+    /// The same; with the feature `parallel` on several threads, chunk by chunk.
+    #[track_caller]
+    pub(super) fn each_in_chunks(
+        &self,
+        hits: &mut [Option<RayIntersection<N, D>>],
+        answer: impl Fn(&Ray<N, D>) -> Option<RayIntersection<N, D>> + Sync,
+    ) {
+        #[cfg(feature = "parallel")]
+        if self.rays.len() > CHUNK && rayon::current_num_threads() > 1 {
+            use rayon::prelude::*;
+            self.check(hits.len());
+            let chunks = self.rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK));
+            chunks.for_each(|(rays, hits)| Self { rays, ..*self }.each(hits, &answer));
+            return;
+        }
+        self.each(hits, answer);
+    }
+
+    #[track_caller]
+    fn check(&self, places: usize) {
+        assert_eq!(places, self.rays.len(), "a batch of rays needs a place for each answer");
+    }
+}
