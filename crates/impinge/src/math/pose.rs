@@ -134,4 +134,26 @@ mod tests {
         let p = Pose::from_isometry(&iso).point(&Point::<f32, 2>::new(1.0, 0.0));
         assert!((p - Point::<f32, 2>::new(1.0, 1.0)).norm() < 1e-6, "{p}");
     }
+
+    fn finite_in_every_number_but_one<const D: usize>() {
+        for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
+            for index in 0..D * D {
+                let mut pose = Pose::<f32, D>::from_translation(Vector::<f32, D>::repeat(f32::MAX));
+                assert!(pose.is_finite(), "the largest numbers are numbers");
+                pose.rotation[index] = bad;
+                assert!(!pose.is_finite(), "{bad} at {index} of the rotation");
+            }
+            for axis in 0..D {
+                let mut pose = Pose::<f32, D>::identity();
+                pose.translation[axis] = bad;
+                assert!(!pose.is_finite(), "{bad} at {axis} of the translation");
+            }
+        }
+    }
+
+    #[test]
+    fn one_number_that_is_not_finite_is_found() {
+        finite_in_every_number_but_one::<2>();
+        finite_in_every_number_but_one::<3>();
+    }
 }
