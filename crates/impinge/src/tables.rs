@@ -20,7 +20,8 @@ use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, ov
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, in_world, separation_in_plane, separation_in_space, touching_in_world,
+    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
+    touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
@@ -39,6 +40,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
     pub(crate) touching_in_world: InWorldFn<N, D>,
+    /// Its distance alone.
+    pub(crate) distance_in_world: DistanceInWorldFn<N, D>,
     pub(crate) witness_in_world: WitnessFn<N, D>,
     /// The features that the nearest points of two convex solids lie on.
     pub(crate) witness_features: FeaturesFn<N, D>,
@@ -80,6 +83,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
 
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
+type DistanceInWorldFn<N, const D: usize> =
+    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<N>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
@@ -232,6 +237,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,
+            distance_in_world,
             witness_in_world,
             witness_features: particular.witness_features,
             witness_feature: particular.witness_feature,

@@ -108,11 +108,12 @@ impl<N: Real, const D: usize> Pose<N, D> {
     }
 
     /// No component is NaN or infinite.
+    #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // Without a branch for each number: zero times anything else is not zero.
-        let nothing = |numbers: &[N]| numbers.iter().fold(N::ZERO, |sum, &x| sum + x * N::ZERO);
-        nothing(self.rotation.as_slice()) + nothing(self.translation.as_slice()) == N::ZERO
+        // Nearly always all are: looking at every number at once is cheaper than stopping early.
+        let rotation = self.rotation.iter().fold(true, |all, x| all & x.is_finite_number());
+        self.translation.iter().fold(rotation, |all, x| all & x.is_finite_number())
     }
 }
 
@@ -140,5 +141,27 @@ mod tests {
         let iso = Isometry2::new(Vector::<f32, 2>::new(1.0, 0.0), std::f32::consts::FRAC_PI_2);
         let p = Pose::from_isometry(&iso).point(&Point::<f32, 2>::new(1.0, 0.0));
         assert!((p - Point::<f32, 2>::new(1.0, 1.0)).norm() < 1e-6, "{p}");
+    }
+
+    fn finite_in_every_number_but_one<const D: usize>() {
+        for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
+            for index in 0..D * D {
+                let mut pose = Pose::<f32, D>::from_translation(Vector::<f32, D>::repeat(f32::MAX));
+                assert!(pose.is_finite(), "the largest numbers are numbers");
+                pose.rotation[index] = bad;
+                assert!(!pose.is_finite(), "{bad} at {index} of the rotation");
+            }
+            for axis in 0..D {
+                let mut pose = Pose::<f32, D>::identity();
+                pose.translation[axis] = bad;
+                assert!(!pose.is_finite(), "{bad} at {axis} of the translation");
+            }
+        }
+    }
+
+    #[test]
+    fn one_number_that_is_not_finite_is_found() {
+        finite_in_every_number_but_one::<2>();
+        finite_in_every_number_but_one::<3>();
     }
 }

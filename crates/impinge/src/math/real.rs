@@ -60,6 +60,7 @@ impl Real for f32 {
     const INFINITY: Self = Self::INFINITY;
 
     #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
+    #[inline]
     fn lit(value: f64) -> Self {
         value as Self
     }
@@ -80,15 +81,18 @@ impl Real for f32 {
         self
     }
 
+    #[inline]
     fn bits(self) -> u64 {
         u64::from(self.to_bits())
     }
 
+    #[inline]
     fn power_of_two_below(self) -> Self {
         let power = Self::from_bits(self.to_bits() & 0x7f80_0000);
         if power.is_finite() { max(power, Self::MIN_POSITIVE) } else { 1.0 }
     }
 
+    #[inline]
     fn is_finite_number(self) -> bool {
         self.is_finite()
     }
@@ -109,6 +113,7 @@ impl Real for f64 {
     const MIN_POSITIVE: Self = Self::MIN_POSITIVE;
     const INFINITY: Self = Self::INFINITY;
 
+    #[inline]
     fn lit(value: f64) -> Self {
         value
     }
@@ -132,15 +137,18 @@ impl Real for f64 {
         if Self::from(nearest) < self { nearest.next_up() } else { nearest }
     }
 
+    #[inline]
     fn bits(self) -> u64 {
         self.to_bits()
     }
 
+    #[inline]
     fn power_of_two_below(self) -> Self {
         let power = Self::from_bits(self.to_bits() & 0x7ff0_0000_0000_0000);
         if power.is_finite() { max(power, Self::MIN_POSITIVE) } else { 1.0 }
     }
 
+    #[inline]
     fn is_finite_number(self) -> bool {
         self.is_finite()
     }

@@ -29,6 +29,6 @@ pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
 ) -> N {
     let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
-    let found = (N::tables().touching_in_world)(&placed1, &placed2, N::INFINITY);
-    found.map_or(N::INFINITY, |found| max(found.distance, N::ZERO))
+    let found = (N::tables().distance_in_world)(&placed1, &placed2, N::INFINITY);
+    found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }

@@ -47,6 +47,43 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
     (pair, swapped)
 }
 
+/// Two placed solids in the order of [`canonical`].
+#[derive(Clone, Copy)]
+pub(crate) struct Ordered<'p, 'a, N: Real, const D: usize> {
+    pub(crate) first: &'p Placed<'a, N, D>,
+    pub(crate) second: &'p Placed<'a, N, D>,
+    /// The order is the opposite of that of the arguments.
+    pub(crate) swapped: bool,
+}
+
+impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
+    #[inline]
+    pub(crate) fn new(placed1: &'p Placed<'a, N, D>, placed2: &'p Placed<'a, N, D>) -> Self {
+        if is_swapped(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) {
+            Self { first: placed2, second: placed1, swapped: true }
+        } else {
+            Self { first: placed1, second: placed2, swapped: false }
+        }
+    }
+
+    /// The canonical pair.
+    #[inline]
+    pub(crate) fn pair(&self) -> Pair<'a, N, D> {
+        Pair {
+            first: self.first.shape.0,
+            second: self.second.shape.0,
+            pose12: Pose::relative(&self.first.pose, &self.second.pose),
+        }
+    }
+
+    /// One of the two is made of parts: [`Between`](super::composite::Between) has the answers.
+    #[inline]
+    pub(crate) fn has_composite(&self) -> bool {
+        let is_composite = |placed: &Placed<'a, N, D>| placed.shape.as_composite().is_some();
+        is_composite(self.first) || is_composite(self.second)
+    }
+}
+
 /// The order of [`canonical`] is the opposite of that of the arguments.
 #[inline]
 pub(crate) fn is_swapped<N: Real, const D: usize>(
@@ -74,13 +111,17 @@ fn compare<N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'_, N, D>,
 ) -> Ordering {
-    let by_kind = shape1.kind().cmp(&shape2.kind());
-    if by_kind.is_ne() {
-        return by_kind;
+    let (kind1, kind2) = (shape1.kind(), shape2.kind());
+    if kind1 != kind2 {
+        return kind1.cmp(&kind2);
     }
-    match pose1.translation[0].partial_cmp(&pose2.translation[0]) {
-        Some(order @ (Ordering::Less | Ordering::Greater)) => order,
-        _ => compare_at_length((pose1, shape1), (pose2, shape2)),
+    let (x1, x2) = (pose1.translation[0], pose2.translation[0]);
+    if x1 < x2 {
+        Ordering::Less
+    } else if x1 > x2 {
+        Ordering::Greater
+    } else {
+        compare_at_length((pose1, shape1), (pose2, shape2))
     }
 }
 

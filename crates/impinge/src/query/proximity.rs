@@ -30,9 +30,9 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     margin: N,
 ) -> Proximity {
     let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
-    match (N::tables().touching_in_world)(&placed1, &placed2, max(margin, N::ZERO)) {
+    match (N::tables().distance_in_world)(&placed1, &placed2, max(margin, N::ZERO)) {
         None => Proximity::Disjoint,
-        Some(found) if found.distance <= N::ZERO => Proximity::Intersecting,
+        Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,
     }
 }

@@ -79,6 +79,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
     }
 
     /// Which kind it is.
+    #[inline]
     #[must_use]
     pub fn kind(&self) -> ShapeKind {
         match self.0 {
@@ -119,6 +120,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
     }
 
     /// The parts of a composite; `None` for a convex solid.
+    #[inline]
     #[must_use]
     pub fn as_composite(&self) -> Option<&'a dyn CompositeShape<N, D>> {
         match self.0 {

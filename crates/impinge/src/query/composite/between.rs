@@ -12,7 +12,7 @@ use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::Pair;
-use crate::query::pair::{Placed, canonical};
+use crate::query::pair::{Ordered, Placed};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
 
 /// Two shapes, at least one of them a composite, and how each lies in the frame of the other.
@@ -53,9 +53,14 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         placed1: &Placed<'a, N, D>,
         placed2: &Placed<'a, N, D>,
     ) -> (Self, bool) {
-        let (pair, swapped) = canonical(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape);
-        let (first, second) = if swapped { (placed2, placed1) } else { (placed1, placed2) };
-        (Self { pair, pose21: Pose::relative(&second.pose, &first.pose) }, swapped)
+        let ordered = Ordered::new(placed1, placed2);
+        (Self::of_ordered(&ordered), ordered.swapped)
+    }
+
+    /// Two placed shapes whose canonical order is known.
+    pub(crate) fn of_ordered(ordered: &Ordered<'_, 'a, N, D>) -> Self {
+        let pose21 = Pose::relative(&ordered.second.pose, &ordered.first.pose);
+        Self { pair: ordered.pair(), pose21 }
     }
 
     /// Two shapes of which only the pose of the second in the frame of the first is known.

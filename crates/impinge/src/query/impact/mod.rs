@@ -16,7 +16,7 @@ pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::composite::{Between, first_arrival};
-use super::pair::{Placed, indistinguishable};
+use super::pair::{Ordered, Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
@@ -242,12 +242,12 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
-    let (between, swapped) = Between::canonical(placed1, placed2);
+    let ordered = Ordered::new(placed1, placed2);
     let mirrored = indistinguishable(placed1, placed2);
     if mirrored && is_later(moving1, moving2) {
         return impact_of_pair(moving2, moving1, options).map(|found| found.flipped());
     }
-    let pair = &between.pair;
+    let (pair, swapped) = (ordered.pair(), ordered.swapped);
     let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
     let velocity = second.velocity - first.velocity;
     let finite = pair.pose12.is_finite() && velocity.iter().all(|x| x.is_finite_number());
@@ -261,9 +261,11 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
         target: max(options.target_distance, N::ZERO),
         mirrored,
     };
-    let (arrival, parts) = match between.composites() {
-        [None, None] => (advance(pair, &path)?, [0, 0]),
-        _ => first_arrival(&between, &path).map(|found| (found.arrival, found.parts))?,
+    let (arrival, parts) = if ordered.has_composite() {
+        let between = Between::of_ordered(&ordered);
+        first_arrival(&between, &path).map(|found| (found.arrival, found.parts))?
+    } else {
+        (advance(&pair, &path)?, [0, 0])
     };
     let toi = arrival.along / scale;
     let found = toi.is_finite_number().then(|| first.impact(&arrival, toi))?;

@@ -44,7 +44,7 @@ use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
-pub(crate) use world::{in_world, placed, touching_in_world};
+pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
@@ -53,6 +53,7 @@ pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];
 
 /// The separation of any pair, in either order of kinds.
+#[inline]
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -61,6 +62,7 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
 }
 
 /// The algorithm of a table for a pair.
+#[inline]
 fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) -> Algorithm<N, D> {
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }

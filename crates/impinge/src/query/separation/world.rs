@@ -3,7 +3,7 @@
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
-use crate::query::pair::Placed;
+use crate::query::pair::{Ordered, Placed};
 use crate::shape::Shape;
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
@@ -16,10 +16,9 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let (between, swapped) = Between::canonical(placed1, placed2);
-    let first = if swapped { &placed2.pose } else { &placed1.pose };
-    let found = between_poses(&between, limit, Wanted::Deepest)?;
-    Some(placed(&found, first, swapped))
+    let ordered = Ordered::new(placed1, placed2);
+    let found = in_first(&ordered, limit, Wanted::Deepest)?;
+    Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
 /// [`in_world`], but of composites that overlap the separation of any two parts that do.
@@ -28,29 +27,53 @@ pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let (between, swapped) = Between::canonical(placed1, placed2);
-    let first = if swapped { &placed2.pose } else { &placed1.pose };
-    let found = between_poses(&between, limit, Wanted::Touching)?;
-    Some(placed(&found, first, swapped))
+    let ordered = Ordered::new(placed1, placed2);
+    let found = in_first(&ordered, limit, Wanted::Touching)?;
+    Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
-/// The separation in the frame of the first.
-fn between_poses<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
+/// The distance in [`touching_in_world`]: a number is the same in every frame.
+pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<N> {
+    let ordered = Ordered::new(placed1, placed2);
+    in_first(&ordered, limit, Wanted::Touching).map(|found| found.distance)
+}
+
+/// The separation in the frame of the first; `None` also if a pose is not finite.
+#[inline]
+fn in_first<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
     limit: N,
     wanted: Wanted,
 ) -> Option<Separation<N, D>> {
-    let pair = &between.pair;
+    if ordered.has_composite() {
+        return of_composites(ordered, limit, wanted);
+    }
+    let pair = ordered.pair();
     if !pair.pose12.is_finite() {
         return None;
     }
-    if let [None, None] = between.composites() {
-        return super::separation(pair, limit);
+    super::separation(&pair, limit)
+}
+
+/// [`in_first`], where one is a composite.
+fn of_composites<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+    wanted: Wanted,
+) -> Option<Separation<N, D>> {
+    let between = Between::of_ordered(ordered);
+    if !between.pair.pose12.is_finite() {
+        return None;
     }
-    nearest_between(between, limit, wanted).map(|found| found.separation)
+    nearest_between(&between, limit, wanted).map(|found| found.separation)
 }
 
 /// A separation in the frame of one solid, in that of the world.
+#[inline]
 pub(crate) fn placed<N: Real, const D: usize>(
     found: &Separation<N, D>,
     first: &Pose<N, D>,
@@ -68,6 +91,7 @@ pub(crate) fn placed<N: Real, const D: usize>(
 
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     /// A shape where the user's isometry puts it.
+    #[inline]
     pub(crate) fn new<R: AbstractRotation<N, D>>(
         isometry: &Isometry<N, R, D>,
         shape: &'a dyn Shape<N, D>,

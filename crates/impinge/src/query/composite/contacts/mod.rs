@@ -30,7 +30,7 @@ use crate::bounding_volume::Ray;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, merge};
-use crate::query::pair::Placed;
+use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::placed;
 use crate::query::{ManifoldRequest, Pair, PairIds};
 use crate::shape::{Geometry, Kind, SupportMap};
@@ -185,13 +185,13 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<Separation<N, D>> {
     let nearest = (N::tables().separation_in_world)(placed1, placed2, limit)?;
-    let (between, is_swapped) = Between::canonical(placed1, placed2);
-    if let [None, None] = between.composites() {
+    let ordered = Ordered::new(placed1, placed2);
+    if !ordered.has_composite() {
         return Some(nearest);
     }
-    let first = if is_swapped { &placed2.pose } else { &placed1.pose };
+    let between = Between::of_ordered(&ordered);
     let found = deepest(&between, nearest.distance, limit)?;
-    Some(placed(&found, first, is_swapped))
+    Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
 /// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
