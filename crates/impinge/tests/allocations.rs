@@ -61,7 +61,7 @@ fn pose<N: Stage<D>, const D: usize>(index: usize, step: u32) -> N::Isometry {
     let swing = (phase.min(PERIOD as usize - phase) as f64 - 4.0) * 0.06;
     let at = Vector::<N, D>::from_fn(|axis, _| {
         let place = index / ROW.pow(u32::try_from(axis).expect("0 to 2")) % ROW;
-        N::lit(place as f64 + if (index + axis) % 2 == 0 { swing } else { -swing })
+        N::lit(place as f64 + if (index + axis).is_multiple_of(2) { swing } else { -swing })
     });
     N::place(at, swing)
 }

@@ -100,14 +100,21 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// The smallest box around some points; `None` for no points or a NaN among them.
     #[must_use]
     pub fn from_points(points: &[Point<N, D>]) -> Option<Self> {
-        let first = points.first()?;
-        let mut aabb = Self { mins: *first, maxs: *first };
+        Self::around_all(points.iter().copied())
+    }
+
+    /// [`Self::from_points`] of points that need not lie in memory.
+    pub(crate) fn around_all(mut points: impl Iterator<Item = Point<N, D>>) -> Option<Self> {
+        let first = points.next()?;
+        let is_usable = |point: &Point<N, D>| point.iter().all(|x| x.partial_cmp(x).is_some());
+        let mut aabb = Self::at(first);
+        let mut are_usable = is_usable(&first);
         for point in points {
             aabb.mins = Point::from(aabb.mins.coords.zip_map(&point.coords, min));
             aabb.maxs = Point::from(aabb.maxs.coords.zip_map(&point.coords, max));
+            are_usable &= is_usable(&point);
         }
-        let usable = points.iter().all(|p| p.iter().all(|x| x.partial_cmp(x).is_some()));
-        usable.then_some(aabb)
+        are_usable.then_some(aabb)
     }
 
     /// The box of everything.

@@ -178,7 +178,7 @@ mod tests {
         let place = |id: u32| {
             let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));
             let z = f32::from(u16::try_from(id * 104_729 % 977).expect("small"));
-            let size = if id % 10 == 0 { 1000.0 } else { 1.0 };
+            let size = if id.is_multiple_of(10) { 1000.0 } else { 1.0 };
             Bounds { lo: [x, 0.0, z], hi: [x + size, size, z + size] }
         };
         (0..count).map(place).collect()

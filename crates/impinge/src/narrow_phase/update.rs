@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::default_narrow_phase::push_change;
-use super::entry::{Change, ContactEntry, ContactView, posed};
+use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{Group, Rows};
 use super::lanes::{BOX_PAIRS, Lane, Location, needs_update};
 use super::state::{ContactState, KeptContacts};
@@ -71,12 +71,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             update_contacts(rows, table, changes);
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
-            update_group(group, changes, |rows, changes| {
-                update_each(rows, changes, |key, entry, _| {
-                    let needed = needs_update(entry.due, table, key);
-                    if needed { entry.update(&posed(table, key)) } else { None }
-                });
-            });
+            update_group(group, changes, |rows, changes| update_proximity(rows, table, changes));
         }
         self.update_all_custom(table, changes);
     }
@@ -188,6 +183,18 @@ fn update_contacts<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     update_each(rows, changes, |key, entry, view| {
         let needed = needs_update(entry.due, table, key);
         if needed { entry.update(view, &posed(table, key)) } else { None }
+    });
+}
+
+/// Brings the proximity of some pairs up to date.
+fn update_proximity<N: Space<D>, const D: usize>(
+    rows: Rows<'_, ProximityEntry<N>, ()>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+) {
+    update_each(rows, changes, |key, entry, _| {
+        let needed = needs_update(entry.due, table, key);
+        if needed { entry.update(&posed(table, key)) } else { None }
     });
 }
 

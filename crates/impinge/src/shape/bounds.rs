@@ -26,10 +26,9 @@ pub fn bounding_sphere<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 impl<N: Real, const D: usize> Polytope<N, D> {
     /// The smallest box around the solid placed at `pose`.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let placed: Vec<Point<N, D>> =
-            self.vertices.iter().map(|vertex| pose.point(vertex)).collect();
+        let placed = self.vertices.iter().map(|vertex| pose.point(vertex));
         // A pose that is not finite gives no box; then everything is in it.
-        Aabb::from_points(&placed).unwrap_or_else(Aabb::unbounded)
+        Aabb::around_all(placed).unwrap_or_else(Aabb::unbounded)
     }
 
     /// The sphere around the middle of the box; a little larger than the farthest vertex asks for,

@@ -138,7 +138,11 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         let mut touched = (0..3).filter(is_on);
         match (touched.next(), touched.next()) {
             (Some(side), None) => Some(side_id::<D>(side)),
-            (None, _) if D > 2 => Some(FeatureId::Face(u32::from(self.ring(direction)[1] == 2))),
+            (None, _) => {
+                let index = u32::from(self.ring(direction)[1] == 2);
+                // In the plane what lies inside bounds nothing.
+                Some(FeatureId::flat::<D>(2, index)).filter(|id| matches!(id, FeatureId::Face(_)))
+            }
             _ => None,
         }
     }

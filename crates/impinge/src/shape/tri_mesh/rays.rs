@@ -7,6 +7,10 @@ use crate::math::{Point, Pose, Real, Space, min};
 use crate::partitioning::BoxTree;
 use crate::shape::{Part, PartSearch, PartSolid, Triangle};
 
+/// The areas of meshes below this size are not told from what `f32` makes zero: a rounding unit of its
+/// square is still a normal number.
+const LEAST_SIZE: f32 = 1.0 / 281_474_976_710_656.0;
+
 /// What is done with each part along a ray; see
 /// [`CompositeShape::parts_along`](crate::shape::CompositeShape::parts_along).
 type Visit<'a, N, const D: usize> = &'a mut dyn FnMut(u32, Part<'_, N, D>) -> N;
@@ -52,7 +56,8 @@ impl<N: Real> TriMesh<N, 3> {
     /// Finds the parts by their boxes, block by block, and by the signs of their areas around the ray.
     pub(super) fn triangles_along(&self, bounds: &RayBounds<'_, N, 3>, visit: Visit<'_, N, 3>) {
         let RayBounds { ray, around, limit } = *bounds;
-        if ray.dir.iter().all(|&x| x == N::ZERO) {
+        let size = self.tree.packed().size();
+        if size < LEAST_SIZE || ray.dir.iter().all(|&x| x == N::ZERO) {
             return self.boxes_along(bounds, visit);
         }
         let mut lowest = limit;
@@ -60,7 +65,6 @@ impl<N: Real> TriMesh<N, 3> {
             lowest = min(lowest, visit(index, triangle_part(&self.corners(index))));
         }
         let tree = self.tree.packed();
-        let size = tree.size();
         let slabs = Slabs::new(around, &ray.dir, size);
         let probe = RayProbe { slabs, line: ShearedLine::new(ray, around, size) };
         tree.visit_triangles(&self.packed, &probe, slabs.limit(lowest), |index, block, lane| {

@@ -261,7 +261,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
         for (upper, upper_signs) in above.iter().zip(SIGNS) {
             let faces = upper.is_inside & upper.at_end[0] & upper.at_end[1];
             let is_same = at_corner & faces & is_at(lower, upper_signs) & is_at(upper, lower_signs);
-            lower.is_inside = lower.is_inside & !is_same;
+            lower.is_inside &= !is_same;
         }
     }
 }

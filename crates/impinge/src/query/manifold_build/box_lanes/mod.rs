@@ -182,8 +182,8 @@ impl<N: Real> Found<N> {
 
     #[inline(always)]
     fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, boxes: &Boxes<V>, normal: &[V; 3]) {
-        for axis in 0..3 {
-            normal[axis].store(&mut self.normal[axis]);
+        for (axis, &along) in normal.iter().enumerate() {
+            along.store(&mut self.normal[axis]);
             boxes.translation[axis].store(&mut self.translation[axis]);
             for row in 0..3 {
                 boxes.rotation[axis][row].store(&mut self.rotation[axis][row]);

@@ -30,7 +30,7 @@ struct Case<N: Real> {
 
 /// Numbers as bits, but for NaN, which has many.
 fn bits<N: Real>(value: N) -> u64 {
-    if value.is_finite_number() || value == value { value.bits() } else { u64::MAX }
+    if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
 /// All that a manifold says.
@@ -190,7 +190,7 @@ fn spoiled<N: Real>(case: &mut Case<N>, number: usize) {
         5 => case.poses[1] = case.poses[0],
         _ => {
             case.request.prediction = [N::ZERO, N::INFINITY, N::MAX][number / 7 % 3];
-            case.request.sine = if number % 4 == 0 { N::HALF } else { N::ZERO };
+            case.request.sine = if number.is_multiple_of(4) { N::HALF } else { N::ZERO };
         }
     }
 }
