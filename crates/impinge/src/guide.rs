@@ -20,6 +20,8 @@ pub struct Groups;
 pub struct Events;
 #[doc = include_str!("../../../guide/queries.md")]
 pub struct Queries;
+#[doc = include_str!("../../../guide/performance.md")]
+pub struct Performance;
 #[doc = include_str!("../../../guide/guarantees.md")]
 pub struct Guarantees;
 #[doc = include_str!("../../../guide/coming-from.md")]
