@@ -12,7 +12,7 @@ use query_support::random::Random;
 
 /// Where and how large a soup of triangles is.
 const PLACES: [(f64, f64); 6] =
-    [(1.0, 0.0), (1.0, 1e6), (1e-3, 40.0), (1e6, 0.0), (1e-12, 0.0), (1e25, -3e25)];
+    [(1.0, 0.0), (1.0, 1e6), (1e-3, 40.0), (1e6, 0.0), (1e-18, 0.0), (1e25, -3e25)];
 
 /// Triangles of very different sizes, a tenth of them without area, in no order.
 fn soup<N: Real>(random: &mut Random, (size, offset): (f64, f64), count: u32) -> TriMesh<N, 3> {
@@ -100,6 +100,19 @@ fn soups<N: Real>() {
 fn triangles_are_sorted_out_by_what_decides() {
     soups::<f32>();
     soups::<f64>();
+}
+
+#[test]
+fn rays_that_pass_where_squares_underflow() {
+    let at = |x: f32, y: f32, z: f32| Point::<f32, 3>::new(x * 1e-21, y * 1e-21, z * 1e-21);
+    let corners = vec![at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.2), at(0.0, 1.0, 0.1)];
+    let mesh = TriMesh::new(corners, vec![[0, 1, 2]]);
+    for (x, y) in [(5.0, 5.0), (-3.0, 0.5), (0.5, 1.5), (1.25, 0.0)] {
+        let ray = Ray::new(at(x, y, 4.0), Vector::<f32, 3>::new(0.0, 0.0, -1e-21));
+        assert_eq!(mesh.cast_local_ray(&ray, true), None, "it passes at {x}, {y}");
+    }
+    let through = Ray::new(at(0.25, 0.25, 4.0), Vector::<f32, 3>::new(0.0, 0.0, -1e-21));
+    assert!(mesh.intersects_local_ray(&through, 8.0), "it does not pass");
 }
 
 #[test]

@@ -3,14 +3,14 @@
 use super::segment::{Names, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector, cross, cross2, max, unit, unit_or};
+use crate::math::{Point, Real, Vector, cross, cross2, unit, unit_or};
 use crate::shape::{FeatureId, Triangle};
 
 /// Through the inside, else along the triangle: there the sides answer, each within rounding.
 ///
 /// The same for both sides of the triangle, and for corners in one line.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
-    let sheared = enlarged(triangle.corners().map(|corner| Sheared::of(&corner, ray)));
+    let sheared = triangle.corners().map(|corner| Sheared::of(&corner, ray));
     match through(&sheared) {
         Through::Hit(t) => {
             let crossing = crossing(triangle, ray, t);
@@ -49,20 +49,6 @@ impl<N: Real> Sheared<N> {
         let size = to_corner[x].abs() + run_x.abs() + to_corner[y].abs() + run_y.abs();
         Self { flat, t, size }
     }
-}
-
-/// Corners so near to the ray that areas might vanish are moved away from it by a power of two, which
-/// changes no sign.
-fn enlarged<N: Real>(mut corners: [Sheared<N>; 3]) -> [Sheared<N>; 3] {
-    let farthest = corners.iter().fold(N::ZERO, |most, corner| max(corner.flat.amax(), most));
-    if farthest > N::ZERO && farthest < N::EPSILON {
-        let unit = farthest.power_of_two_below();
-        for corner in &mut corners {
-            corner.flat /= unit;
-            corner.size /= unit;
-        }
-    }
-    corners
 }
 
 enum Through<N: Real> {

@@ -8,7 +8,7 @@ use super::super::segment::box_of;
 use super::topology::Topology;
 use super::{TriMesh, table};
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::math::{Point, Space, Vector};
+use crate::math::{Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
@@ -137,11 +137,13 @@ fn boxes_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],
 ) -> Vec<Aabb<N, D>> {
-    let one = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|vertex| vertices[vertex as usize]);
-        box_of(&a, &b, N::ZERO).merged(&box_of(&c, &c, N::ZERO))
-    };
+    let one = |corners: &[u32; 3]| box_of_corners(&corners.map(|vertex| vertices[vertex as usize]));
     triangles.iter().map(one).collect()
+}
+
+/// The box of a triangle, as the tree has it.
+pub(super) fn box_of_corners<N: Real, const D: usize>([a, b, c]: &[Point<N, D>; 3]) -> Aabb<N, D> {
+    box_of(a, b, N::ZERO).merged(&box_of(c, c, N::ZERO))
 }
 
 fn normals_of<N: Space<D>, const D: usize>(

@@ -1,15 +1,12 @@
 //! Rays among the triangles of a mesh: sixteen at once are sorted out by their signs.
 
 use super::TriMesh;
+use super::build::box_of_corners;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::bvh::{NONE, RayProbe, ShearedLine, Slabs, Triangles};
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::partitioning::BoxTree;
 use crate::shape::{Part, PartSearch, PartSolid, Triangle};
-
-/// The areas of meshes below this size are not told from what `f32` makes zero: a rounding unit of its
-/// square is still a normal number.
-const LEAST_SIZE: f32 = 1.0 / 281_474_976_710_656.0;
 
 /// What is done with each part along a ray; see
 /// [`CompositeShape::parts_along`](crate::shape::CompositeShape::parts_along).
@@ -54,22 +51,30 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Finds the parts by their boxes, block by block, and by the signs of their areas around the ray.
+    ///
+    /// The box of a part is looked at last: where areas underflow their signs say nothing, nor do those
+    /// of the test that decides.
     pub(super) fn triangles_along(&self, bounds: &RayBounds<'_, N, 3>, visit: Visit<'_, N, 3>) {
         let RayBounds { ray, around, limit } = *bounds;
-        let size = self.tree.packed().size();
-        if size < LEAST_SIZE || ray.dir.iter().all(|&x| x == N::ZERO) {
+        if ray.dir.iter().all(|&x| x == N::ZERO) {
             return self.boxes_along(bounds, visit);
         }
         let mut lowest = limit;
-        for &index in self.tree.unbounded() {
-            lowest = min(lowest, visit(index, triangle_part(&self.corners(index))));
-        }
+        let mut propose = |index: u32, corners: &[Point<N, 3>; 3]| {
+            let enter = box_of_corners(corners).sweep_interval(around, &ray.dir);
+            if enter.is_some_and(|(enter, _)| enter <= lowest) {
+                lowest = min(lowest, visit(index, triangle_part(corners)));
+            }
+            lowest
+        };
+        let unbounded = self.tree.unbounded().iter();
+        let limit = unbounded.fold(limit, |_, &index| propose(index, &self.corners(index)));
         let tree = self.tree.packed();
+        let size = tree.size();
         let slabs = Slabs::new(around, &ray.dir, size);
         let probe = RayProbe { slabs, line: ShearedLine::new(ray, around, size) };
-        tree.visit_triangles(&self.packed, &probe, slabs.limit(lowest), |index, block, lane| {
-            lowest = min(lowest, visit(index, triangle_part(&self.corners_in(index, block, lane))));
-            slabs.limit(lowest)
+        tree.visit_triangles(&self.packed, &probe, slabs.limit(limit), |index, block, lane| {
+            slabs.limit(propose(index, &self.corners_in(index, block, lane)))
         });
     }
 
