@@ -12,8 +12,8 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events, KeptContacts,
-    ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
@@ -30,7 +30,7 @@ use crate::query::{
     witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
-use crate::world::{Bodies, WorldBroadPhase, WorldError};
+use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
@@ -143,7 +143,8 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
     pub(crate) set_isometry: SetIsometryFn<N, D>,
-    pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
+    pub(crate) set_shape: fn(&mut Body<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
+    pub(crate) set_query: fn(&mut Body<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) pair_stopped:
@@ -153,17 +154,18 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
 }
 
 type SetIsometryFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, u32, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {
         Self {
             new_broad_phase,
-            set_isometry: Bodies::set_isometry,
-            set_shape: Bodies::set_shape,
-            flush: Bodies::flush,
+            set_isometry: Body::set_isometry,
+            set_shape: Body::set_shape,
+            set_query: Body::set_query,
+            flush: Body::flush,
             pair_started: DefaultNarrowPhase::pair_started,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,

@@ -75,8 +75,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             }
             ranking.limit_of_boxes()
         };
-        for body in self.objects.bodies.astray() {
-            if probe.key(&body.volume()).is_some_and(|key| key <= limit) {
+        for (body, volume) in self.astray() {
+            if probe.key(&volume).is_some_and(|key| key <= limit) {
                 limit = consider(body);
             }
         }
