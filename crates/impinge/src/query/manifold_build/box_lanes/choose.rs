@@ -29,8 +29,8 @@ pub(super) trait Naming {
     /// The features of a candidate, of the first and the second box.
     fn features(&self, slot: usize) -> [FeatureId; 2];
 
-    /// The candidate of these features, among those that there are.
-    fn slot(&self, features: [FeatureId; 2], valid: u32) -> Option<usize>;
+    /// The candidate with the features of a point, among those that there are.
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
     /// A number, not zero, that no candidate of any pair has but in this slot with these features;
     /// the slot is in the lowest bits.
@@ -70,7 +70,7 @@ impl Kept {
             let slot = if is_same {
                 Some(own)
             } else {
-                naming.slot([point.feature1, point.feature2], valid & !kept.slots)
+                naming.slot(point, valid & !kept.slots)
             };
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;

@@ -17,7 +17,7 @@ pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {
 /// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
 /// Delight", 7-3).
 #[inline(always)]
-const fn transposed(mut x: u64) -> u64 {
+pub(in crate::query::manifold_build) const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;
     x ^= swapped ^ swapped << 7;
     let swapped = (x ^ x >> 14) & 0x0000_cccc_0000_cccc;

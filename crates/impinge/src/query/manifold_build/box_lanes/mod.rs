@@ -15,7 +15,7 @@ mod masks;
 mod plane;
 mod space;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use fearless_simd::{Level, Simd};
 

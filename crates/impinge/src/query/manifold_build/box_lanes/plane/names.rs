@@ -1,6 +1,8 @@
 //! Names of the slots of one pair in the plane.
 
 use super::SLOTS;
+use crate::math::Real;
+use crate::query::RawPoint;
 use crate::query::manifold_build::box_lanes::choose::Naming;
 use crate::query::manifold_build::box_sides::{side, vertex};
 use crate::shape::FeatureId;
@@ -71,7 +73,8 @@ impl Naming for Names {
     }
 
     #[inline(always)]
-    fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize> {
+        let (first, second) = (point.feature1, point.feature2);
         let (below, above) = if self.sides & 16 == 0 { (first, second) } else { (second, first) };
         let below = part(self.below(), below)?;
         let above = self.turned(part(self.above(), above)?);
