@@ -20,8 +20,8 @@ use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, ov
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
-    touching_in_world,
+    Algorithm, certainly_overlap, distance_in_world, in_world, separation_in_plane,
+    separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
@@ -36,6 +36,7 @@ use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -189,6 +190,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
+    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
@@ -204,6 +206,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
+        certainly_overlap,
         contacts: contacts2,
         box_contacts: update_box_pairs2,
         tangents: tangents2,
@@ -220,6 +223,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
+        certainly_overlap,
         contacts: contacts3,
         box_contacts: update_box_pairs3,
         tangents: tangents3,
@@ -238,6 +242,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
+            certainly_overlap: particular.certainly_overlap,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,
