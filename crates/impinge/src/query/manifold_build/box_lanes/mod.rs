@@ -15,7 +15,7 @@ mod faces;
 mod gather;
 mod names;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use fearless_simd::{Level, Simd, SimdMask};
 
@@ -329,7 +329,7 @@ fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
 /// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
 /// Delight", 7-3).
 #[inline(always)]
-const fn transposed(mut x: u64) -> u64 {
+pub(super) const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;
     x ^= swapped ^ swapped << 7;
     let swapped = (x ^ x >> 14) & 0x0000_cccc_0000_cccc;
