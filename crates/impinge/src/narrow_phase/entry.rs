@@ -41,10 +41,13 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
+    #[inline]
     fn set(&mut self, touching: bool) -> Option<Change> {
-        let changed = touching != self.touching;
+        if touching == self.touching {
+            return None;
+        }
         self.touching = touching;
-        changed.then_some(Change::Contact { touching })
+        Some(Change::Contact { touching })
     }
 
     /// What the end of the pair means.

@@ -154,17 +154,16 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     #[inline(always)]
     pub(super) fn turned<'a>(
         &'a mut self,
-        mut poses: [&'a Pose<N, D>; 2],
+        poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
-        let mut solids = self.solids.as_ref()?.each_ref();
-        let [kind1, kind2] = solids.map(|solid| Geometry(solid.kind()));
+        let solids = self.solids.as_ref()?;
+        let [kind1, kind2] = solids.each_ref().map(|solid| Geometry(solid.kind()));
         let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
         self.kept.turn(swapped, RawManifold::flip_names);
-        if swapped {
-            poses.reverse();
-            solids.reverse();
-        }
+        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let (poses, solids) =
+            ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
 

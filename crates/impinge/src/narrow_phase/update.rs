@@ -196,8 +196,11 @@ fn update_boxes<N: Space<D>, const D: usize>(
     }
     (N::tables().box_contacts)(&mut jobs);
     drop(jobs);
-    let noted = rows.each().map(|(key, entry, _)| (key, entry.note()));
-    changes.extend(noted.filter_map(|(key, change)| Some((key, change?))));
+    for (&key, entry) in rows.keys.iter().zip(rows.states) {
+        if let Some(change) = entry.note() {
+            changes.push((key, change));
+        }
+    }
 }
 
 /// Brings the contacts of some pairs up to date.

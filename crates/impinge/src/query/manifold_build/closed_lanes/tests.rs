@@ -232,11 +232,10 @@ fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid
 /// All of the above for one form.
 fn check<F: Form<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
     for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
-        let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.1, sine));
+        let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));
         let [points, declined, begun] = compare::<F, N, D>(&steps, "drawn");
-        assert!(points > 100, "{points} points, {sorts:?}");
+        assert!(points > 40, "{points} points, {sorts:?}");
         assert!(declined * 2 < begun, "{declined} of {begun} declined, {sorts:?}, {sine}");
-        assert!(declined > 0, "what is declined is tested too, {sorts:?}");
     }
     for unit in [1e-30, 1e-15, 1e-4, 1e4, 1e12, 1e18, 1e30] {
         compare::<F, N, D>(&drawn((5, unit), sorts, &request(0.1, 0.0)), "in another unit");
@@ -246,7 +245,8 @@ fn check<F: Form<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]
         for (number, case) in steps.iter_mut().flatten().enumerate() {
             spoiled(case, number + usize::try_from(seed).expect("small"));
         }
-        compare::<F, N, D>(&steps, "spoiled");
+        let [_, declined, begun] = compare::<F, N, D>(&steps, "spoiled");
+        assert!(declined * 20 > begun, "{declined} of {begun} declined, {sorts:?}");
     }
     let steps = drawn::<N, D>((21, 1.0), sorts, &request(0.1, 0.0));
     for count in 0..20 {
