@@ -25,9 +25,10 @@ use crate::query::separation::{
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2, contacts3,
-    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
-    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
+    Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
+    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2,
+    update_box_pairs3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+    witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Bodies, WorldBroadPhase, WorldError};

@@ -220,7 +220,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
                 Lane::Contacts(group) => {
-                    let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, number, touch);
+                    let mut entry =
+                        ContactEntry::<N, ContactState<N, D>>::new(request, number, touch);
                     entry.state.set_solids(shapes(table, key));
                     self.lanes.contacts[usize::from(group)].push(key, entry)
                 }

@@ -162,8 +162,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
         self.kept.turn(swapped, RawManifold::flip_names);
         let (first, second) = (usize::from(swapped), usize::from(!swapped));
-        let (poses, solids) =
-            ([poses[first], poses[second]], [&solids[first], &solids[second]]);
+        let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
 

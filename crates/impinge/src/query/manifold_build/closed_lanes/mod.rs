@@ -1,10 +1,10 @@
 //! Balls, segments and capsules, eight pairs at a time.
 //!
 //! Pairs whose separation is one closed form and whose manifold is one point: a ball against a ball, a
-//! box, a segment or a capsule, and in space segments and capsules that cross. Each lane of a vector is
-//! another pair, with the operations of the function for one pair in the same order, so with the same
-//! bits. What is unusual about a pair (a centre in a box, solids too small or too large to be squared,
-//! segments that are nearly parallel, numbers that are none) is declined and goes one by one.
+//! box, a segment or a capsule, and segments and capsules that are not side by side. Each lane of a
+//! vector is another pair, with the operations of the functions for one pair in the same order, so with
+//! the same bits. What is unusual about a pair (a centre in a box, cores that cross, solids too small or
+//! too large to be squared, more than one point, numbers that are none) is declined and goes one by one.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
 
@@ -12,7 +12,10 @@ mod ball_ball;
 mod ball_cuboid;
 mod ball_segment;
 mod gather;
-mod segments;
+mod nearest;
+mod outlines;
+mod segments2;
+mod segments3;
 mod solid;
 #[cfg(test)]
 mod tests;
@@ -24,7 +27,8 @@ use self::ball_ball::BallBall;
 use self::ball_cuboid::BallCuboid;
 use self::ball_segment::BallSegment;
 use self::gather::Inputs;
-use self::segments::Segments;
+use self::segments2::Segments2;
+use self::segments3::Segments3;
 pub(crate) use self::solid::Solid;
 use self::vectors::{bits, is_finite};
 use super::box_lanes::transposed;
@@ -68,7 +72,11 @@ pub(crate) fn update_pairs2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     pairs: &mut impl KeptPairs<N, 2>,
 ) -> bool {
-    update_with_ball(solids, pairs)
+    let are_segments = solids.iter().all(|solid| solid.is_segment());
+    if are_segments {
+        update_at::<Segments2, _, _, 2>(Level::new(), pairs);
+    }
+    are_segments || update_with_ball(solids, pairs)
 }
 
 /// Brings pairs of space up to date, as [`update_pairs2`].
@@ -78,7 +86,7 @@ pub(crate) fn update_pairs3<N: Space<3>>(
 ) -> bool {
     let are_segments = solids.iter().all(|solid| solid.is_segment());
     if are_segments {
-        update_at::<Segments, _, _, 3>(Level::new(), pairs);
+        update_at::<Segments3, _, _, 3>(Level::new(), pairs);
     }
     are_segments || update_with_ball(solids, pairs)
 }
@@ -240,12 +248,7 @@ impl<N: Real, const D: usize> Found<N, D> {
 
     /// Replaces the manifold of one pair; answers whether that was possible.
     #[inline(always)]
-    fn settle(
-        &self,
-        lane: usize,
-        features: [FeatureId; 2],
-        raw: &mut RawManifold<N, D>,
-    ) -> bool {
+    fn settle(&self, lane: usize, features: [FeatureId; 2], raw: &mut RawManifold<N, D>) -> bool {
         let is_found = self.is_found >> lane & 1 == 1;
         let is_apart = self.is_apart >> lane & 1 == 1;
         if is_found {

@@ -5,7 +5,8 @@ use fearless_simd::Level;
 use super::super::box_lanes::tests::{facts, levels};
 use super::super::tests::scene::{Random, Scene};
 use super::{
-    BallBall, BallCuboid, BallSegment, Form, KeptPairs, PairQuestion, Segments, Solid, update_at,
+    BallBall, BallCuboid, BallSegment, Form, KeptPairs, PairQuestion, Segments2, Segments3, Solid,
+    update_at,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::{ManifoldRequest, RawManifold};
@@ -127,8 +128,7 @@ impl<const D: usize> Draw<D> {
     /// `snapped` solids have sizes and places on a grid and no turn.
     fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
-        let mut vector =
-            |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
+        let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
         let place = vector(9.0);
         let (ends, aside) = ([[vector(1.0), vector(1.0)], [vector(1.0), vector(1.0)]], vector(1.2));
         let radii = [snap(random.between(0.1, 0.8)), snap(random.between(0.1, 0.8))];
@@ -273,15 +273,19 @@ fn eight_pairs_with_balls_are_as_one() {
     }
 }
 
-fn segments<N: Scene<3> + Space<3>>() {
-    check::<Segments, N, 3>([Sort::Segment, Sort::Segment]);
-    check::<Segments, N, 3>([Sort::Segment, Sort::Capsule]);
-    check::<Segments, N, 3>([Sort::Capsule, Sort::Capsule]);
+fn segments<F: Form<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
+    check::<F, N, D>([Sort::Segment, Sort::Segment]);
+    check::<F, N, D>([Sort::Segment, Sort::Capsule]);
+    check::<F, N, D>([Sort::Capsule, Sort::Capsule]);
 }
 
 #[test]
 fn eight_pairs_of_segments_are_as_one() {
-    segments::<f32>();
+    segments::<Segments2, f32, 2>();
+    segments::<Segments3, f32, 3>();
     #[cfg(feature = "f64")]
-    segments::<f64>();
+    {
+        segments::<Segments2, f64, 2>();
+        segments::<Segments3, f64, 3>();
+    }
 }

@@ -1,21 +1,21 @@
-//! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
+//! Segments3 and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
 
 use fearless_simd::{Select, Simd};
 
-use super::ball_segment::{END_OR_SIDE, farther, nearest_on_segment};
 use super::gather::Inputs;
+use super::nearest::{END_OR_SIDE, farther, nearest_on_segment};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
 use super::{Form, Found, PairQuestion};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are some way apart and cross when seen along the normal.
-pub(super) struct Segments;
+/// Segments3 and capsules whose cores are some way apart and cross when seen along the normal.
+pub(super) struct Segments3;
 
 /// The ends of a segment in each lane.
 type Ends<V> = [[V; 3]; 2];
 
-impl<N: Real> Form<N, 3> for Segments {
+impl<N: Real> Form<N, 3> for Segments3 {
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
         inputs.put_poses(lane, pair);
@@ -36,8 +36,10 @@ impl<N: Real> Form<N, 3> for Segments {
         let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
         let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
         let (normal, distance, is_best) = best_normal(simd, [&ends1, &ends2], &points);
-        let rounded =
-            [plus(&points[0], &times(&normal, radii[0])), minus(&points[1], &times(&normal, radii[1]))];
+        let rounded = [
+            plus(&points[0], &times(&normal, radii[0])),
+            minus(&points[1], &times(&normal, radii[1])),
+        ];
         let ((reach1, is_usual1), (reach2, is_usual2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
@@ -136,10 +138,7 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// A vector divided by the power of two below its `max_component`, and what to multiply by to divide
 /// another number so: powers of two have exact reciprocals.
 #[inline(always)]
-fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    v: &[V; 3],
-) -> ([V; 3], V, V::Mask) {
+fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
     let (size, is_moderate) = power_of_two_below(simd, largest);
     let inverse = V::all(simd, N::ONE) / size;
