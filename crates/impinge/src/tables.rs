@@ -13,15 +13,16 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
     CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
-    KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2, update_lanes3,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
+    update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
-    touching_in_world,
+    Algorithm, certainly_overlap, distance_in_world, in_world, separation_in_plane,
+    separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
@@ -31,12 +32,13 @@ use crate::query::{
     witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
-use crate::world::{Bodies, WorldBroadPhase, WorldError};
+use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -124,6 +126,7 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) near_first: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
+    pub(crate) nearest_first: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError>;
@@ -140,6 +143,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
             by_time: BoxTree::by_time,
             near_first: BoxTree::near_first,
             by_distance: BoxTree::by_distance,
+            nearest_first: BoxTree::nearest_first,
         }
     }
 }
@@ -148,7 +152,8 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
     pub(crate) set_isometry: SetIsometryFn<N, D>,
-    pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
+    pub(crate) set_shape: fn(&mut Body<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
+    pub(crate) set_query: fn(&mut Body<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) pair_stopped:
@@ -158,17 +163,18 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
 }
 
 type SetIsometryFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, u32, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {
         Self {
             new_broad_phase,
-            set_isometry: Bodies::set_isometry,
-            set_shape: Bodies::set_shape,
-            flush: Bodies::flush,
+            set_isometry: Body::set_isometry,
+            set_shape: Body::set_shape,
+            set_query: Body::set_query,
+            flush: Body::flush,
             pair_started: DefaultNarrowPhase::pair_started,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,
@@ -190,6 +196,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
+    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
@@ -206,6 +213,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
+        certainly_overlap,
         contacts: contacts2,
         update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
@@ -223,6 +231,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
+        certainly_overlap,
         contacts: contacts3,
         update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
@@ -242,6 +251,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
+            certainly_overlap: particular.certainly_overlap,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,

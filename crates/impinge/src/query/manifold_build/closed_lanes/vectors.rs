@@ -1,57 +1,15 @@
 //! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
 
-use fearless_simd::{Select, Simd, SimdMask};
+use fearless_simd::Simd;
 
+pub(super) use super::super::box_lanes::{bits, by_axis, dot, either, lit, norm, seen_from};
 use super::super::frame::ROUNDING_ERRORS;
 use crate::math::{Real, Wide};
-
-/// What there is for each axis.
-#[inline(always)]
-pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
-    let mut all = [of(0); D];
-    for (axis, one) in all.iter_mut().enumerate().skip(1) {
-        *one = of(axis);
-    }
-    all
-}
-
-/// A number in all lanes.
-#[inline(always)]
-pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
-    V::all(simd, N::lit(value))
-}
 
 /// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
-}
-
-/// The sum of the products, in the order of the axes.
-#[inline(always)]
-pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
-    let mut sum = a[0] * b[0];
-    for axis in 1..D {
-        sum = sum + a[axis] * b[axis];
-    }
-    sum
-}
-
-#[inline(always)]
-pub(super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
-    dot(v, v).sqrt()
-}
-
-/// A vector in the frame with these axes.
-#[inline(always)]
-pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
-    axes: &[[V; D]; D],
-    vector: &[V; D],
-) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| dot(&axes[axis], vector),
-    )
 }
 
 #[inline(always)]
@@ -89,19 +47,6 @@ pub(super) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D]
 #[inline(always)]
 pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// `yes` in the lanes of the mask, `no` in the others.
-#[inline(always)]
-pub(super) fn either<S: Simd, V: Wide<S>, const D: usize>(
-    mask: V::Mask,
-    yes: &[V; D],
-    no: &[V; D],
-) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| mask.select(yes[axis], no[axis]),
-    )
 }
 
 /// The lanes where a square is far from both ends of the range, so that its root is the length.
@@ -145,9 +90,4 @@ pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
 #[inline(always)]
 pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> V::Mask {
     number.abs().simd_lt(V::all(simd, N::INFINITY))
-}
-
-#[inline(always)]
-pub(super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
-    mask.to_bitmask().to_le_bytes()[0]
 }
