@@ -94,7 +94,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     /// that say along which of the others it is on the positive side.
     #[inline]
     pub(crate) const fn part_named(bits: u8) -> FeatureId {
-        Part::<D>::NAMES[(bits & (1 << (2 * D)) as u8 - 1) as usize]
+        Part::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 

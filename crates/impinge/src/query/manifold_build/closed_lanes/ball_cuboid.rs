@@ -66,8 +66,8 @@ impl<N: Real, const D: usize> Found<N, D> {
         let mut is_inside = point[0].abs().simd_lt(half[0] - noise);
         for axis in 0..D {
             let is_free = point[axis].abs().simd_lt(half[axis] - noise);
-            is_thick = is_thick & half[axis].simd_gt(thin);
-            is_inside = is_inside & is_free;
+            is_thick &= half[axis].simd_gt(thin);
+            is_inside &= is_free;
             self.parts[axis] = bits(is_free);
             self.parts[D + axis] = !bits(point[axis].simd_lt(V::all(simd, N::ZERO)));
         }

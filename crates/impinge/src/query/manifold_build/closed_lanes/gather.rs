@@ -207,8 +207,8 @@ impl<V, const D: usize> LanePose<V, D> {
             #[inline(always)]
             |row| {
                 let mut sum = self.rotation[0][row] * local[0];
-                for column in 1..D {
-                    sum = sum + self.rotation[column][row] * local[column];
+                for (axis, &along) in self.rotation.iter().zip(local).skip(1) {
+                    sum += axis[row] * along;
                 }
                 sum
             },

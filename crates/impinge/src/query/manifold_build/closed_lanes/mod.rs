@@ -188,9 +188,9 @@ fn update<F, P, S: Simd, N: Space<D>, V: Wide<S, Scalar = N>, const D: usize>(
         found.is_found &= now.is_usable;
         found.is_apart &= now.is_usable;
         let parts = transposed(u64::from_le_bytes(found.parts)).to_le_bytes();
-        for lane in 0..now.count.min(LANES) {
-            let index = now.places[lane];
-            if !found.settle(lane, F::features(parts[lane]), pairs.raw(index)) {
+        let taken = now.places.iter().zip(parts).take(now.count);
+        for (lane, (&index, parts)) in taken.enumerate() {
+            if !found.settle(lane, F::features(parts), pairs.raw(index)) {
                 one_by_one(pairs, index);
             }
             pairs.end(index);

@@ -163,8 +163,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (mut s, mut t, mut between) = (zero, zero, minus(&ends2[0], &ends1[0]));
     let mut points = [ends1[0], ends2[0]];
     for _ in 0..3 {
-        s = s + dot(&cross(&between, &toward2), &across) / squared * inverse1;
-        t = t + dot(&cross(&between, &toward1), &across) / squared * inverse2;
+        s += dot(&cross(&between, &toward2), &across) / squared * inverse1;
+        t += dot(&cross(&between, &toward1), &across) / squared * inverse2;
         points = [plus(&ends1[0], &times(&along1, s)), plus(&ends2[0], &times(&along2, t))];
         between = minus(&points[1], &points[0]);
     }

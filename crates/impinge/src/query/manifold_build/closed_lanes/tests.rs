@@ -160,7 +160,7 @@ impl<const D: usize> Draw<D> {
                 Sort::Capsule => Solid::Capsule(
                     Capsule::try_from_ends(ends[0], ends[1], radius).expect("finite"),
                 ),
-                Sort::Cuboid => Solid::Cuboid(Cuboid::new(ends[1].coords.map(|x| x.abs()))),
+                Sort::Cuboid => Solid::Cuboid(Cuboid::new(ends[1].coords.abs())),
             }
         });
         Case { poses, solids, request, is_due: true }

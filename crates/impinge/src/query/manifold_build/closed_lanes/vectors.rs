@@ -80,7 +80,7 @@ pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     let squared = dot(v, v);
     let mut sum = v[0].abs();
     for coordinate in &v[1..] {
-        sum = sum + coordinate.abs();
+        sum += coordinate.abs();
     }
     let is_zero = sum.simd_le(V::all(simd, N::ZERO));
     (squared.sqrt(), is_usual(simd, squared) | is_zero)
