@@ -12,8 +12,9 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events,
-    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
+    update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
@@ -25,9 +26,10 @@ use crate::query::separation::{
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
-    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
-    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
+    Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
+    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2,
+    update_box_pairs3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+    witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -63,6 +65,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+    /// Those of the pairs of a group that are due, several at a time, if that can be done.
+    pub(crate) update_lanes: UpdateLanesFn<N, D>,
     /// Those of many pairs of boxes.
     pub(crate) box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     /// Two directions across a normal; the second is zero in the plane.
@@ -109,6 +113,8 @@ type CompositeManifoldsFn<N, const D: usize> = fn(
 ) -> Vec<ContactManifold<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+type UpdateLanesFn<N, const D: usize> =
+    fn([&Solid<N, D>; 2], &mut DueContacts<'_, '_, N, D>) -> bool;
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
@@ -192,6 +198,7 @@ struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
+    update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
@@ -208,6 +215,7 @@ impl<N: Real> Particular<N, 2> {
         separation: separation_in_plane,
         certainly_overlap,
         contacts: contacts2,
+        update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
@@ -225,6 +233,7 @@ impl<N: Real> Particular<N, 3> {
         separation: separation_in_space,
         certainly_overlap,
         contacts: contacts3,
+        update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
@@ -258,6 +267,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             nearest_part,
             each_hit,
             contacts: particular.contacts,
+            update_lanes: particular.update_lanes,
             box_contacts: particular.box_contacts,
             tangents: particular.tangents,
             update_contacts: ContactState::update,
