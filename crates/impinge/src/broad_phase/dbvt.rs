@@ -4,6 +4,7 @@ use core::fmt::Debug;
 
 use super::error::or_panic;
 use super::handle::Handles;
+use super::proposal::{Proposal, Proposals, Proxies};
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
@@ -56,7 +57,7 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
-    proxies: Vec<Option<(ProxyHandle, T)>>,
+    proxies: Proxies<T>,
     finder: BV::Finder,
 }
 
@@ -89,7 +90,7 @@ fn proxy_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &(ProxyHandle, 
 }
 
 /// The data of an object that is known to be there.
-fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
+pub(super) fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
     &proxy_of(proxies, id).1
 }
 
@@ -147,6 +148,10 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         sorted.sort_unstable();
         let twice = sorted.windows(2).find(|two| two[0] == two[1]);
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
+    }
+
+    fn proposals(&self, ids: &[u32]) -> Proposals<'_, T> {
+        ids.iter().map(|&id| Proposal::kept(&self.proxies, id)).collect()
     }
 
     fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
@@ -265,9 +270,14 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_ray(ray, max_time, &mut by_id);
     }
 
-    fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_ray_roughly(ray, max_time, &mut by_id);
+    fn visit_ray_roughly(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+    ) {
+        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
+        self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
     }
 
     fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
@@ -279,10 +289,10 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         bv: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_id);
+        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
+        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
     }
 
     fn visit_cast_roughly(
@@ -290,11 +300,11 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         bv: &Aabb<N, D>,
         velocity: &Vector<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
         let sweep = Sweep { aabb: *bv, velocity: *velocity };
-        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_id);
+        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }
 
     fn visit_cast(

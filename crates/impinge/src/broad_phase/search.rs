@@ -34,14 +34,16 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no exact order, but near ones first.
+    /// Calls `visit` with some objects at a time, among them all whose exact boxes the ray enters at or
+    /// before `max_time`; near ones first, but in no exact order. `visit` returns the new `max_time`,
+    /// which never grows.
     pub fn visit_ray_roughly(
         &self,
         ray: &Ray<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[u32]) -> N,
     ) {
-        self.search().near_first(&Sweep::along(ray), max_time, visit);
+        self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
     }
 
     /// Calls `visit` with each object whose exact box is at most `max_distance` from `aabb` and the
@@ -56,14 +58,15 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_distance(aabb, max_distance, visit);
     }
 
-    /// [`Self::visit_nearest`] in no exact order, but near ones first.
+    /// As [`Self::visit_ray_roughly`], with all objects whose exact boxes are at most `max_distance` from
+    /// `aabb`.
     pub fn visit_nearest_roughly(
         &self,
         aabb: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[u32]) -> N,
     ) {
-        self.search().nearest_first(aabb, max_distance, visit);
+        self.search().groups_by_distance(aabb, max_distance, visit);
     }
 
     /// Calls `visit` with each object whose exact box the moving one touches at or before `max_time`
@@ -78,14 +81,15 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(sweep, max_time, visit);
     }
 
-    /// [`Self::visit_cast`] in no exact order, but near ones first.
+    /// As [`Self::visit_ray_roughly`], with all objects whose exact boxes the moving one touches at or
+    /// before `max_time`.
     pub(crate) fn visit_cast_roughly(
         &self,
         sweep: &Sweep<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[u32]) -> N,
     ) {
-        self.search().near_first(sweep, max_time, visit);
+        self.search().groups_by_time(sweep, max_time, visit);
     }
 
     fn search(&self) -> Search<'_, N, D, 2> {

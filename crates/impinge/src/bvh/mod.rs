@@ -29,7 +29,6 @@ mod gaps;
 mod join;
 mod kernel;
 mod near_first;
-mod nearest;
 mod order;
 mod ordered;
 mod query;

@@ -121,21 +121,16 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         mut found: impl FnMut(u32, N) -> N,
     ) {
         let Sweep { aabb, velocity } = sweep;
-        if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
-            return;
-        }
         let mut lowest = limit;
-        let mut decide = |id: u32| {
-            let enter = self.exact[id as usize].sweep_interval(aabb, velocity);
-            if let Some((enter, _)) = enter.filter(|&(enter, _)| enter <= lowest) {
-                lowest = min(lowest, found(id, enter));
+        self.groups_by_time(sweep, limit, |ids| {
+            for &id in ids {
+                let enter = self.exact[id as usize].sweep_interval(aabb, velocity);
+                if let Some((enter, _)) = enter.filter(|&(enter, _)| enter <= lowest) {
+                    lowest = min(lowest, found(id, enter));
+                }
             }
             lowest
-        };
-        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
-        let slabs = Slabs::new(aabb, velocity, self.size());
-        let first = slabs.limit(first);
-        self.lanes.visit_near_first(&self.trees, &slabs, first, |id| slabs.limit(decide(id)));
+        });
     }
 
     /// [`Self::by_distance`] in no exact order, but near ones first.
@@ -145,21 +140,59 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         limit: N,
         mut found: impl FnMut(u32, N) -> N,
     ) {
+        let mut lowest = limit;
+        self.groups_by_distance(aabb, limit, |ids| {
+            for &id in ids {
+                let distance = self.exact[id as usize].distance_to_aabb(aabb);
+                if distance <= lowest {
+                    lowest = min(lowest, found(id, distance));
+                }
+            }
+            lowest
+        });
+    }
+
+    /// Calls `found` with some objects at a time, among them all whose boxes the moving one touches at
+    /// or before `limit`: near ones first, but in no exact order. It returns the new limit, which never
+    /// grows. Nothing is met where [`Self::by_time`] meets nothing.
+    pub(crate) fn groups_by_time(
+        &self,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        mut found: impl FnMut(&[u32]) -> N,
+    ) {
+        let Sweep { aabb, velocity } = sweep;
+        let is_path = velocity.iter().all(|x| x.is_finite_number());
+        if !is_path || !aabb.holds_finite_point() {
+            return;
+        }
+        let first = self.unbounded_first(limit, &mut found);
+        let slabs = Slabs::new(aabb, velocity, self.size());
+        let first = slabs.limit(first);
+        self.lanes.visit_along(&self.trees, &slabs, first, |ids| slabs.limit(found(ids)));
+    }
+
+    /// The same with all objects whose boxes are at most `limit` from `aabb`.
+    pub(crate) fn groups_by_distance(
+        &self,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        mut found: impl FnMut(&[u32]) -> N,
+    ) {
         if !aabb.holds_finite_point() {
             return;
         }
-        let mut lowest = limit;
-        let mut decide = |id: u32| {
-            let distance = self.exact[id as usize].distance_to_aabb(aabb);
-            if distance <= lowest {
-                lowest = min(lowest, found(id, distance));
-            }
-            lowest
-        };
-        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
+        let first = self.unbounded_first(limit, &mut found);
         let gaps = Gaps::new(aabb, self.size());
         let first = gaps.limit(first);
-        self.lanes.visit_nearest_first(&self.trees, &gaps, first, |id| gaps.limit(decide(id)));
+        self.lanes.visit_around(&self.trees, &gaps, first, |ids| gaps.limit(found(ids)));
+    }
+
+    /// Hands out the unbounded objects; returns the new limit.
+    fn unbounded_first(&self, limit: N, found: &mut impl FnMut(&[u32]) -> N) -> N {
+        // Written so that a limit that is not a number ends the search.
+        let asks = limit >= N::ZERO && !self.unbounded.is_empty();
+        if asks { found(self.unbounded) } else { limit }
     }
 
     /// The largest magnitude of a coordinate in the trees.
