@@ -7,7 +7,7 @@ use crate::math::Real;
 
 /// Updates without a change after which an object counts as still.
 const REST: u32 = 32;
-/// Each update looks at one place of the tree in so many.
+/// Each update looks at so many places as are one in so many of all objects.
 const WINDOW: usize = 32;
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
@@ -38,7 +38,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if slots.is_empty() {
             return;
         }
-        let window = slots.len() / WINDOW + 1;
+        let window = (self.homes.len() / WINDOW + 1).min(slots.len());
         let start = self.cursor % slots.len();
         self.cursor = start + window;
         let is_resting =

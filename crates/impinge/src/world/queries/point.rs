@@ -3,7 +3,7 @@
 use super::ranking::Ranking;
 use super::search::Probe;
 use super::{Neighbor, QueryFilter};
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
 use crate::query::point::project;
 use crate::query::{ClosestPoints, PointProjection, PointQuery};
@@ -28,10 +28,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         point: &Point<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        let (point, mut found) = (*point, Vec::new());
-        self.broad_phase.interferences_with_point(&point, &mut found);
-        let may = |body: &Body<N, D>| BoundingVolume::contains_point(&body.volume(), &point);
-        self.candidates(found, &may, filter)
+        let point = *point;
+        let near = near(&point).map(|_| self.meeting(&Aabb::at(point), filter));
+        near.into_iter()
+            .flatten()
             .filter(move |body| holds(body, &point))
             .filter_map(move |body| self.record(body))
     }

@@ -121,7 +121,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// As a rule its proxy has its number, which saves the way through the broad phase's record. A proxy
     /// with the number of that of a living object is that object's.
-    fn settled_proposal(
+    pub(super) fn settled_proposal(
         &self,
         proposal: &Proposal<'_, CollisionObjectHandle>,
     ) -> Option<&Body<N, D>> {
