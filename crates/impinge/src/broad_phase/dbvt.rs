@@ -83,15 +83,10 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     }
 }
 
-/// The handle and data of an object that is known to be there.
-fn proxy_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &(ProxyHandle, T) {
-    let proxy = proxies[id as usize].as_ref();
-    proxy.expect("the finder knows only objects that are there")
-}
-
 /// The data of an object that is known to be there.
-pub(super) fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
-    &proxy_of(proxies, id).1
+pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
+    let data = proxies[id as usize].as_ref();
+    data.expect("the finder knows only objects that are there")
 }
 
 /// The number that the finder knows the object by.
@@ -124,7 +119,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// The pairs as of the last update, less those removed since, each with the smaller handle
     /// first; in no particular order.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
-        let handle = |id: u32| proxy_of(&self.proxies, id).0;
+        let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
     }
 
@@ -150,8 +145,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
     }
 
-    fn proposals(&self, ids: &[u32]) -> Proposals<'_, T> {
-        ids.iter().map(|&id| Proposal::kept(&self.proxies, id)).collect()
+    fn proposals(&self, found: &[(u32, N)]) -> Proposals<'_, N, T> {
+        found.iter().map(|&(id, key)| Proposal::kept(&self.proxies, id, key)).collect()
     }
 
     fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
@@ -181,7 +176,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         if self.proxies.len() <= handle.uid() {
             self.proxies.resize_with(handle.uid() + 1, || None);
         }
-        self.proxies[handle.uid()] = Some((handle, data));
+        self.proxies[handle.uid()] = Some(data);
         self.finder.insert(id_of(handle), bv);
         Ok(handle)
     }
@@ -274,9 +269,9 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         ray: &Ray<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
     }
 
@@ -289,9 +284,9 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         bv: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
     }
 
@@ -300,9 +295,9 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         bv: &Aabb<N, D>,
         velocity: &Vector<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_ids = |ids: &[u32]| visit(&self.proposals(ids));
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         let sweep = Sweep { aabb: *bv, velocity: *velocity };
         self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }

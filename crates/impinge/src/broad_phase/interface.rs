@@ -146,10 +146,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&hits, max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no promised order, several objects at a time, for those who test and sort
-    /// what they find: objects whose volumes the ray does not meet may be among them, but none is left
-    /// out that it meets, and each comes once at most. Near ones first is better. The default is
-    /// [`Self::visit_ray`], one at a time.
+    /// [`Self::visit_ray`] in no promised order, several objects at a time, for those who sort what they
+    /// find: near ones first is better. The default is [`Self::visit_ray`], one at a time, with
+    /// zero for all keys.
     ///
     /// A broad phase around another that gives handles of its own makes proposals of its own by
     /// [`Proposal::of`]: those of the other know objects by its handles.
@@ -157,9 +156,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         &self,
         ray: &BV::Ray,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data)]));
+        self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
     /// Calls `visit` for the objects whose exact volumes, as of the last update, are at most
@@ -192,26 +191,25 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&met, max_time, visit);
     }
 
-    /// [`Self::visit_nearest`] for those who test and sort what they find, as
-    /// [`Self::visit_ray_roughly`].
+    /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
     fn visit_nearest_roughly(
         &self,
         bv: &BV,
         max_distance: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        self.visit_nearest(bv, max_distance, &mut |data| visit(&[Proposal::of(data)]));
+        self.visit_nearest(bv, max_distance, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
-    /// [`Self::visit_cast`] for those who test and sort what they find, as [`Self::visit_ray_roughly`].
+    /// [`Self::visit_cast`] as [`Self::visit_ray_roughly`].
     fn visit_cast_roughly(
         &self,
         bv: &BV,
         velocity: &BV::Vector,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, T>]) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        self.visit_cast(bv, velocity, max_time, &mut |data| visit(&[Proposal::of(data)]));
+        self.visit_cast(bv, velocity, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 }
 

@@ -34,14 +34,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
-    /// Calls `visit` with some objects at a time, among them all whose exact boxes the ray enters at or
-    /// before `max_time`; near ones first, but in no exact order. `visit` returns the new `max_time`,
-    /// which never grows.
+    /// [`Self::visit_ray`] in no exact order, but near ones first, and several at a time.
     pub fn visit_ray_roughly(
         &self,
         ray: &Ray<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[u32]) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
         self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
     }
@@ -58,13 +56,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_distance(aabb, max_distance, visit);
     }
 
-    /// As [`Self::visit_ray_roughly`], with all objects whose exact boxes are at most `max_distance` from
-    /// `aabb`.
+    /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
     pub fn visit_nearest_roughly(
         &self,
         aabb: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&[u32]) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
         self.search().groups_by_distance(aabb, max_distance, visit);
     }
@@ -81,13 +78,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(sweep, max_time, visit);
     }
 
-    /// As [`Self::visit_ray_roughly`], with all objects whose exact boxes the moving one touches at or
-    /// before `max_time`.
+    /// [`Self::visit_cast`] as [`Self::visit_ray_roughly`].
     pub(crate) fn visit_cast_roughly(
         &self,
         sweep: &Sweep<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[u32]) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
         self.search().groups_by_time(sweep, max_time, visit);
     }

@@ -49,7 +49,7 @@ pub use bounds::Bounds;
 pub(crate) use gaps::Gaps;
 pub use join::{Changes, Joiner};
 pub use kernel::Lanes;
-pub(crate) use near_first::RayProbe;
+pub(crate) use near_first::{GROUP, RayProbe};
 pub use ordered::{Frontier, Keys};
 pub(crate) use slabs::Slabs;
 pub use tree::{NONE, Tree};

@@ -20,7 +20,7 @@ const LAYERS: usize = 8;
 
 /// Objects are handed out by so many at most: what is known about them lies anywhere in memory, and is
 /// fetched together faster than one by one.
-const GROUP: usize = 4;
+pub(crate) const GROUP: usize = 4;
 
 /// What the lanes of a block are asked.
 pub(super) trait Probe<const D: usize> {

@@ -16,7 +16,7 @@ use core::fmt;
 
 pub use filter::QueryFilter;
 
-use super::bodies::Body;
+use super::bodies::{Body, grown};
 use super::{CollisionObject, CollisionWorld};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::Space;
@@ -62,26 +62,25 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn candidates<'a>(
         &'a self,
         found: Vec<&CollisionObjectHandle>,
-        may: &dyn Fn(&Body<N, D>) -> bool,
+        may: &dyn Fn(&Aabb<N, D>) -> bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
         let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
-        let astray = self.objects.bodies.astray().filter(|body| may(body));
+        let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(body, _)| body);
         let allowed = settled.chain(astray).filter(|body| self.allows(body, filter));
         let mut bodies: Vec<_> = allowed.collect();
         bodies.sort_unstable_by_key(|body| body.handle);
         bodies.into_iter()
     }
 
-    /// The objects whose volumes meet `aabb`, allowed by the filter, in order, each once: for the test of
-    /// the question itself, as [`Self::candidates`].
+    /// The objects whose volumes meet `aabb`, and few others, allowed by the filter, in order, each once:
+    /// for the test of the question itself, as [`Self::candidates`].
     fn meeting<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
-        let may = |body: &Body<N, D>| body.volume().intersects(aabb);
-        let mut bodies: Vec<&'a Body<N, D>> = self.objects.bodies.astray().collect();
+        let mut bodies: Vec<&'a Body<N, D>> = Vec::new();
         if aabb.holds_finite_point() {
             self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
                 bodies.extend(proposals.iter().filter_map(|one| self.settled_proposal(one)));
@@ -93,7 +92,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
             bodies.extend(found.into_iter().filter_map(|&handle| self.settled(handle)));
         }
-        bodies.retain(|body| may(body) && self.allows(body, filter));
+        let astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
+        bodies.extend(astray.map(|(body, _)| body));
+        bodies.retain(|body| self.allows(body, filter));
         bodies.sort_unstable_by_key(|body| body.handle);
         bodies.into_iter()
     }
@@ -105,11 +106,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// The object of a handle of the broad phase, if it lives and is where it was at the last update.
     fn settled(&self, handle: CollisionObjectHandle) -> Option<&Body<N, D>> {
-        let body = self.body(handle);
-        (body.alive && body.handle == handle && !body.is_astray()).then_some(body)
+        let body = &self.objects.get(handle)?.body;
+        (!self.objects.changes.is_astray(body)).then_some(body)
     }
 
-    fn body(&self, handle: CollisionObjectHandle) -> &Body<N, D> {
-        self.objects.bodies.at(handle.index())
+    /// The living objects of which the broad phase does not know where they are, and their volumes.
+    fn astray(&self) -> impl Iterator<Item = (&Body<N, D>, Aabb<N, D>)> {
+        let astray = self.objects.astray();
+        astray.map(|(body, aabb)| (body, grown(aabb, body.query.query_limit())))
     }
 }

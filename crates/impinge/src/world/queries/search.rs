@@ -6,6 +6,7 @@ use super::QueryFilter;
 use super::ranking::{Best, Rank, Ranked, Ranking};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::Proposal;
+use crate::bvh::GROUP;
 use crate::math::{Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::world::bodies::Body;
@@ -50,7 +51,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
 }
 
 /// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
-type Visit<'a, N> = dyn FnMut(&[Proposal<'_, CollisionObjectHandle>]) -> N + 'a;
+type Visit<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
 /// An object and what was found about it, with the key that it was ranked by.
 pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
@@ -94,9 +95,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         measure: &Measure<'_, N, D, A>,
     ) {
         let mut limit = ranking.limit_of_boxes();
-        let mut consider = |body: &Body<N, D>, limit: N| {
-            let is_near = probe.key(&body.volume()).is_some_and(|key| key <= limit);
-            if is_near
+        let mut consider = |body: &Body<N, D>, key: N, limit: N| {
+            if key <= limit
                 && self.allows(body, filter)
                 && let Some((key, answer)) = measure(body, ranking.limit())
             {
@@ -105,32 +105,35 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             }
             limit
         };
-        for body in self.objects.bodies.astray() {
-            limit = consider(body, limit);
+        for (body, volume) in self.astray() {
+            if let Some(key) = probe.key(&volume) {
+                limit = consider(body, key, limit);
+            }
         }
         probe.visit(&*self.broad_phase, limit, &mut |proposals| {
             // Gathered first: the bodies lie apart from each other, and memory is slow one by one.
-            let bodies = proposals.iter().filter_map(|proposal| self.settled_proposal(proposal));
-            let bodies: SmallVec<[&Body<N, D>; 4]> = bodies.collect();
-            limit = bodies.iter().fold(limit, |limit, body| consider(body, limit));
+            let mut bodies: SmallVec<[_; GROUP]> = SmallVec::new();
+            bodies.extend(proposals.iter().map(|one| (self.settled_proposal(one), one.key())));
+            for (body, key) in bodies {
+                limit = body.map_or(limit, |body| consider(body, key, limit));
+            }
             limit
         });
     }
 
-    /// The object of a proposal, if it lives and is where it was at the last update.
+    /// The object of a proposal, if it is where it was at the last update.
     ///
     /// As a rule its proxy has its number, which saves the way through the broad phase's record. A proxy
     /// with the number of that of a living object is that object's.
     pub(super) fn settled_proposal(
         &self,
-        proposal: &Proposal<'_, CollisionObjectHandle>,
+        proposal: &Proposal<'_, N, CollisionObjectHandle>,
     ) -> Option<&Body<N, D>> {
-        let bodies = &self.objects.bodies;
-        let guess = proposal.uid().filter(|&uid| uid < bodies.len());
-        let guessed = guess.and_then(|uid| Some((uid, bodies.at(u32::try_from(uid).ok()?))));
-        match guessed {
-            Some((uid, body)) if body.alive && body.proxy.uid() == uid => {
-                (!body.is_astray()).then_some(body)
+        let uid = proposal.uid();
+        let guess = uid.and_then(|uid| self.objects.body(u32::try_from(uid).ok()?));
+        match guess {
+            Some(body) if Some(body.proxy.uid()) == uid => {
+                (!self.objects.changes.is_astray(body)).then_some(body)
             }
             _ => self.settled(*proposal.data()),
         }

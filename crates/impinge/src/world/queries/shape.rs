@@ -38,7 +38,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let aabb = *aabb;
         self.meeting(&aabb, filter)
-            .filter(move |body| body.aabb.intersects(&aabb))
+            .filter(move |body| body.aabb().intersects(&aabb))
             .filter_map(move |body| self.record(body))
     }
 
