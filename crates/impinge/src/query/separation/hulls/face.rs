@@ -1,7 +1,6 @@
 //! A face of one solid, and the vertices of the other that lie nearest to it.
 
 use fearless_simd::Simd;
-use smallvec::SmallVec;
 
 use super::cloud::{Cloud, Heights, Place};
 use super::solid::Flat;
@@ -12,10 +11,9 @@ use crate::query::separation::segments::nearest_on_segment;
 /// A solid in the frame of the one whose face it is about.
 pub(super) struct Side<'s, 'a, N: Real> {
     pub(super) solid: &'s Flat<'a, N>,
-    pub(super) cloud: Cloud<N>,
-    /// Of the vertices along the normal of the face.
+    pub(super) cloud: &'s Cloud<N>,
+    /// Of the vertices, along the normal of the face or, of its own solid, against it.
     pub(super) heights: Heights<N>,
-    pub(super) low: N,
 }
 
 impl<'s, 'a, N: Real> Side<'s, 'a, N> {
@@ -23,11 +21,10 @@ impl<'s, 'a, N: Real> Side<'s, 'a, N> {
     pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         solid: &'s Flat<'a, N>,
-        cloud: Cloud<N>,
-        normal: &Vector<N, 3>,
+        cloud: &'s Cloud<N>,
+        along: &Vector<N, 3>,
     ) -> Self {
-        let (heights, low) = cloud.heights::<S, V>(simd, normal);
-        Self { solid, cloud, heights, low }
+        Self { solid, cloud, heights: cloud.heights::<S, V>(simd, along) }
     }
 }
 
@@ -55,7 +52,7 @@ impl<N: Real> Meeting<'_, '_, N> {
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
         let height = self.height();
-        let (above, reach) = match self.seen() {
+        let (above, reach) = match self.seen(self.lowest::<S, V>(simd)) {
             Seen::Above(point) => (Some(self.at(&point)), height.abs()),
             Seen::Beside(reach) => (None, max(reach, height.abs())),
         };
@@ -73,7 +70,7 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// How far the other solid lies above the plane of the face.
     pub(super) fn height(&self) -> N {
-        self.other.low - self.level()
+        self.other.heights.low - self.level()
     }
 
     /// How far along its normal the face lies.
@@ -90,25 +87,24 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// The first of the lowest vertices that lies above the face, or, of edges and faces that are lowest,
     /// some point that does.
-    fn seen(&self) -> Seen<N> {
-        let lowest = self.lowest();
-        let mut reach = N::INFINITY;
-        for &vertex in &lowest {
-            let point = self.other.cloud.at(vertex);
+    fn seen(&self, lowest: u32) -> Seen<N> {
+        let (mut reach, mut rest) = (N::INFINITY, lowest);
+        while rest != 0 {
+            let point = self.other.cloud.at(rest.trailing_zeros() as usize);
             match self.distance_beside(&point) {
                 None => return Seen::Above(point),
                 Some(beside) => reach = min(beside, reach),
             }
+            rest &= rest - 1;
         }
-        let among = if lowest.len() > 1 { self.among(&lowest) } else { None };
+        let among = if lowest.count_ones() > 1 { self.among(lowest) } else { None };
         among.map_or(Seen::Beside(reach), Seen::Above)
     }
 
-    /// The vertices of the other solid that are lowest, up to noise.
-    fn lowest(&self) -> SmallVec<[usize; 8]> {
-        let most = self.other.low + noise();
-        let vertices = 0..self.other.solid.vertices;
-        vertices.filter(|&vertex| self.other.heights.at(vertex) <= most).collect()
+    /// The vertices of the other solid that are lowest, up to noise, as bits.
+    #[inline(always)]
+    fn lowest<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
+        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
     }
 
     /// The ends of the sides of the face, and the vectors in its plane into the face across them, as long as
@@ -143,9 +139,9 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// A point of the edges between some vertices that lies above the face; or, of the faces between
     /// them, above a corner of the face.
-    fn among(&self, lowest: &[usize]) -> Option<Vector<N, 3>> {
+    fn among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
-        let is_lowest = |vertex: &u32| lowest.contains(&(*vertex as usize));
+        let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
         let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
         let mut crossing = edges.filter_map(|edge| {
             self.clipped(edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize)))
