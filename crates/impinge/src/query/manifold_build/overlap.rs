@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::facet::{Corner, Facet, LANES};
 use super::frame::{Candidate, Frame};
-use crate::math::{Point, Real, Wide, cross2, max};
+use crate::math::{Point, Real, Wide, cross2, max, max_component};
 use crate::shape::FeatureId;
 
 /// What a manifold is chosen from.
@@ -254,7 +254,8 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         let Some(found) = found else { return };
         let near = N::lit(4.0) * self.frame.tolerance;
         let is_new = |old: &Candidate<N, D>| {
-            old.features != found.features || (old.flat - found.flat).norm() > near
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
         };
         if out.iter().all(is_new) {
             out.push(found);

@@ -225,3 +225,21 @@ pub(super) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V)
     let [a, b, c, d, e, f, g, h] = lanes;
     max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
 }
+
+/// How far a point lies above the highest of some planes.
+#[inline(always)]
+pub(super) fn highest_over<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    planes: &[Planes<N, 3>],
+    shrink: N,
+    point: &Vector<N, 3>,
+) -> N {
+    let point: [V; 3] = spread(simd, point);
+    let mut highest = V::all(simd, -N::INFINITY);
+    for block in planes {
+        let normals: [V; 3] = load(simd, &block.normals);
+        let offsets = V::load(simd, &block.offsets) * V::all(simd, shrink);
+        highest = (dot(&normals, &point) - offsets).larger(highest);
+    }
+    highest_lane(highest)
+}

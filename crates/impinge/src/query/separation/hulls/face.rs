@@ -2,7 +2,8 @@
 
 use fearless_simd::Simd;
 
-use super::cloud::{Cloud, Heights, Place};
+use super::cloud::{Cloud, Heights, Place, highest_over};
+use super::edges::Crossing;
 use super::solid::Flat;
 use super::{Found, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
@@ -52,20 +53,65 @@ impl<N: Real> Meeting<'_, '_, N> {
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
         let height = self.height();
-        let (above, reach) = match self.seen(self.lowest::<S, V>(simd)) {
-            Seen::Above(point) => (Some(self.at(&point)), height.abs()),
-            Seen::Beside(reach) => (None, max(reach, height.abs())),
-        };
-        if height > N::ZERO {
-            return above.or_else(|| self.nearest::<S, V>(simd, reach));
-        }
-        match self.crossing::<S, V>(simd, reach) {
-            None => above,
-            Some(crossing) => match self.across::<S, V>(simd, &crossing) {
-                None if crossing.height > N::ZERO => self.nearest::<S, V>(simd, reach),
-                found => found,
+        match self.seen(self.lowest::<S, V>(simd)) {
+            Seen::Above(point) if height > N::ZERO => Some(self.at(&point)),
+            Seen::Above(point) => match self.crossing::<S, V>(simd, -height) {
+                None => Some(self.at(&point)),
+                Some(crossing) => self.decided::<S, V>(simd, &crossing, -height),
             },
+            Seen::Beside(reach) if height > N::ZERO => {
+                // Mostly edges decide that are little farther apart; points that prove it do so.
+                let little = min(height * N::TWO + N::lit(1.0 / 16.0), reach);
+                let found = self.nearest::<S, V>(simd, little);
+                found.or_else(|| self.nearest::<S, V>(simd, reach))
+            }
+            Seen::Beside(reach) => self
+                .shallow::<S, V>(simd)
+                .or_else(|| self.thorough::<S, V>(simd, max(reach, -height))),
         }
+    }
+
+    /// The answer between edges that are no farther from the plane than a way out along the normal of the
+    /// face is long; if it is proved, and solids that overlap have a point in common.
+    #[inline(always)]
+    fn shallow<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
+        let crossing = self.crossing::<S, V>(simd, -self.height())?;
+        let found = self.across::<S, V>(simd, &crossing)?;
+        let middle = (found.on_own + found.on_other) * N::HALF;
+        let is_common = found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle);
+        is_common.then_some(found)
+    }
+
+    /// The answer between any edges within reach.
+    #[inline(always)]
+    fn thorough<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> Option<Found<N>> {
+        let crossing = self.crossing::<S, V>(simd, reach)?;
+        self.decided::<S, V>(simd, &crossing, reach)
+    }
+
+    /// The answer across two edges, or that of the nearest ones if they part the solids but are not
+    /// themselves the nearest.
+    #[inline(always)]
+    fn decided<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        crossing: &Crossing<N>,
+        reach: N,
+    ) -> Option<Found<N>> {
+        match self.across::<S, V>(simd, crossing) {
+            None if crossing.height > N::ZERO => self.nearest::<S, V>(simd, reach),
+            found => found,
+        }
+    }
+
+    /// Whether both solids hold a point, up to noise.
+    #[inline(always)]
+    fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
+        let in_other = self.place.rotation.tr_mul(&(point - self.place.translation));
+        let above = |solid: &Flat<'_, N>, point| {
+            highest_over::<S, N, V>(simd, solid.planes, self.shrink, point)
+        };
+        above(self.own.solid, point) <= noise() && above(self.other.solid, &in_other) <= noise()
     }
 
     /// How far the other solid lies above the plane of the face.
