@@ -12,16 +12,16 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events, KeptContacts,
-    ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
-    touching_in_world,
+    Algorithm, certainly_overlap, distance_in_world, in_world, separation_in_plane,
+    separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
@@ -30,12 +30,13 @@ use crate::query::{
     witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
-use crate::world::{Bodies, WorldBroadPhase, WorldError};
+use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -119,6 +120,7 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) near_first: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
+    pub(crate) nearest_first: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError>;
@@ -135,6 +137,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
             by_time: BoxTree::by_time,
             near_first: BoxTree::near_first,
             by_distance: BoxTree::by_distance,
+            nearest_first: BoxTree::nearest_first,
         }
     }
 }
@@ -143,7 +146,8 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
     pub(crate) set_isometry: SetIsometryFn<N, D>,
-    pub(crate) set_shape: fn(&mut Bodies<N, D>, u32, ShapeHandle<N, D>),
+    pub(crate) set_shape: fn(&mut Body<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
+    pub(crate) set_query: fn(&mut Body<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
     pub(crate) flush: FlushFn<N, D>,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) pair_stopped:
@@ -153,17 +157,18 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
 }
 
 type SetIsometryFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, u32, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
-    fn(&mut Bodies<N, D>, &mut ObjectTable<N, D>, &mut WorldBroadPhase<N, D>, &mut Vec<u32>);
+    fn(&mut Body<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {
         Self {
             new_broad_phase,
-            set_isometry: Bodies::set_isometry,
-            set_shape: Bodies::set_shape,
-            flush: Bodies::flush,
+            set_isometry: Body::set_isometry,
+            set_shape: Body::set_shape,
+            set_query: Body::set_query,
+            flush: Body::flush,
             pair_started: DefaultNarrowPhase::pair_started,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,
@@ -185,6 +190,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
+    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
@@ -200,6 +206,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
+        certainly_overlap,
         contacts: contacts2,
         box_contacts: update_box_pairs2,
         tangents: tangents2,
@@ -216,6 +223,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
+        certainly_overlap,
         contacts: contacts3,
         box_contacts: update_box_pairs3,
         tangents: tangents3,
@@ -234,6 +242,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
+            certainly_overlap: particular.certainly_overlap,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,

@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
-    proxies: Vec<Option<(ProxyHandle, T)>>,
+    proxies: Vec<Option<T>>,
     finder: BV::Finder,
 }
 
@@ -82,15 +82,10 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     }
 }
 
-/// The handle and data of an object that is known to be there.
-fn proxy_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &(ProxyHandle, T) {
-    let proxy = proxies[id as usize].as_ref();
-    proxy.expect("the finder knows only objects that are there")
-}
-
 /// The data of an object that is known to be there.
-fn data_of<T>(proxies: &[Option<(ProxyHandle, T)>], id: u32) -> &T {
-    &proxy_of(proxies, id).1
+fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
+    let data = proxies[id as usize].as_ref();
+    data.expect("the finder knows only objects that are there")
 }
 
 /// The number that the finder knows the object by.
@@ -123,7 +118,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// The pairs as of the last update, less those removed since, each with the smaller handle
     /// first; in no particular order.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
-        let handle = |id: u32| proxy_of(&self.proxies, id).0;
+        let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
     }
 
@@ -176,7 +171,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         if self.proxies.len() <= handle.uid() {
             self.proxies.resize_with(handle.uid() + 1, || None);
         }
-        self.proxies[handle.uid()] = Some((handle, data));
+        self.proxies[handle.uid()] = Some(data);
         self.finder.insert(id_of(handle), bv);
         Ok(handle)
     }
@@ -273,6 +268,28 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
     fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
         let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
         self.finder.visit_nearest(bv, max_distance, &mut by_id);
+    }
+
+    fn visit_nearest_roughly(
+        &self,
+        bv: &Aabb<N, D>,
+        max_distance: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_id);
+    }
+
+    fn visit_cast_roughly(
+        &self,
+        bv: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        let sweep = Sweep { aabb: *bv, velocity: *velocity };
+        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_id);
     }
 
     fn visit_cast(

@@ -48,8 +48,9 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// As given, at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// The loosened box at the last update, for unbounded objects marked as changed.
-    pub(super) previous: Vec<Bounds<D>>,
+    /// The loosened box at the last update, for unbounded objects marked as changed. Only as long as for
+    /// the last of these.
+    previous: Vec<Bounds<D>>,
     pub(super) homes: Vec<Home>,
     pub(super) marks: Vec<u8>,
     /// The update that last changed the loosened box.
@@ -155,7 +156,6 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if self.homes.len() < needed {
             self.exact.resize(needed, aabb);
             self.loose.resize(needed, Bounds::NOWHERE);
-            self.previous.resize(needed, Bounds::NOWHERE);
             self.homes.resize(needed, Home::Nowhere);
             self.marks.resize(needed, 0);
             self.last_change.resize(needed, 0);
@@ -272,7 +272,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     #[inline(never)]
     fn move_home(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
-        self.previous[index] = self.before(id);
+        let before = self.before(id);
         self.mark(id, CHANGED);
         self.loose[index] = loose;
         let is_bounded = loose.is_finite();
@@ -282,11 +282,19 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.leave_home(id);
         if is_bounded {
             self.homes[index] = Home::Moving;
-            self.moving.insert(id, &loose, &self.previous[index]);
+            self.moving.insert(id, &loose, &before);
         } else {
+            self.set_previous(id, before);
             self.homes[index] = Home::Unbounded;
             self.unbounded.push(id);
         }
+    }
+
+    fn set_previous(&mut self, id: u32, before: Bounds<D>) {
+        if self.previous.len() <= id as usize {
+            self.previous.resize(id as usize + 1, Bounds::NOWHERE);
+        }
+        self.previous[id as usize] = before;
     }
 
     /// The loosened box at the last update.
@@ -323,10 +331,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
                 Home::Nowhere => continue,
                 Home::Moving => self.moving.forget_before(id),
                 Home::Still => self.still.forget_before(id),
-                Home::Unbounded => {}
+                Home::Unbounded => self.set_previous(id, Bounds::NOWHERE),
             }
             self.mark(id, AGAIN);
-            self.previous[id as usize] = Bounds::NOWHERE;
             self.searched.push(id);
         }
         again.clear();

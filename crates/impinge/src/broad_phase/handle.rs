@@ -36,8 +36,10 @@ impl ProxyHandle {
 /// Gives handles out and knows which are alive.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Handles {
-    /// By index: the generation of the present or the next object, and whether it is present.
-    entries: Vec<(u32, bool)>,
+    /// By index: the generation of the present or the next object.
+    generations: Vec<u32>,
+    /// By index: the object is present.
+    is_present: Vec<bool>,
     /// Indices without an object; the last one freed is used first.
     free: Vec<u32>,
 }
@@ -45,24 +47,29 @@ pub(super) struct Handles {
 impl Handles {
     pub(super) fn create(&mut self) -> ProxyHandle {
         let index = self.free.pop().unwrap_or_else(|| {
-            self.entries.push((0, false));
-            u32::try_from(self.entries.len() - 1).expect("fewer than 2^32 handles")
+            self.generations.push(0);
+            self.is_present.push(false);
+            u32::try_from(self.generations.len() - 1).expect("fewer than 2^32 handles")
         });
-        let entry = &mut self.entries[index as usize];
-        entry.1 = true;
-        ProxyHandle { index, generation: entry.0 }
+        self.is_present[index as usize] = true;
+        self.at(index)
+    }
+
+    /// The handle of the present or the next object at an index.
+    pub(super) fn at(&self, index: u32) -> ProxyHandle {
+        ProxyHandle { index, generation: self.generations[index as usize] }
     }
 
     pub(super) fn is_alive(&self, handle: ProxyHandle) -> bool {
-        self.entries.get(handle.uid()) == Some(&(handle.generation, true))
+        self.generations.get(handle.uid()) == Some(&handle.generation)
+            && self.is_present[handle.uid()]
     }
 
     /// Ends the handle. An index whose generations are used up is retired.
     pub(super) fn remove(&mut self, handle: ProxyHandle) {
-        let entry = &mut self.entries[handle.uid()];
-        entry.1 = false;
-        if let Some(next) = entry.0.checked_add(1) {
-            entry.0 = next;
+        self.is_present[handle.uid()] = false;
+        if let Some(next) = handle.generation.checked_add(1) {
+            self.generations[handle.uid()] = next;
             self.free.push(handle.index);
         }
     }
@@ -86,7 +93,8 @@ mod tests {
 
     #[test]
     fn worn_out_indices_are_retired() {
-        let mut handles = Handles { entries: vec![(u32::MAX, true)], free: Vec::new() };
+        let mut handles =
+            Handles { generations: vec![u32::MAX], is_present: vec![true], free: Vec::new() };
         let last = ProxyHandle { index: 0, generation: u32::MAX };
         handles.remove(last);
         assert_eq!(handles.create().uid(), 1, "index 0 has no generation left");

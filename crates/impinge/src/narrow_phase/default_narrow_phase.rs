@@ -113,6 +113,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.forget_order();
     }
 
+    /// There is a pair of the object.
+    pub(crate) fn has_pairs(&self, object: u32) -> bool {
+        self.pairs.count(object) > 0
+    }
+
     /// The pairs are others, or lie elsewhere, than when they were sorted.
     fn forget_order(&mut self) {
         self.order.take();

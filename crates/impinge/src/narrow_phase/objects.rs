@@ -1,31 +1,40 @@
-//! What the narrow phase reads of the objects: a structure of arrays by handle index, apart from
-//! the users' data.
+//! What the narrow phase reads of the objects that have pairs: a structure of arrays apart from the users'
+//! data.
 
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::math::{Pose, Space};
 use crate::shape::ShapeHandle;
 
-/// The poses, shapes and query types as of the last update, by [`CollisionObjectHandle::uid`].
+/// The row of an object that has none.
+const NONE: u32 = u32::MAX;
+
+/// The poses, shapes and query types as of the last update, by [`CollisionObjectHandle::uid`], of the
+/// objects that have pairs.
 ///
-/// The world copies an object's row here when an update begins, if the object changed since the one
-/// before; between updates the rows stand still, so that manifolds read then are those of the last
-/// update. A row outlives its object until the index is given to another.
+/// The world writes an object's row here when its first pair starts, and again when an update begins if
+/// the object changed since the one before; between updates the rows stand still, so that manifolds read
+/// then are those of the last update. When the last pair of the object stops, another may get its row.
 ///
 /// The table also knows which rows were written in the update under way: pairs of rows that
 /// stand still need no new query.
 #[derive(Clone, Debug)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {
+    /// By handle index: where the row stands, or [`NONE`].
+    rows: Vec<u32>,
+    /// By row, as all below.
     handles: Vec<CollisionObjectHandle>,
     poses: Vec<Pose<N, D>>,
     shapes: Vec<ShapeHandle<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
     /// The poses as the user gave them, for algorithms of the user's own.
     isometries: Vec<N::Isometry>,
-    /// The update in which each row was written last.
-    written: Vec<u64>,
-    /// The rows written in the update under way, each once, in order of writing.
+    /// The row was written in the update under way.
+    is_written: Vec<bool>,
+    /// Rows without an object, the next one to be used at the end.
+    free: Vec<u32>,
+    /// The objects whose rows were written in the update under way, in order of writing. One that lost its
+    /// row since has none or stands here again.
     changed: Vec<u32>,
-    update: u64,
 }
 
 /// One row of the table.
@@ -41,39 +50,74 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// A table without rows.
     pub(crate) const fn new() -> Self {
         Self {
+            rows: Vec::new(),
             handles: Vec::new(),
             poses: Vec::new(),
             shapes: Vec::new(),
             queries: Vec::new(),
             isometries: Vec::new(),
-            written: Vec::new(),
+            is_written: Vec::new(),
+            free: Vec::new(),
             changed: Vec::new(),
-            update: 0,
         }
     }
 
     /// Forgets which rows were written: those written from now on are the changed ones.
     pub(crate) fn begin_update(&mut self) {
-        self.update += 1;
-        self.changed.clear();
+        for index in self.changed.drain(..) {
+            if let Some(row) = self.rows.get(index as usize).filter(|&&row| row != NONE) {
+                self.is_written[*row as usize] = false;
+            }
+        }
     }
 
-    /// Writes an object's row; the index is that of a row already there or the next one.
-    pub(crate) fn set(&mut self, row: ObjectRow<N, D>) {
-        let index = row.handle.uid();
-        if index == self.handles.len() {
-            self.push(row);
+    /// Whether the object has a row.
+    pub(crate) fn has_row(&self, index: u32) -> bool {
+        self.rows.get(index as usize).is_some_and(|&row| row != NONE)
+    }
+
+    /// Gives the object a row if it has none.
+    pub(crate) fn lend(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
+        if self.has_row(index) {
             return;
         }
-        self.handles[index] = row.handle;
-        self.shapes[index] = row.shape;
-        self.queries[index] = row.query;
-        self.set_position(row.handle.index(), row.isometry);
+        if self.rows.len() <= index as usize {
+            self.rows.resize(index as usize + 1, NONE);
+        }
+        match self.free.pop() {
+            Some(place) => {
+                self.rows[index as usize] = place;
+                self.set(index, row);
+            }
+            None => self.push(index, row()),
+        }
     }
 
-    fn push(&mut self, row: ObjectRow<N, D>) {
-        self.changed.push(row.handle.index());
-        self.written.push(self.update);
+    /// Takes the object's row back, if it has one.
+    pub(crate) fn release(&mut self, index: u32) {
+        if self.has_row(index) {
+            let row = core::mem::replace(&mut self.rows[index as usize], NONE);
+            self.is_written[row as usize] = false;
+            self.free.push(row);
+        }
+    }
+
+    /// Writes an object's row, if it has one.
+    pub(crate) fn set(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
+        if self.has_row(index) {
+            let (place, row) = (self.row(index), row());
+            self.handles[place] = row.handle;
+            self.shapes[place] = row.shape;
+            self.queries[place] = row.query;
+            self.set_position(index, &row.isometry);
+        }
+    }
+
+    fn push(&mut self, index: u32, row: ObjectRow<N, D>) {
+        let place = self.handles.len();
+        self.rows[index as usize] = u32::try_from(place).expect("no more rows than objects");
+        self.changed.push(index);
+        self.is_written.push(true);
         self.handles.push(row.handle);
         self.poses.push(N::pose(&row.isometry));
         self.isometries.push(row.isometry);
@@ -81,18 +125,21 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.queries.push(row.query);
     }
 
-    /// Moves an object without touching the rest of its row.
-    pub(crate) fn set_position(&mut self, index: u32, isometry: N::Isometry) {
-        let row = index as usize;
-        self.poses[row] = N::pose(&isometry);
-        self.isometries[row] = isometry;
-        if self.written[row] != self.update {
-            self.written[row] = self.update;
+    /// Moves an object without touching the rest of its row, if it has one.
+    pub(crate) fn set_position(&mut self, index: u32, isometry: &N::Isometry) {
+        if !self.has_row(index) {
+            return;
+        }
+        let row = self.row(index);
+        self.poses[row] = N::pose(isometry);
+        self.isometries[row] = *isometry;
+        if !self.is_written[row] {
+            self.is_written[row] = true;
             self.changed.push(index);
         }
     }
 
-    /// The rows written since the last update began.
+    /// The objects whose rows were written since the last update began.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
     }
@@ -100,38 +147,50 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// The row was written since the last update began.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
-        self.written[index as usize] == self.update
+        self.is_written[self.row(index)]
     }
 
-    /// How many rows there are.
-    pub(crate) fn len(&self) -> usize {
-        self.handles.len()
+    /// Where the row of an object stands, which has one.
+    #[inline]
+    fn row(&self, index: u32) -> usize {
+        self.rows[index as usize] as usize
+    }
+
+    /// What is wrong with the rows, if anything.
+    pub(crate) fn validate(&self) -> Result<(), String> {
+        let mut owners = vec![0_u8; self.handles.len()];
+        let used = self.rows.iter().filter(|&&row| row != NONE);
+        used.chain(&self.free).for_each(|&row| owners[row as usize] += 1);
+        match owners.iter().position(|&count| count != 1) {
+            Some(row) => Err(format!("row {row} of the table belongs to {} objects", owners[row])),
+            None => Ok(()),
+        }
     }
 
     /// The handle of the object that the row was written for.
     pub(crate) fn handle(&self, index: u32) -> CollisionObjectHandle {
-        self.handles[index as usize]
+        self.handles[self.row(index)]
     }
 
     /// The pose at the last update.
     #[inline]
     pub(crate) fn pose(&self, index: u32) -> &Pose<N, D> {
-        &self.poses[index as usize]
+        &self.poses[self.row(index)]
     }
 
     /// The pose at the last update, as the user gave it.
     pub(crate) fn isometry(&self, index: u32) -> &N::Isometry {
-        &self.isometries[index as usize]
+        &self.isometries[self.row(index)]
     }
 
     /// The shape at the last update.
     #[inline]
     pub(crate) fn shape(&self, index: u32) -> &ShapeHandle<N, D> {
-        &self.shapes[index as usize]
+        &self.shapes[self.row(index)]
     }
 
     /// The query type at the last update.
     pub(crate) fn query(&self, index: u32) -> GeometricQueryType<N> {
-        self.queries[index as usize]
+        self.queries[self.row(index)]
     }
 }

@@ -1,11 +1,14 @@
-//! The links of each object: a cache line of its own, and a run of further lines if it has many.
+//! The links of each object: a cache line of its own if it has any, and a run of further lines if it has
+//! many.
 
 use super::places::Places;
 
 /// Links in one line.
 const PER_LINE: usize = 8;
-/// Links in the line that every object has, beside what describes the rest.
+/// Links in the line that an object with links has, beside what describes the rest.
 const INLINE: usize = PER_LINE - 1;
+/// The line of an object without links.
+const NO_HEAD: u32 = u32::MAX;
 /// The class of a run that is not there.
 const NO_RUN: u32 = 31;
 /// The class from which on an object is heavy: more than 135 links came. It stays so until its run
@@ -74,8 +77,11 @@ struct Line {
 /// The links of all objects.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
-    /// By object.
+    /// By object: which of the heads is its own, or [`NO_HEAD`].
+    owned: Vec<u32>,
     heads: Vec<Head>,
+    /// The heads that belong to nobody. They have no links and no runs.
+    idle: Vec<u32>,
     /// The runs.
     pool: Vec<Line>,
     /// Starts of abandoned runs, by class.
@@ -109,25 +115,38 @@ impl Lines {
     /// Makes room for the object.
     pub(super) fn reach(&mut self, object: u32) {
         let needed = object as usize + 1;
-        if self.heads.len() < needed {
-            self.heads.resize(needed, Head::EMPTY);
+        if self.owned.len() < needed {
+            self.owned.resize(needed, NO_HEAD);
         }
     }
 
     /// One more than the largest object number seen.
     pub(super) fn objects(&self) -> usize {
-        self.heads.len()
+        self.owned.len()
+    }
+
+    /// Which head is the object's.
+    #[inline]
+    fn at(&self, object: u32) -> Option<usize> {
+        let at = *self.owned.get(object as usize)? as usize;
+        (at < self.heads.len()).then_some(at)
+    }
+
+    /// The head of the object.
+    #[inline]
+    fn head(&self, object: u32) -> &Head {
+        self.at(object).map_or(&Head::EMPTY, |at| &self.heads[at])
     }
 
     /// How many links the object has; 0 for one never seen.
     #[inline]
     pub(super) fn count(&self, object: u32) -> usize {
-        self.heads.get(object as usize).map_or(0, |head| head.count() as usize)
+        self.head(object).count() as usize
     }
 
     /// The links of the object, by place.
     pub(super) fn links(&self, object: u32) -> impl Iterator<Item = Link> + '_ {
-        let head = self.heads.get(object as usize).unwrap_or(&Head::EMPTY);
+        let head = self.head(object);
         let count = head.count() as usize;
         let start = head.start as usize;
         let lines = start..start + count.saturating_sub(INLINE).div_ceil(PER_LINE);
@@ -137,14 +156,14 @@ impl Lines {
 
     /// The last link of the object, if it has any.
     pub(super) fn last_link(&self, object: u32) -> Option<Link> {
-        let last = self.count(object).checked_sub(1)?;
-        Some(self.link(object, small(last)))
+        let at = self.at(object)?;
+        Some(self.link(at, self.heads[at].count() - 1))
     }
 
-    /// The link at `place` among the links of the object.
+    /// The link at `place` among those of a head.
     #[inline]
-    fn link(&self, object: u32, place: u32) -> Link {
-        let head = &self.heads[object as usize];
+    fn link(&self, at: usize, place: u32) -> Link {
+        let head = &self.heads[at];
         if let Some(link) = head.links.get(place as usize) {
             return *link;
         }
@@ -152,10 +171,10 @@ impl Lines {
         self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// The link at `place` among the links of the object, to write.
+    /// The link at `place` among those of a head, to write.
     #[inline]
-    fn link_mut(&mut self, object: u32, place: u32) -> &mut Link {
-        let head = &mut self.heads[object as usize];
+    fn link_mut(&mut self, at: usize, place: u32) -> &mut Link {
+        let head = &mut self.heads[at];
         let place = place as usize;
         if place < INLINE {
             return &mut head.links[place];
@@ -164,29 +183,30 @@ impl Lines {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// The object has so many links that it should not be searched.
+    /// The object of a head has so many links that it should not be searched.
     #[inline]
-    fn is_heavy(&self, object: u32) -> bool {
-        self.heads.get(object as usize).is_some_and(|head| (HEAVY..NO_RUN).contains(&head.class()))
+    fn is_heavy(&self, at: usize) -> bool {
+        (HEAVY..NO_RUN).contains(&self.heads[at].class())
     }
 
-    /// The place of the link to the partner among the links of the object.
+    /// The head of the object and the place of the link to the partner among its links.
     #[inline]
-    fn find(&self, object: u32, partner: u32) -> Option<u32> {
-        let head = self.heads.get(object as usize)?;
+    fn find(&self, object: u32, partner: u32) -> Option<(usize, u32)> {
+        let at = self.at(object)?;
+        let head = &self.heads[at];
         let count = head.count() as usize;
         let place = place_in(&head.links, count, partner);
         if place.is_some() || head.class() == NO_RUN {
-            return place;
+            return Some((at, place?));
         }
         if head.class() >= HEAVY {
-            return self.places.get(directed(object, partner));
+            return Some((at, self.places.get(directed(object, partner))?));
         }
         let (start, beyond) = (head.start as usize, count.saturating_sub(INLINE));
         let lines = self.pool[start..start + beyond.div_ceil(PER_LINE)].iter();
-        lines.enumerate().find_map(|(at, line)| {
-            let place = place_in(&line.links, beyond - at * PER_LINE, partner)?;
-            Some(small(INLINE + at * PER_LINE) + place)
+        lines.enumerate().find_map(|(line_at, line)| {
+            let place = place_in(&line.links, beyond - line_at * PER_LINE, partner)?;
+            Some((at, small(INLINE + line_at * PER_LINE) + place))
         })
     }
 
@@ -195,78 +215,94 @@ impl Lines {
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);
         let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
-        Some(self.link(from, self.find(from, to)?).pair as usize)
+        let (at, place) = self.find(from, to)?;
+        Some(self.link(at, place).pair as usize)
     }
 
     /// Tells the link from the object to the partner, which must be there, where the pair stands.
     #[inline]
     pub(super) fn set_pair(&mut self, object: u32, link: Link) {
-        let place = self.find(object, link.partner).expect("both ends of a pair have links");
-        *self.link_mut(object, place) = link;
+        let found = self.find(object, link.partner);
+        let (at, place) = found.expect("both ends of a pair have links");
+        *self.link_mut(at, place) = link;
     }
 
     /// Adds a link.
     #[inline]
     pub(super) fn push(&mut self, object: u32, link: Link) {
-        let head = &mut self.heads[object as usize];
+        let at = self.at(object).unwrap_or_else(|| self.take_head(object));
+        let head = &mut self.heads[at];
         let count = head.count();
         if count as usize == head.capacity() {
-            self.enlarge(object);
+            self.enlarge(object, at);
         }
-        self.heads[object as usize].set_count(count + 1);
-        *self.link_mut(object, count) = link;
-        if self.is_heavy(object) {
+        self.heads[at].set_count(count + 1);
+        *self.link_mut(at, count) = link;
+        if self.is_heavy(at) {
             self.places.set(directed(object, link.partner), count);
         }
+    }
+
+    /// Gives the object a head.
+    fn take_head(&mut self, object: u32) -> usize {
+        let at = self.idle.pop().unwrap_or_else(|| {
+            self.heads.push(Head::EMPTY);
+            small(self.heads.len() - 1)
+        });
+        self.owned[object as usize] = at;
+        at as usize
     }
 
     /// Takes the link to the partner out, if it is there, and says where the pair stands. The
     /// object's last link takes its place.
     #[inline]
     pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
-        let place = self.find(object, partner)?;
-        let last = self.heads[object as usize].count() - 1;
-        let (taken, moved) = (self.link(object, place), self.link(object, last));
-        *self.link_mut(object, place) = moved;
-        self.heads[object as usize].set_count(last);
-        if self.is_heavy(object) {
+        let (at, place) = self.find(object, partner)?;
+        let last = self.heads[at].count() - 1;
+        let (taken, moved) = (self.link(at, place), self.link(at, last));
+        *self.link_mut(at, place) = moved;
+        self.heads[at].set_count(last);
+        if self.is_heavy(at) {
             self.places.set(directed(object, moved.partner), place);
             self.places.remove(directed(object, partner));
         }
         if last as usize == INLINE {
-            self.release(object);
+            self.release(object, at);
+        } else if last == 0 {
+            self.owned[object as usize] = NO_HEAD;
+            self.idle.push(small(at));
         }
         Some(taken.pair as usize)
     }
 
     /// Gives the object a run, or moves its run to one of twice the size.
-    fn enlarge(&mut self, object: u32) {
-        let (old_start, old_class) = self.run(object);
+    fn enlarge(&mut self, object: u32, at: usize) {
+        let (old_start, old_class) = self.run(at);
         if old_class == NO_RUN {
             let start = self.take_run(0);
-            return self.heads[object as usize].set_run(start, 0);
+            return self.heads[at].set_run(start, 0);
         }
         let start = self.take_run(old_class + 1);
         let from = old_start as usize;
         self.pool.copy_within(from..from + (1 << old_class), start as usize);
         self.free[old_class as usize].push(old_start);
-        self.heads[object as usize].set_run(start, old_class + 1);
+        self.heads[at].set_run(start, old_class + 1);
         if old_class + 1 == HEAVY {
-            self.enter_places(object);
+            self.enter_places(object, at);
         }
     }
 
     /// Enters the links of an object that became heavy.
     #[cold]
-    fn enter_places(&mut self, object: u32) {
-        for place in 0..self.heads[object as usize].count() {
-            let partner = self.link(object, place).partner;
+    fn enter_places(&mut self, object: u32, at: usize) {
+        for place in 0..self.heads[at].count() {
+            let partner = self.link(at, place).partner;
             self.places.set(directed(object, partner), place);
         }
     }
 
-    fn run(&self, object: u32) -> (u32, u32) {
-        let head = &self.heads[object as usize];
+    fn run(&self, at: usize) -> (u32, u32) {
+        let head = &self.heads[at];
         (head.start, head.class())
     }
 
@@ -284,26 +320,30 @@ impl Lines {
     }
 
     /// Gives the run of an object back to the pool; what it has left fits its head.
-    fn release(&mut self, object: u32) {
-        let (start, class) = self.run(object);
+    fn release(&mut self, object: u32, at: usize) {
+        let (start, class) = self.run(at);
         if class >= HEAVY {
-            let links = self.heads[object as usize].links;
+            let links = self.heads[at].links;
             links.iter().for_each(|link| self.places.remove(directed(object, link.partner)));
         }
         self.free[class as usize].push(start);
-        self.heads[object as usize].set_run(0, NO_RUN);
+        self.heads[at].set_run(0, NO_RUN);
     }
 
     /// Forgets every link and keeps the memory.
     pub(super) fn clear(&mut self) {
+        self.owned.clear();
         self.heads.clear();
+        self.idle.clear();
         self.pool.clear();
         self.free.clear();
         self.places.clear();
     }
 
-    /// Checks that no two runs share a line, none leaves the pool, and none is overfull.
+    /// Checks that no two objects share a head, no two runs a line, no run leaves the pool, and none is
+    /// overfull.
     pub(super) fn validate(&self) -> Result<(), String> {
+        self.validate_heads()?;
         let mut used = vec![false; self.pool.len()];
         let live = self.heads.iter().filter(|head| head.class() != NO_RUN);
         let live = live.map(|head| (head.start, head.class() as usize));
@@ -322,10 +362,30 @@ impl Lines {
         self.validate_places()
     }
 
+    /// Every head belongs to one object with links, or is idle and has none.
+    fn validate_heads(&self) -> Result<(), String> {
+        let mut owners = vec![0_u8; self.heads.len()];
+        for (object, &at) in self.owned.iter().enumerate().filter(|(_, at)| **at != NO_HEAD) {
+            let head = self.heads.get(at as usize).filter(|head| head.count() > 0);
+            head.ok_or(format!("object {object} has the head {at}, which has no links"))?;
+            owners[at as usize] += 1;
+        }
+        for &at in &self.idle {
+            let is_empty = self.heads[at as usize].count_and_class == NO_RUN;
+            is_empty.then_some(()).ok_or(format!("the idle head {at} has links"))?;
+            owners[at as usize] += 1;
+        }
+        match owners.iter().position(|&count| count != 1) {
+            Some(at) => Err(format!("head {at} belongs to {} objects", owners[at])),
+            None => Ok(()),
+        }
+    }
+
     /// Every link of a heavy object is listed, and no other.
     fn validate_places(&self) -> Result<(), String> {
         let mut heavy = 0;
-        for object in (0..small(self.heads.len())).filter(|&object| self.is_heavy(object)) {
+        let is_heavy = |object: &u32| self.at(*object).is_some_and(|at| self.is_heavy(at));
+        for object in (0..small(self.owned.len())).filter(is_heavy) {
             for (place, link) in (0..).zip(self.links(object)) {
                 if self.places.get(directed(object, link.partner)) != Some(place) {
                     return Err(format!("link {place} of the heavy {object} is lost"));

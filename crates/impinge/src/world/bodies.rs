@@ -1,5 +1,4 @@
-//! What a step reads and writes of the objects, apart from the users' data, and what has changed
-//! since the last update.
+//! What a world keeps of an object beside the user's data, and what changed since the last update.
 
 use super::error::finite_pose;
 use super::{CollisionGroups, WorldError};
@@ -13,28 +12,30 @@ use crate::shape::{Shape, ShapeHandle};
 pub(crate) type WorldBroadPhase<N, const D: usize> =
     dyn BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync;
 
-/// The hot copy of one object: always as the user left it, never as of the last update.
+/// The object is tested against itself, as the narrow phase has been told.
+const SELF_PAIR: u32 = 1 << 31;
+/// The bits of a place in the list of changes; all set for an object that has none.
+const PLACE: u32 = SELF_PAIR - 1;
+/// No handle index.
+const GONE: u32 = u32::MAX;
+
+/// An object as the user left it: each fact is kept here and nowhere else, but for what the phases
+/// hold as of the last update. Of `f32` in space 88 bytes, and there are as many as objects.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<N: Space<D>, const D: usize> {
     pub(crate) handle: CollisionObjectHandle,
     pub(crate) proxy: ProxyHandle,
     pub(crate) isometry: N::Isometry,
-    /// The exact box of the shape where the object is now.
-    pub(crate) aabb: Aabb<N, D>,
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) query: GeometricQueryType<N>,
     pub(crate) groups: CollisionGroups,
-    pub(crate) alive: bool,
-    /// The narrow phase has been told to test the object against itself.
-    pub(crate) has_self_pair: bool,
-    changes: Changes,
+    /// [`SELF_PAIR`] and a place in the list of changes.
+    state: u32,
 }
 
 /// What happened to an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Changes {
-    /// The index is among the changed ones.
-    listed: bool,
     /// Another object, shape or query type: the whole row is to be written.
     row: bool,
     /// The shape or query type of an object that may have pairs.
@@ -45,55 +46,137 @@ struct Changes {
     groups: bool,
 }
 
-/// The hot copies, by handle index, and the list of those that changed.
+/// An object that changed.
+#[derive(Clone, Debug)]
+struct Entry<N: Real, const D: usize> {
+    /// The handle index; [`GONE`] if the object is.
+    index: u32,
+    changes: Changes,
+    /// The exact box of the shape where the object is now, if the volume changed.
+    aabb: Aabb<N, D>,
+}
+
+/// The objects that changed since the last update, each once.
 #[derive(Debug)]
-pub(crate) struct Bodies<N: Space<D>, const D: usize> {
-    bodies: Vec<Body<N, D>>,
-    /// The indices of what changed since the last update, each once.
-    changed: Vec<u32>,
-    /// Of the last flush: the indices of those whose pairs with themselves begin or end.
+pub(crate) struct ChangeList<N: Real, const D: usize> {
+    entries: Vec<Entry<N, D>>,
+    /// Memory for their handle indices in order.
+    order: Vec<u32>,
+    /// Of the last update: those whose pairs with themselves begin or end.
     self_changed: Vec<u32>,
 }
 
+/// What learns of changes when an update begins.
+pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
+    pub(crate) table: &'a mut ObjectTable<N, D>,
+    pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
+    /// Gets the objects whose pairs need other algorithms.
+    pub(crate) algorithms: &'a mut Vec<u32>,
+}
+
 impl<N: Space<D>, const D: usize> Body<N, D> {
-    /// The hot copy of an object whose volume the broad phase does not have yet.
-    pub(crate) fn new(
-        row: ObjectRow<N, D>,
-        groups: CollisionGroups,
-        proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
-    ) -> Self {
-        let aabb = aabb_at(&*row.shape, &N::pose(&row.isometry));
-        let proxy = proxy(volume(&aabb, row.query));
-        let ObjectRow { handle, isometry, shape, query } = row;
-        let changes = Changes::default();
-        let (alive, has_self_pair) = (true, false);
-        Self { handle, proxy, isometry, aabb, shape, query, groups, alive, has_self_pair, changes }
+    /// The handle index.
+    pub(crate) const fn index(&self) -> u32 {
+        self.handle.index()
     }
 
-    /// The volume for the broad phase.
-    pub(crate) fn volume(&self) -> Aabb<N, D> {
-        volume(&self.aabb, self.query)
+    /// Where the object stands in the list of changes, if it does.
+    fn place(&self) -> Option<usize> {
+        let place = self.state & PLACE;
+        (place != PLACE).then_some(place as usize)
     }
 
-    /// Queries must test the object itself: the broad phase does not know where it is now.
-    pub(crate) fn is_astray(&self) -> bool {
-        self.changes.volume
+    fn set_place(&mut self, place: u32) {
+        self.state = self.state & SELF_PAIR | place;
+    }
+
+    /// The narrow phase has been told to test the object against itself.
+    pub(crate) const fn has_self_pair(&self) -> bool {
+        self.state & SELF_PAIR != 0
     }
 
     /// The object shall be tested against itself: its groups ask for it, and it has parts that could
     /// touch each other.
     pub(crate) fn wants_self_pair(&self) -> bool {
-        self.alive
-            && self.groups.can_interact_with_self()
-            && self.shape.geometry().as_composite().is_some()
+        self.groups.can_interact_with_self() && self.shape.geometry().as_composite().is_some()
     }
 
-    fn row(&self) -> ObjectRow<N, D> {
+    /// The exact box of the shape where the object is now.
+    pub(crate) fn aabb(&self) -> Aabb<N, D> {
+        aabb_at(&*self.shape, &N::pose(&self.isometry))
+    }
+
+    /// The volume for the broad phase.
+    pub(crate) fn volume(&self) -> Aabb<N, D> {
+        grown(&self.aabb(), self.query.query_limit())
+    }
+
+    /// What the narrow phase reads of the object.
+    pub(crate) fn row(&self) -> ObjectRow<N, D> {
         ObjectRow {
             handle: self.handle,
             isometry: self.isometry,
             shape: self.shape.clone(),
             query: self.query,
+        }
+    }
+
+    /// Moves the object, unless a number of the position is not finite. An object that is there already
+    /// does not count as changed.
+    pub(crate) fn set_isometry(
+        &mut self,
+        list: &mut ChangeList<N, D>,
+        isometry: N::Isometry,
+    ) -> Result<(), WorldError> {
+        if isometry == self.isometry {
+            self.isometry = isometry;
+            return Ok(());
+        }
+        let pose = finite_pose(N::pose(&isometry), Some(self.handle))?;
+        self.isometry = isometry;
+        let aabb = aabb_at(&*self.shape, &pose);
+        list.note_volume(self, aabb);
+        Ok(())
+    }
+
+    pub(crate) fn set_shape(&mut self, list: &mut ChangeList<N, D>, shape: ShapeHandle<N, D>) {
+        self.shape = shape;
+        list.note_row(self);
+    }
+
+    pub(crate) fn set_query(&mut self, list: &mut ChangeList<N, D>, query: GeometricQueryType<N>) {
+        self.query = query;
+        list.note_row(self);
+    }
+
+    pub(crate) fn set_groups(&mut self, list: &mut ChangeList<N, D>, groups: CollisionGroups) {
+        self.groups = groups;
+        list.note(self).changes.groups = true;
+    }
+
+    /// Hands the changes since the last update on, and forgets them.
+    pub(crate) fn flush(&mut self, list: &mut ChangeList<N, D>, readers: &mut Readers<'_, N, D>) {
+        let Some(place) = self.place() else { return };
+        let Entry { changes, aabb, .. } = list.entries[place];
+        self.set_place(PLACE);
+        if self.wants_self_pair() != self.has_self_pair() {
+            self.state ^= SELF_PAIR;
+            list.self_changed.push(self.index());
+        }
+        if changes.row {
+            readers.table.set(self.index(), || self.row());
+        } else if changes.volume {
+            readers.table.set_position(self.index(), &self.isometry);
+        }
+        if changes.algorithm {
+            readers.algorithms.push(self.index());
+        }
+        if changes.volume {
+            let volume = grown(&aabb, self.query.query_limit());
+            readers.broad_phase.deferred_set_bounding_volume(self.proxy, volume);
+        }
+        if changes.groups {
+            readers.broad_phase.deferred_recompute_all_proximities_with(self.proxy);
         }
     }
 }
@@ -108,14 +191,9 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
     if usable { aabb } else { Aabb::unbounded() }
 }
 
-/// The box grown by what the object wants to know of others, so that two boxes meet whenever the
-/// solids are as near as the sum of both limits; and by a few units in the last place, because the
-/// box, the sum and the distance that it is compared with are rounded.
-fn volume<N: Real, const D: usize>(aabb: &Aabb<N, D>, query: GeometricQueryType<N>) -> Aabb<N, D> {
-    grown(aabb, query.query_limit())
-}
-
-/// The box grown by `limit`, and by a few units in the last place of what that makes of it.
+/// The box grown by `limit`, what an object wants to know of others, so that two boxes meet whenever the
+/// solids are as near as the sum of both limits; and by a few units in the last place of what that makes
+/// of it, because the box, the sum and the distance that it is compared with are rounded.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let faces = aabb.mins().iter().chain(aabb.maxs().iter());
     let finite = faces.filter(|x| x.is_finite_number());
@@ -123,165 +201,103 @@ pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aab
     aabb.loosened(limit + N::lit(8.0) * N::EPSILON * reach)
 }
 
-impl<N: Space<D>, const D: usize> Bodies<N, D> {
+impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     pub(crate) const fn new() -> Self {
-        Self { bodies: Vec::new(), changed: Vec::new(), self_changed: Vec::new() }
+        Self { entries: Vec::new(), order: Vec::new(), self_changed: Vec::new() }
     }
 
-    /// Puts an object at its index: one that is free, or the next one.
-    pub(crate) fn insert(&mut self, mut body: Body<N, D>) {
-        let index = body.handle.index();
-        match self.bodies.get_mut(body.handle.uid()) {
-            Some(place) => {
-                body.changes.listed = place.changes.listed;
-                *place = body;
-            }
-            None => self.bodies.push(body),
-        }
-        let changes = self.note(index);
-        changes.row = true;
-        changes.volume = true;
-    }
-
-    /// Takes note that an object is gone; its copy stays until the index is used again.
-    pub(crate) fn remove(&mut self, index: u32) {
-        let body = &mut self.bodies[index as usize];
-        body.alive = false;
-        body.has_self_pair = false;
-        // An index must have a row before later ones can: the row is written if it never was.
-        body.changes =
-            Changes { listed: body.changes.listed, row: body.changes.row, ..Changes::default() };
-    }
-
-    /// Moves an object, unless a number of the position is not finite. An object that is there already
-    /// does not count as changed.
-    pub(crate) fn set_isometry(
+    /// The body of a new object, whose volume the broad phase learns of by `proxy`.
+    pub(crate) fn admit(
         &mut self,
-        index: u32,
-        isometry: N::Isometry,
-    ) -> Result<(), WorldError> {
-        let body = &mut self.bodies[index as usize];
-        if isometry == body.isometry {
-            return Ok(());
+        row: ObjectRow<N, D>,
+        groups: CollisionGroups,
+        proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
+    ) -> Body<N, D> {
+        let ObjectRow { handle, isometry, shape, query } = row;
+        let aabb = aabb_at(&*shape, &N::pose(&isometry));
+        let proxy = proxy(grown(&aabb, query.query_limit()));
+        let mut body = Body { handle, proxy, isometry, shape, query, groups, state: PLACE };
+        let entry = self.note(&mut body);
+        entry.aabb = aabb;
+        entry.changes = Changes { row: true, volume: true, ..Changes::default() };
+        body
+    }
+
+    /// Forgets what an object that is gone changed.
+    pub(crate) fn forget(&mut self, body: &Body<N, D>) {
+        if let Some(place) = body.place() {
+            self.entries[place].index = GONE;
         }
-        let pose = finite_pose(N::pose(&isometry), Some(body.handle))?;
-        body.isometry = isometry;
-        body.aabb = aabb_at(&*body.shape, &pose);
-        self.note(index).volume = true;
-        Ok(())
     }
 
-    pub(crate) fn set_shape(&mut self, index: u32, shape: ShapeHandle<N, D>) {
-        let body = &mut self.bodies[index as usize];
-        body.aabb = aabb_at(&*shape, &N::pose(&body.isometry));
-        body.shape = shape;
-        self.note_row(index);
+    /// Queries must test the object itself: the broad phase does not know where it is now.
+    pub(crate) fn is_astray(&self, body: &Body<N, D>) -> bool {
+        body.place().is_some_and(|place| self.entries[place].changes.volume)
     }
 
-    pub(crate) fn set_query(&mut self, index: u32, query: GeometricQueryType<N>) {
-        self.bodies[index as usize].query = query;
-        self.note_row(index);
+    /// The handle indices and the boxes of the objects that are astray, in no particular order.
+    pub(crate) fn astray(&self) -> impl Iterator<Item = (u32, &Aabb<N, D>)> {
+        let astray =
+            self.entries.iter().filter(|entry| entry.changes.volume && entry.index != GONE);
+        astray.map(|entry| (entry.index, &entry.aabb))
     }
 
-    pub(crate) fn set_groups(&mut self, index: u32, groups: CollisionGroups) {
-        self.bodies[index as usize].groups = groups;
-        self.note(index).groups = true;
+    /// The handle indices of the changed objects, in order. The memory is to be given back to
+    /// [`Self::clear`].
+    pub(crate) fn take_order(&mut self) -> Vec<u32> {
+        let mut order = core::mem::take(&mut self.order);
+        order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
+        order.sort_unstable();
+        order
     }
 
-    pub(crate) fn set_proxy(&mut self, index: u32, proxy: ProxyHandle) {
-        self.bodies[index as usize].proxy = proxy;
+    /// Forgets all changes but those of pairs of objects with themselves.
+    pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
+        order.clear();
+        self.order = order;
+        self.entries.clear();
     }
 
-    /// The object at an index; the last one that was there if it is free.
-    #[inline]
-    pub(crate) fn at(&self, index: u32) -> &Body<N, D> {
-        &self.bodies[index as usize]
+    /// The objects whose pairs with themselves begin or end, as of the last flush; forgotten hereby.
+    pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
+        core::mem::take(&mut self.self_changed)
     }
 
-    /// The objects, in order.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &Body<N, D>> {
-        self.bodies.iter().filter(|body| body.alive)
+    fn note_volume(&mut self, body: &mut Body<N, D>, aabb: Aabb<N, D>) {
+        let entry = self.note(body);
+        entry.aabb = aabb;
+        entry.changes.volume = true;
     }
 
-    /// The living objects that queries must test themselves, in no particular order.
-    pub(crate) fn astray(&self) -> impl Iterator<Item = &Body<N, D>> {
-        let changed = self.changed.iter().map(|&index| self.at(index));
-        changed.filter(|body| body.alive && body.is_astray())
+    fn note_row(&mut self, body: &mut Body<N, D>) {
+        let aabb = body.aabb();
+        let entry = self.note(body);
+        entry.aabb = aabb;
+        entry.changes.row = true;
+        entry.changes.algorithm = true;
+        entry.changes.volume = true;
     }
 
-    /// How many indices were ever used.
-    pub(crate) fn len(&self) -> usize {
-        self.bodies.len()
+    /// Lists an object as changed.
+    fn note(&mut self, body: &mut Body<N, D>) -> &mut Entry<N, D> {
+        let place = body.place().unwrap_or_else(|| {
+            let place = self.entries.len();
+            let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
+            body.set_place(small.expect("a world holds fewer than 2^31 objects"));
+            let (index, changes) = (body.index(), Changes::default());
+            self.entries.push(Entry { index, changes, aabb: Aabb::unbounded() });
+            place
+        });
+        &mut self.entries[place]
     }
 
-    /// The groups of both objects allow the pair.
-    #[inline]
-    pub(crate) fn can_interact(&self, index1: u32, index2: u32) -> bool {
-        self.at(index1).groups.can_interact_with_groups(&self.at(index2).groups)
-    }
-
-    /// The objects whose pairs with themselves begin or end, as of the last flush, and which of the
-    /// two; forgotten hereby.
-    pub(crate) fn take_self_changes(&mut self) -> Vec<(CollisionObjectHandle, bool)> {
-        let changed = core::mem::take(&mut self.self_changed);
-        let one = |index: u32| (self.at(index).handle, self.at(index).has_self_pair);
-        changed.into_iter().map(one).collect()
-    }
-
-    /// The objects that are tested against themselves.
-    pub(crate) fn with_self_pairs(&self) -> impl Iterator<Item = CollisionObjectHandle> {
-        self.iter().filter(|body| body.has_self_pair).map(|body| body.handle)
-    }
-
-    fn note_row(&mut self, index: u32) {
-        let changes = self.note(index);
-        changes.row = true;
-        changes.algorithm = true;
-        changes.volume = true;
-    }
-
-    /// Lists an index as changed.
-    fn note(&mut self, index: u32) -> &mut Changes {
-        let changes = &mut self.bodies[index as usize].changes;
-        if !changes.listed {
-            changes.listed = true;
-            self.changed.push(index);
-        }
-        changes
-    }
-
-    /// Hands the changes since the last update to the table and the broad phase, in order of index,
-    /// and forgets them. Leaves in `algorithms` the objects whose pairs need other algorithms.
-    pub(crate) fn flush(
-        &mut self,
-        table: &mut ObjectTable<N, D>,
-        broad_phase: &mut WorldBroadPhase<N, D>,
-        algorithms: &mut Vec<u32>,
-    ) {
-        table.begin_update();
-        algorithms.clear();
-        self.changed.sort_unstable();
-        for index in self.changed.drain(..) {
-            let body = &mut self.bodies[index as usize];
-            let changes = core::mem::take(&mut body.changes);
-            if body.wants_self_pair() != body.has_self_pair {
-                body.has_self_pair = !body.has_self_pair;
-                self.self_changed.push(index);
+    /// What is wrong with the places of an object in the list, if anything.
+    pub(crate) fn validate(&self, body: &Body<N, D>) -> Result<(), String> {
+        match body.place().map(|place| self.entries.get(place)) {
+            Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {
+                Err(format!("{:?} has the place of another among the changes", body.handle))
             }
-            if changes.row {
-                table.set(body.row());
-            } else if changes.volume {
-                table.set_position(index, body.isometry);
-            }
-            if changes.algorithm {
-                algorithms.push(index);
-            }
-            if changes.volume {
-                broad_phase.deferred_set_bounding_volume(body.proxy, body.volume());
-            }
-            if changes.groups {
-                broad_phase.deferred_recompute_all_proximities_with(body.proxy);
-            }
+            _ => Ok(()),
         }
     }
 }

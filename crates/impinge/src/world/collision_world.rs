@@ -5,7 +5,7 @@ use core::fmt;
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
-use super::step::in_order;
+use super::step::{HandlePair, in_order};
 use super::{
     BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase,
     WorldBroadPhase, WorldError,
@@ -37,6 +37,8 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) queued: Events,
     /// Scratch: the objects whose pairs need other algorithms.
     pub(super) algorithms: Vec<u32>,
+    /// Scratch: the pairs that started or stopped.
+    pub(super) interactions: Vec<(HandlePair, bool)>,
 }
 
 impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionWorld<N, D, T> {
@@ -83,6 +85,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             events: Events::default(),
             queued: Events::default(),
             algorithms: Vec::new(),
+            interactions: Vec::new(),
         })
     }
 
@@ -141,19 +144,19 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn try_remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
         let mut proxies = Vec::with_capacity(handles.len());
         for &handle in handles {
-            proxies.push(self.objects.fresh(handle)?.proxy_handle);
+            proxies.push(self.objects.fresh(handle)?.0.proxy);
         }
         refuse_repeated(handles)?;
-        let (objects, queued) = (&self.objects, &mut self.queued);
-        let narrow_phase = &mut self.narrow_phase;
+        let mut pairs = Vec::new();
         self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
-            let (first, second) = in_order(handle1, handle2);
-            narrow_phase.handle_removal(queued, objects, first, second);
+            pairs.push(in_order(handle1, handle2));
         });
-        for &handle in handles {
-            if objects.bodies.at(handle.index()).has_self_pair {
-                narrow_phase.handle_removal(queued, objects, handle, handle);
-            }
+        let bodies = handles.iter().filter_map(|handle| self.objects.body(handle.index()));
+        let alone = bodies.filter(|body| body.has_self_pair());
+        pairs.extend(alone.map(|body| (body.handle, body.handle)));
+        for (first, second) in pairs {
+            self.narrow_phase.handle_removal(&mut self.queued, &self.objects, first, second);
+            self.give_back((first, second));
         }
         for &handle in handles {
             self.objects.remove(handle);
@@ -193,10 +196,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         position: N::Isometry,
     ) -> Result<(), WorldError> {
-        self.objects.fresh(handle)?;
-        (N::tables().world.set_isometry)(&mut self.objects.bodies, handle.index(), position)?;
-        self.objects.fresh(handle)?.position = position;
-        Ok(())
+        let (body, changes) = self.objects.fresh(handle)?;
+        (N::tables().world.set_isometry)(body, changes, position)
     }
 
     /// Moves many objects: all of them or, on an error, none. Of several positions for one object
@@ -246,8 +247,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         shape: ShapeHandle<N, D>,
     ) -> Result<(), WorldError> {
-        self.objects.fresh(handle)?.shape = shape.clone();
-        (N::tables().world.set_shape)(&mut self.objects.bodies, handle.index(), shape);
+        let (body, changes) = self.objects.fresh(handle)?;
+        (N::tables().world.set_shape)(body, changes, shape);
         Ok(())
     }
 
@@ -270,8 +271,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         groups: CollisionGroups,
     ) -> Result<(), WorldError> {
-        self.objects.fresh(handle)?.collision_groups = groups;
-        self.objects.bodies.set_groups(handle.index(), groups);
+        let (body, changes) = self.objects.fresh(handle)?;
+        body.set_groups(changes, groups);
         Ok(())
     }
 
@@ -299,9 +300,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         query_type: GeometricQueryType<N>,
     ) -> Result<(), WorldError> {
-        let object = self.objects.fresh(handle)?;
-        object.query_type = usable_query(query_type)?;
-        self.objects.bodies.set_query(handle.index(), query_type);
+        let (body, changes) = self.objects.fresh(handle)?;
+        (N::tables().world.set_query)(body, changes, usable_query(query_type)?);
         Ok(())
     }
 

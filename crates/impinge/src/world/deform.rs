@@ -56,8 +56,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         change: impl FnOnce(&mut S) -> R,
     ) -> Result<R, WorldError> {
-        let object = self.objects.fresh(handle)?;
-        let shape = object.shape.as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
+        let (body, _) = self.objects.fresh(handle)?;
+        let shape = body.shape.as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
         let mut shape = shape.clone();
         let result = change(&mut shape);
         self.try_set_shape(handle, ShapeHandle::new(shape))?;

@@ -12,13 +12,63 @@ const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 /// Two objects interact if each is a member of at least one group that the other whitelists, and
 /// neither is a member of a group that the other blacklists: the blacklist wins. Groups are
 /// numbered 0 to 29.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Spelled", into = "Spelled"))]
 pub struct CollisionGroups {
+    /// The lowest thirty bits, as in all masks; above them [`SELF_COLLISION`].
+    membership: u32,
+    whitelist: u32,
+    blacklist: u32,
+}
+
+/// The bit that says that the object is tested against itself: it stands where no group does, since every
+/// object has groups and four bytes more would count.
+const SELF_COLLISION: u32 = 1 << 31;
+
+/// Groups with every fact in a field of its own: how they are written and shown.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename = "CollisionGroups"))]
+struct Spelled {
     membership: u32,
     whitelist: u32,
     blacklist: u32,
     self_collision: bool,
+}
+
+impl From<CollisionGroups> for Spelled {
+    fn from(groups: CollisionGroups) -> Self {
+        let CollisionGroups { membership, whitelist, blacklist } = groups;
+        let self_collision = groups.can_interact_with_self();
+        Self { membership: membership & ALL_GROUPS, whitelist, blacklist, self_collision }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Spelled> for CollisionGroups {
+    fn from(spelled: Spelled) -> Self {
+        // Bits of groups that there are not mean nothing.
+        let [membership, whitelist, blacklist] =
+            [spelled.membership, spelled.whitelist, spelled.blacklist]
+                .map(|mask| mask & ALL_GROUPS);
+        let mut groups = Self { membership, whitelist, blacklist };
+        if spelled.self_collision {
+            groups.enable_self_collision();
+        }
+        groups
+    }
+}
+
+impl fmt::Debug for CollisionGroups {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Spelled { membership, whitelist, blacklist, self_collision } = (*self).into();
+        f.debug_struct("CollisionGroups")
+            .field("membership", &membership)
+            .field("whitelist", &whitelist)
+            .field("blacklist", &blacklist)
+            .field("self_collision", &self_collision)
+            .finish()
+    }
 }
 
 /// A group number above 29.
@@ -72,7 +122,7 @@ impl CollisionGroups {
     /// Member of all groups, whitelists all, blacklists none; no self-collision.
     #[must_use]
     pub const fn new() -> Self {
-        Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0, self_collision: false }
+        Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0 }
     }
 
     /// Makes the object a member of these groups and no others.
@@ -89,7 +139,7 @@ impl CollisionGroups {
     /// # Errors
     /// On a group above 29; nothing is changed then.
     pub fn try_set_membership(&mut self, groups: &[usize]) -> Result<(), GroupError> {
-        self.membership = mask(groups)?;
+        self.membership = self.membership & SELF_COLLISION | mask(groups)?;
         Ok(())
     }
 
@@ -185,7 +235,8 @@ impl CollisionGroups {
 
     /// Takes over the membership of other groups.
     pub const fn copy_membership(&mut self, other: &Self) {
-        self.membership = other.membership;
+        let own = self.membership & SELF_COLLISION;
+        self.membership = own | other.membership & ALL_GROUPS;
     }
 
     /// Takes over the whitelist of other groups.
@@ -221,12 +272,12 @@ impl CollisionGroups {
     /// ([`CompositeShape::are_adjacent`](crate::shape::CompositeShape::are_adjacent)); a convex solid
     /// never touches itself. No filter is asked. Off by default.
     pub const fn enable_self_collision(&mut self) {
-        self.self_collision = true;
+        self.membership |= SELF_COLLISION;
     }
 
     /// Keeps the narrow phase from querying the object against itself.
     pub const fn disable_self_collision(&mut self) {
-        self.self_collision = false;
+        self.membership &= !SELF_COLLISION;
     }
 
     /// Objects with these groups and with `other`'s may interact. Symmetric.
@@ -242,7 +293,7 @@ impl CollisionGroups {
     /// The object may be queried against itself.
     #[must_use]
     pub const fn can_interact_with_self(&self) -> bool {
-        self.self_collision
+        self.membership & SELF_COLLISION != 0
     }
 }
 
@@ -282,6 +333,16 @@ mod tests {
         assert_eq!(groups, CollisionGroups::new(), "and no longer");
         groups.enable_self_collision();
         assert!(groups.can_interact_with_self(), "on");
+        groups.set_membership(&[]);
+        groups.modify_membership(0, true);
+        groups.copy_membership(&CollisionGroups::new());
+        assert!(groups.can_interact_with_self(), "whatever the groups");
+        assert!((0..=29).all(|g| groups.is_member_of(g)), "which it does not alter");
+        assert!(!groups.is_member_of(31), "31 is no group");
+        groups.set_whitelist(&[]);
+        assert!(!groups.can_interact_with_groups(&groups), "nor is it one that could be met");
+        groups.disable_self_collision();
+        assert!(!groups.can_interact_with_self(), "off");
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! One object that is told, at each update, who touches whom, where, and since when.
 //!
-//! The world is a thin shell around the two phases. What a step reads of the objects lies apart from
-//! the users' data (`bodies`: as the user left them; the table of the narrow phase: as of the last
-//! update); the users' records are read only by filters and by those who ask.
+//! The world is a thin shell around the two phases. Each object is one record: what the user said, as
+//! they left it (`bodies`), and the user's data. The phases have what they need as of the last update: the
+//! broad phase the boxes, the table of the narrow phase the poses and shapes of objects that have pairs.
 
 mod bodies;
 mod collision_world;
@@ -18,7 +18,7 @@ mod queries;
 mod step;
 mod validate;
 
-pub(crate) use bodies::{Bodies, WorldBroadPhase};
+pub(crate) use bodies::{Body, ChangeList, Readers, WorldBroadPhase};
 pub use collision_world::CollisionWorld;
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;

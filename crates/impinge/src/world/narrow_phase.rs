@@ -34,7 +34,7 @@ pub type ContactViews<'a, N, const D: usize> = Box<
 /// query type, [`Self::handle_interaction`] for each pair that started or stopped, then
 /// [`Self::update`]. In all calls `handle1 < handle2`, except that both are the same for an object that
 /// is tested against itself, and [`CollisionObjects::table`] has the poses,
-/// shapes and query types that the call is about.
+/// shapes and query types that the call is about, and those of all objects with pairs.
 pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     /// Computes all contacts and proximities, with the events of what changed.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
@@ -68,6 +68,13 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         objects: &CollisionObjects<N, D, T>,
         handle: CollisionObjectHandle,
     );
+
+    /// Whether a pair of the object is kept. Once there is none, the world takes back what it lends to the
+    /// narrow phase of the object; one that does not use [`CollisionObjects::table`] need not say.
+    fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
+        let _ = handle;
+        true
+    }
 
     /// Where the names of contacts come from: handed on when another narrow phase takes over, so that
     /// no name is given twice.
@@ -163,6 +170,10 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle: CollisionObjectHandle,
     ) {
         (N::tables().world.object_changed)(self, objects.table(), handle.index(), events);
+    }
+
+    fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
+        self.has_pairs(handle.index())
     }
 
     fn ids(&mut self) -> Option<&mut IdAllocator> {

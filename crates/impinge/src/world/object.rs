@@ -1,23 +1,18 @@
 //! What a world keeps for the user about one object.
 
+use super::CollisionGroups;
+use super::bodies::Body;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use crate::shape::ShapeHandle;
-
-use super::CollisionGroups;
 
 /// An object of a world, as the user described it.
 ///
 /// Only the user's data can be changed through it; the rest is changed through the world, by handle.
 #[derive(Debug)]
 pub struct CollisionObject<N: Space<D>, const D: usize, T> {
-    pub(super) handle: CollisionObjectHandle,
-    pub(super) proxy_handle: ProxyHandle,
-    pub(super) position: N::Isometry,
-    pub(super) shape: ShapeHandle<N, D>,
-    pub(super) collision_groups: CollisionGroups,
-    pub(super) query_type: GeometricQueryType<N>,
+    pub(super) body: Body<N, D>,
     pub(super) data: T,
 }
 
@@ -25,38 +20,38 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
     /// The object's name in its world.
     #[must_use]
     pub const fn handle(&self) -> CollisionObjectHandle {
-        self.handle
+        self.body.handle
     }
 
     /// The name of the object's volume in the broad phase; another after the broad phase or the
     /// narrow phase of the world was replaced.
     #[must_use]
     pub const fn proxy_handle(&self) -> ProxyHandle {
-        self.proxy_handle
+        self.body.proxy
     }
 
     /// Where the object is, as it was given.
     #[must_use]
     pub const fn position(&self) -> &N::Isometry {
-        &self.position
+        &self.body.isometry
     }
 
     /// The shape.
     #[must_use]
     pub const fn shape(&self) -> &ShapeHandle<N, D> {
-        &self.shape
+        &self.body.shape
     }
 
     /// The groups.
     #[must_use]
     pub const fn collision_groups(&self) -> &CollisionGroups {
-        &self.collision_groups
+        &self.body.groups
     }
 
     /// What is asked of the object's pairs.
     #[must_use]
     pub const fn query_type(&self) -> GeometricQueryType<N> {
-        self.query_type
+        self.body.query
     }
 
     /// The user's data.

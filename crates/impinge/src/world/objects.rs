@@ -1,12 +1,15 @@
-//! The objects of a world: the handle table, the users' records, and what a step reads of them.
+//! The objects of a world: the handle table with the records, and what the narrow phase reads of them.
 
-use super::bodies::{Bodies, Body};
+use super::bodies::{Body, ChangeList, Readers, WorldBroadPhase};
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
+
+/// More objects than this have no handles: as many changes can be listed.
+const MOST: u32 = (1 << 31) - 1;
 
 /// The objects of a world, by handle.
 ///
@@ -18,15 +21,17 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// Indices without an object, the next one to be used at the end.
     free: Vec<u32>,
     count: usize,
-    pub(super) bodies: Bodies<N, D>,
+    pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
 }
 
+/// An object, or the generation of the next one. No larger than the object: an absent one shows by a
+/// pointer that no shape has.
 #[derive(Debug)]
-struct Slot<N: Space<D>, const D: usize, T> {
-    /// That of the object here, or of the next one.
-    generation: u32,
-    object: Option<CollisionObject<N, D, T>>,
+#[expect(clippy::large_enum_variant, reason = "nearly all are objects")]
+enum Slot<N: Space<D>, const D: usize, T> {
+    Free(u32),
+    Taken(CollisionObject<N, D, T>),
 }
 
 /// What the user says about a new object.
@@ -38,13 +43,29 @@ pub(super) struct Description<N: Space<D>, const D: usize, T> {
     pub(super) data: T,
 }
 
+impl<N: Space<D>, const D: usize, T> Slot<N, D, T> {
+    const fn object(&self) -> Option<&CollisionObject<N, D, T>> {
+        match self {
+            Self::Taken(object) => Some(object),
+            Self::Free(_) => None,
+        }
+    }
+
+    const fn object_mut(&mut self) -> Option<&mut CollisionObject<N, D, T>> {
+        match self {
+            Self::Taken(object) => Some(object),
+            Self::Free(_) => None,
+        }
+    }
+}
+
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    pub(super) fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             slots: Vec::new(),
             free: Vec::new(),
             count: 0,
-            bodies: Bodies::new(),
+            changes: ChangeList::new(),
             table: ObjectTable::new(),
         }
     }
@@ -52,27 +73,42 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// The object of a handle; `None` for a stale one.
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
-        let slot = self.slots.get(handle.uid())?;
-        slot.object.as_ref().filter(|_| slot.generation == handle.generation())
+        self.slots.get(handle.uid())?.object().filter(|object| object.body.handle == handle)
     }
 
     pub(super) fn get_mut(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Option<&mut CollisionObject<N, D, T>> {
-        let slot = self.slots.get_mut(handle.uid())?;
-        slot.object.as_mut().filter(|_| slot.generation == handle.generation())
+        self.slots.get_mut(handle.uid())?.object_mut().filter(|object| object.body.handle == handle)
     }
 
-    /// The object at an index.
-    #[must_use]
-    pub(super) fn at(&self, index: u32) -> Option<&CollisionObject<N, D, T>> {
-        self.slots.get(index as usize)?.object.as_ref()
+    /// What is kept of the object at an index, if there is one.
+    pub(super) fn body(&self, index: u32) -> Option<&Body<N, D>> {
+        self.slots.get(index as usize)?.object().map(|object| &object.body)
+    }
+
+    /// What is kept of all objects, in order.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = &Body<N, D>> {
+        self.iter().map(|object| &object.body)
+    }
+
+    /// The living objects that queries must test themselves and their exact boxes, in no particular
+    /// order.
+    pub(super) fn astray(&self) -> impl Iterator<Item = (&Body<N, D>, &Aabb<N, D>)> {
+        self.changes.astray().filter_map(|(index, aabb)| Some((self.body(index)?, aabb)))
+    }
+
+    /// The groups of both objects allow the pair.
+    #[inline]
+    pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
+        let both = self.body(index1).zip(self.body(index2));
+        both.is_some_and(|(one, two)| one.groups.can_interact_with_groups(&two.groups))
     }
 
     /// The objects, in order of their handles.
     pub fn iter(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
-        self.slots.iter().filter_map(|slot| slot.object.as_ref())
+        self.slots.iter().filter_map(Slot::object)
     }
 
     /// How many objects there are.
@@ -93,25 +129,27 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         &self.table
     }
 
-    /// The object of a handle, or the error that says that the handle is stale.
+    /// The object of a handle and the list of changes, or the error that says that the handle is stale.
     pub(super) fn fresh(
         &mut self,
         handle: CollisionObjectHandle,
-    ) -> Result<&mut CollisionObject<N, D, T>, WorldError> {
-        self.get_mut(handle).ok_or(WorldError::StaleHandle(handle))
+    ) -> Result<(&mut Body<N, D>, &mut ChangeList<N, D>), WorldError> {
+        let slot = self.slots.get_mut(handle.uid());
+        let object = slot.and_then(Slot::object_mut).filter(|object| object.body.handle == handle);
+        let object = object.ok_or(WorldError::StaleHandle(handle))?;
+        Ok((&mut object.body, &mut self.changes))
     }
 
     /// The handle that the next object will have.
     pub(super) fn next_handle(&self) -> Result<CollisionObjectHandle, WorldError> {
         if let Some(&index) = self.free.last() {
-            return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
+            let Slot::Free(generation) = self.slots[index as usize] else {
+                unreachable!("the list names slots without objects")
+            };
+            return Ok(CollisionObjectHandle::new(index, generation));
         }
-        let index = u32::try_from(self.slots.len()).map_err(|_| WorldError::Full)?;
-        if index == u32::MAX {
-            Err(WorldError::Full)
-        } else {
-            Ok(CollisionObjectHandle::new(index, 0))
-        }
+        let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MOST);
+        Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, 0))
     }
 
     /// Stores an object under the next handle.
@@ -121,44 +159,64 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         new: Description<N, D, T>,
         proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
     ) {
-        let Description { position, shape, groups: collision_groups, query_type, data } = new;
-        let row = ObjectRow { handle, isometry: position, shape: shape.clone(), query: query_type };
-        let body = Body::new(row, collision_groups, proxy);
-        let proxy_handle = body.proxy;
-        self.bodies.insert(body);
-        let object = CollisionObject {
-            handle,
-            proxy_handle,
-            position,
-            shape,
-            collision_groups,
-            query_type,
-            data,
-        };
+        let Description { position, shape, groups, query_type, data } = new;
+        let row = ObjectRow { handle, isometry: position, shape, query: query_type };
+        let body = self.changes.admit(row, groups, proxy);
+        let slot = Slot::Taken(CollisionObject { body, data });
         self.count += 1;
         if self.free.pop().is_some() {
-            self.slots[handle.uid()].object = Some(object);
+            self.slots[handle.uid()] = slot;
         } else {
-            self.slots.push(Slot { generation: 0, object: Some(object) });
+            self.slots.push(slot);
         }
     }
 
-    /// Forgets an object; its row in the table stays until the index is used again.
+    /// Forgets an object.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) {
-        let slot = &mut self.slots[handle.uid()];
-        slot.object = None;
+        let next = handle.generation().checked_add(1);
+        let free = Slot::Free(next.unwrap_or(u32::MAX));
+        let slot = core::mem::replace(&mut self.slots[handle.uid()], free);
+        if let Some(object) = slot.object() {
+            self.changes.forget(&object.body);
+        }
+        self.table.release(handle.index());
         self.count -= 1;
-        self.bodies.remove(handle.index());
-        if let Some(next) = slot.generation.checked_add(1) {
-            slot.generation = next;
+        if next.is_some() {
             self.free.push(handle.index());
         }
     }
 
+    /// Hands the changes since the last update to the table and the broad phase, in order of index,
+    /// and forgets them. Leaves in `algorithms` the objects whose pairs need other algorithms.
+    pub(super) fn flush(
+        &mut self,
+        broad_phase: &mut WorldBroadPhase<N, D>,
+        algorithms: &mut Vec<u32>,
+    ) {
+        let Self { slots, changes, table, .. } = self;
+        table.begin_update();
+        algorithms.clear();
+        let mut readers = Readers { table, broad_phase, algorithms };
+        let order = changes.take_order();
+        for &index in &order {
+            if let Slot::Taken(object) = &mut slots[index as usize] {
+                (N::tables().world.flush)(&mut object.body, changes, &mut readers);
+            }
+        }
+        changes.clear(order);
+    }
+
+    /// Gives the narrow phase what it reads of an object, if it has not got it yet.
+    pub(super) fn lend(&mut self, index: u32) {
+        let object = self.slots.get(index as usize).and_then(Slot::object);
+        if let Some(object) = object {
+            self.table.lend(index, || object.body.row());
+        }
+    }
+
     pub(super) fn set_proxy(&mut self, handle: CollisionObjectHandle, proxy: ProxyHandle) {
-        self.bodies.set_proxy(handle.index(), proxy);
         if let Some(object) = self.get_mut(handle) {
-            object.proxy_handle = proxy;
+            object.body.proxy = proxy;
         }
     }
 
@@ -167,48 +225,35 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         if self.iter().count() != self.count {
             return Err(format!("the count of objects, {}, is wrong", self.count));
         }
-        if self.slots.len() != self.bodies.len() {
-            return Err(format!("{} slots, {} copies", self.slots.len(), self.bodies.len()));
-        }
         for (index, slot) in (0..).zip(&self.slots) {
-            let body = self.bodies.at(index);
-            if slot.object.is_some() != body.alive {
-                return Err(format!("slot {index} and its copy disagree on whether it is alive"));
+            let Slot::Taken(CollisionObject { body, .. }) = slot else { continue };
+            self.changes.validate(body)?;
+            if body.index() != index {
+                return Err(format!("{:?} stands in slot {index}", body.handle));
             }
-            let Some(object) = &slot.object else { continue };
-            let handle = CollisionObjectHandle::new(index, slot.generation);
-            let same = object.handle == handle
-                && body.handle == handle
-                && object.position == body.isometry
-                && object.proxy_handle == body.proxy
-                && object.shape.is_same(&body.shape)
-                && object.query_type == body.query
-                && object.collision_groups == body.groups;
-            if !same {
-                return Err(format!("the record of {handle:?} and its copy differ"));
-            }
-            if !body.is_astray() && !self.is_row_of(body) {
-                return Err(format!("the row of {handle:?} is out of date"));
+            if !self.changes.is_astray(body) && !self.is_row_of(body) {
+                return Err(format!("the row of {:?} is out of date", body.handle));
             }
         }
+        self.table.validate()?;
         self.validate_free()
     }
 
-    /// The table's row is that of an object.
+    /// The table's row, if there is one, is that of an object.
     fn is_row_of(&self, body: &Body<N, D>) -> bool {
-        let index = body.handle.index();
-        body.handle.uid() < self.table.len()
-            && self.table.handle(index) == body.handle
-            && self.table.isometry(index) == &body.isometry
-            && self.table.shape(index).is_same(&body.shape)
-            && self.table.query(index) == body.query
+        let index = body.index();
+        !self.table.has_row(index)
+            || self.table.handle(index) == body.handle
+                && self.table.isometry(index) == &body.isometry
+                && self.table.shape(index).is_same(&body.shape)
+                && self.table.query(index) == body.query
     }
 
     fn validate_free(&self) -> Result<(), String> {
         let mut free = self.free.clone();
         free.sort_unstable();
         free.dedup();
-        let used = free.iter().find(|&&index| self.at(index).is_some());
+        let used = free.iter().find(|&&index| self.body(index).is_some());
         if let Some(index) = used {
             return Err(format!("index {index} is in use and free"));
         }

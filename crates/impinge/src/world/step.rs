@@ -1,11 +1,11 @@
 //! One update of a world, and the exchange of its phases.
 
-use super::{CollisionObjects, CollisionWorld, NarrowPhase, WorldBroadPhase};
+use super::{CollisionWorld, NarrowPhase, WorldBroadPhase};
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, ContactEvent, Events, ProximityEvent};
 use crate::query::Proximity;
 
-type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
+pub(super) type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Finds out what the changes since the last update have led to: pairs, contacts, proximities,
@@ -18,7 +18,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.update_with_other_phases();
         } else {
             self.write_changes();
-            self.update_broad_phase(&mut |_| {});
+            self.update_broad_phase();
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
         self.events.sort();
@@ -26,25 +26,23 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Brings what the phases read of the objects up to date.
     fn write_changes(&mut self) {
-        let CollisionObjects { bodies, table, .. } = &mut self.objects;
-        (N::tables().world.flush)(bodies, table, &mut *self.broad_phase, &mut self.algorithms);
-        for (handle, started) in bodies.take_self_changes() {
-            let (events, objects) = (&mut self.events, &self.objects);
-            self.narrow_phase.handle_interaction(events, objects, handle, handle, started);
+        self.objects.flush(&mut *self.broad_phase, &mut self.algorithms);
+        for index in self.objects.changes.take_self_changed() {
+            let body = self.objects.body(index).expect("what changed in the update is there");
+            let (handle, started) = (body.handle, body.has_self_pair());
+            self.tell((handle, handle), started);
         }
         for &index in &self.algorithms {
-            let handle = self.objects.bodies.at(index).handle;
-            self.narrow_phase.handle_change(&mut self.events, &self.objects, handle);
+            let body = self.objects.body(index).expect("what changed in the update is there");
+            self.narrow_phase.handle_change(&mut self.events, &self.objects, body.handle);
         }
     }
 
-    /// Lets the broad phase find what started and stopped and tells the narrow phase; `started` sees
-    /// each pair that started.
-    fn update_broad_phase(&mut self, started: &mut dyn FnMut(HandlePair)) {
-        let Self { objects, filters, broad_phase, narrow_phase, events, .. } = self;
-        let objects = &*objects;
+    /// Lets the broad phase find what started and stopped, in `interactions`, and tells the narrow phase.
+    fn update_broad_phase(&mut self) {
+        let Self { objects, filters, broad_phase, interactions, .. } = self;
         let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
-            if !objects.bodies.can_interact(handle1.index(), handle2.index()) {
+            if !objects.can_interact(handle1.index(), handle2.index()) {
                 return false;
             }
             if filters.is_empty() {
@@ -54,13 +52,40 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             let both = objects.get(first).zip(objects.get(second));
             both.is_some_and(|(co1, co2)| filters.allow(co1, co2))
         };
+        interactions.clear();
         broad_phase.update(&mut filter, &mut |&handle1, &handle2, has_started| {
-            let (first, second) = in_order(handle1, handle2);
-            narrow_phase.handle_interaction(events, objects, first, second, has_started);
-            if has_started {
-                started((first, second));
-            }
+            interactions.push((in_order(handle1, handle2), has_started));
         });
+        let interactions = core::mem::take(&mut self.interactions);
+        for &(pair, has_started) in &interactions {
+            self.tell(pair, has_started);
+        }
+        self.interactions = interactions;
+    }
+
+    /// Tells the narrow phase that a pair started or stopped. It has the rows of its pairs' objects and no
+    /// others.
+    fn tell(&mut self, pair: HandlePair, has_started: bool) {
+        let (first, second) = pair;
+        if has_started {
+            self.objects.lend(first.index());
+            self.objects.lend(second.index());
+        }
+        let (events, objects) = (&mut self.events, &self.objects);
+        self.narrow_phase.handle_interaction(events, objects, first, second, has_started);
+        if !has_started {
+            self.give_back(pair);
+        }
+    }
+
+    /// Takes back what the narrow phase read of the objects of a pair that stopped, if it has no other
+    /// pair of theirs.
+    pub(super) fn give_back(&mut self, (first, second): HandlePair) {
+        for handle in [first, second] {
+            if !self.narrow_phase.has_pairs_of(handle) {
+                self.objects.table.release(handle.index());
+            }
+        }
     }
 }
 
@@ -113,14 +138,15 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             core::mem::swap(old, new);
         }
         self.narrow_phase = narrow_phase;
-        self.renew_proxies();
+        let pairs = self.renew_proxies();
         self.write_changes();
-        for handle in self.objects.bodies.with_self_pairs() {
+        let alone = self.objects.bodies().filter(|body| body.has_self_pair());
+        for handle in alone.map(|body| body.handle).collect::<Vec<_>>() {
             // Known already, if it only now began.
-            let (events, objects) = (&mut self.events, &self.objects);
-            self.narrow_phase.handle_interaction(events, objects, handle, handle, true);
+            self.tell((handle, handle), true);
         }
         self.started_pairs();
+        pairs.into_iter().for_each(|pair| self.give_back(pair));
         self.narrow_phase.update(&self.objects, &mut Events::default());
         push_differences(&before, &self.statuses(), &mut self.events);
     }
@@ -128,7 +154,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Makes a proxy for every object, in the next broad phase if there is one. Answers which pairs
     /// there were.
     fn renew_proxies(&mut self) -> Vec<HandlePair> {
-        let known = self.objects.iter().map(|object| (object.handle, object.proxy_handle));
+        let known = self.objects.bodies().map(|body| (body.handle, body.proxy));
         let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
         let mut pairs = Vec::new();
         self.broad_phase.remove(&proxies, &mut |&handle1, &handle2| {
@@ -138,7 +164,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.broad_phase = broad_phase;
         }
         for handle in handles {
-            let volume = self.objects.bodies.at(handle.index()).volume();
+            let body = self.objects.body(handle.index()).expect("it was listed as there");
+            let volume = body.volume();
             let proxy = self.broad_phase.create_proxy(volume, handle);
             self.objects.set_proxy(handle, proxy);
         }
@@ -147,18 +174,18 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Updates the broad phase and answers which pairs started, sorted.
     fn started_pairs(&mut self) -> Vec<HandlePair> {
-        let mut pairs = Vec::new();
-        self.update_broad_phase(&mut |pair| pairs.push(pair));
+        self.update_broad_phase();
+        let started = self.interactions.iter().filter(|(_, has_started)| *has_started);
+        let mut pairs: Vec<_> = started.map(|&(pair, _)| pair).collect();
         pairs.sort_unstable();
         pairs
     }
 
     /// Stops the pairs of `before` that are not in the sorted list `now`.
     fn stop_all_but(&mut self, now: &[HandlePair], before: Vec<HandlePair>) {
-        let (objects, events) = (&self.objects, &mut self.events);
-        for (handle1, handle2) in before {
-            if now.binary_search(&(handle1, handle2)).is_err() {
-                self.narrow_phase.handle_interaction(events, objects, handle1, handle2, false);
+        for pair in before {
+            if now.binary_search(&pair).is_err() {
+                self.tell(pair, false);
             }
         }
     }

@@ -15,8 +15,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     #[doc(hidden)]
     pub fn validate(&self) -> Result<(), String> {
         self.objects.validate()?;
-        let contacts = self.contact_pairs().map(|(a, b, _)| (a.handle, b.handle));
-        let proximities = self.proximity_pairs().map(|(a, b, _)| (a.handle, b.handle));
+        let contacts = self.contact_pairs().map(|(a, b, _)| (a.handle(), b.handle()));
+        let proximities = self.proximity_pairs().map(|(a, b, _)| (a.handle(), b.handle()));
         let mut known: Vec<_> = contacts.chain(proximities).collect();
         known.sort_unstable();
         if known.windows(2).any(|two| two[0] == two[1]) {
@@ -35,9 +35,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// The allowed pairs whose volumes meet.
     fn expected_pairs(&self) -> Vec<(CollisionObjectHandle, CollisionObjectHandle)> {
-        let bodies: Vec<_> = self.objects.bodies.iter().collect();
-        let mut pairs: Vec<_> =
-            self.objects.bodies.with_self_pairs().map(|handle| (handle, handle)).collect();
+        let bodies: Vec<_> = self.objects.bodies().collect();
+        let alone = bodies.iter().filter(|body| body.has_self_pair());
+        let mut pairs: Vec<_> = alone.map(|body| (body.handle, body.handle)).collect();
         for (place, first) in bodies.iter().enumerate() {
             let volume = first.volume();
             let meets = |second: &&Body<N, D>| volume.intersects(&second.volume());
@@ -51,10 +51,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Groups and filters allow the pair.
     fn is_allowed(&self, handle1: CollisionObjectHandle, handle2: CollisionObjectHandle) -> bool {
         if handle1 == handle2 {
-            return self.objects.bodies.at(handle1.index()).wants_self_pair();
+            return self.objects.body(handle1.index()).is_some_and(Body::wants_self_pair);
         }
         let both = self.objects.get(handle1).zip(self.objects.get(handle2));
-        self.objects.bodies.can_interact(handle1.index(), handle2.index())
+        self.objects.can_interact(handle1.index(), handle2.index())
             && both.is_some_and(|(co1, co2)| self.filters.allow(co1, co2))
     }
 }

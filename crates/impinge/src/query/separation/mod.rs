@@ -27,6 +27,7 @@ mod flat_core;
 mod general;
 mod hulls;
 mod outline;
+mod overlap;
 mod plane_any;
 mod polygon_polygon;
 pub(super) mod projection;
@@ -45,6 +46,7 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
+pub(crate) use overlap::certainly_overlap;
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
 pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};

@@ -16,8 +16,9 @@ use core::fmt;
 
 pub use filter::QueryFilter;
 
-use super::bodies::Body;
+use super::bodies::{Body, grown};
 use super::{CollisionObject, CollisionWorld};
+use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::ClosestPoints;
@@ -61,11 +62,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn candidates<'a>(
         &'a self,
         found: Vec<&CollisionObjectHandle>,
-        may: &dyn Fn(&Body<N, D>) -> bool,
+        may: &dyn Fn(&Aabb<N, D>) -> bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
         let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
-        let astray = self.objects.bodies.astray().filter(|body| may(body));
+        let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(body, _)| body);
         let allowed = settled.chain(astray).filter(|body| self.allows(body, filter));
         let mut bodies: Vec<_> = allowed.collect();
         bodies.sort_unstable_by_key(|body| body.handle);
@@ -79,11 +80,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// The object of a handle of the broad phase, if it lives and is where it was at the last update.
     fn settled(&self, handle: CollisionObjectHandle) -> Option<&Body<N, D>> {
-        let body = self.body(handle);
-        (body.alive && body.handle == handle && !body.is_astray()).then_some(body)
+        let body = &self.objects.get(handle)?.body;
+        (!self.objects.changes.is_astray(body)).then_some(body)
     }
 
-    fn body(&self, handle: CollisionObjectHandle) -> &Body<N, D> {
-        self.objects.bodies.at(handle.index())
+    /// The living objects of which the broad phase does not know where they are, and their volumes.
+    fn astray(&self) -> impl Iterator<Item = (&Body<N, D>, Aabb<N, D>)> {
+        let astray = self.objects.astray();
+        astray.map(|(body, aabb)| (body, grown(aabb, body.query.query_limit())))
     }
 }

@@ -30,7 +30,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let (point, mut found) = (*point, Vec::new());
         self.broad_phase.interferences_with_point(&point, &mut found);
-        let may = |body: &Body<N, D>| BoundingVolume::contains_point(&body.volume(), &point);
+        let may = |volume: &Aabb<N, D>| BoundingVolume::contains_point(volume, &point);
         self.candidates(found, &may, filter)
             .filter(move |body| holds(body, &point))
             .filter_map(move |body| self.record(body))

@@ -28,7 +28,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (ray, mut found) = (*ray, Vec::new());
         self.broad_phase.interferences_with_ray(&ray, &mut found);
         let probe = Probe::Ray(ray);
-        self.candidates(found, &|body| probe.meets(&body.volume()), &groups.into()).filter_map(
+        self.candidates(found, &|volume| probe.meets(volume), &groups.into()).filter_map(
             move |body| {
                 let hit = cast(body, &ray, N::INFINITY, true)?;
                 Some((self.record(body)?, hit))

@@ -39,7 +39,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (aabb, mut found) = (*aabb, Vec::new());
         self.broad_phase.interferences_with_bounding_volume(&aabb, &mut found);
         self.candidates(found, &|_| true, filter)
-            .filter(move |body| body.aabb.intersects(&aabb))
+            .filter(move |body| body.aabb().intersects(&aabb))
             .filter_map(move |body| self.record(body))
     }
 
@@ -79,7 +79,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         if let Some(aabb) = &aabb {
             self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
         }
-        let may = |body: &Body<N, D>| aabb.is_some_and(|aabb| body.volume().intersects(&aabb));
+        let may = |volume: &Aabb<N, D>| aabb.is_some_and(|aabb| volume.intersects(&aabb));
         self.candidates(found, &may, filter)
             .filter(move |body| separation(&placed, body, N::ZERO).is_some())
             .filter_map(move |body| self.record(body))
