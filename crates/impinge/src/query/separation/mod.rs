@@ -21,6 +21,8 @@ pub(super) mod ball_tapered;
 mod ball_triangle;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
+mod cuboid_cylinder;
+mod cylinder_cylinder;
 mod flat_core;
 mod general;
 mod hulls;
