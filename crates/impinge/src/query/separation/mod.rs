@@ -27,6 +27,7 @@ mod flat_core;
 mod general;
 mod hulls;
 mod outline;
+mod outline_lanes;
 mod overlap;
 mod plane_any;
 mod polygon_polygon;

@@ -3,7 +3,6 @@
 use fearless_simd::Simd;
 
 use super::cloud::{Cloud, Heights, Place, highest_over};
-use super::edges::Crossing;
 use super::solid::Flat;
 use super::{Found, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
@@ -50,68 +49,67 @@ enum Seen<N: Real> {
 
 impl<N: Real> Meeting<'_, '_, N> {
     /// The answer; `None` if it is not proved.
+    ///
+    /// Edges are looked at twice: first those near the plane, which mostly decide and are few, then all
+    /// within reach. No closures: those are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
         let height = self.height();
-        match self.seen(self.lowest::<S, V>(simd)) {
-            Seen::Above(point) if height > N::ZERO => Some(self.at(&point)),
-            Seen::Above(point) => match self.crossing::<S, V>(simd, -height) {
-                None => Some(self.at(&point)),
-                Some(crossing) => self.decided::<S, V>(simd, &crossing, -height),
-            },
+        let (above, reaches) = match self.seen(self.lowest::<S, V>(simd)) {
+            Seen::Above(point) if height > N::ZERO => return Some(self.at(&point)),
+            Seen::Above(point) => (Some(self.at(&point)), [-height; 2]),
             Seen::Beside(reach) if height > N::ZERO => {
-                // Mostly edges decide that are little farther apart; points that prove it do so.
-                let little = min(height * N::TWO + N::lit(1.0 / 16.0), reach);
-                let found = self.nearest::<S, V>(simd, little);
-                found.or_else(|| self.nearest::<S, V>(simd, reach))
+                (None, [min(height * N::TWO + N::lit(1.0 / 16.0), reach), reach])
             }
-            Seen::Beside(reach) => self
-                .shallow::<S, V>(simd)
-                .or_else(|| self.thorough::<S, V>(simd, max(reach, -height))),
+            Seen::Beside(reach) => (None, [-height, max(reach, -height)]),
+        };
+        for reach in reaches {
+            let is_last = reach >= reaches[1];
+            let mut are_apart = height > N::ZERO;
+            if !are_apart {
+                let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
+                    if above.is_some() || is_last {
+                        return above;
+                    }
+                    continue;
+                };
+                let found = self.across::<S, V>(simd, &crossing);
+                if let Some(found) = found
+                    && (is_last || self.is_certain::<S, V>(simd, &found))
+                {
+                    return Some(found);
+                }
+                are_apart = found.is_none() && crossing.height > N::ZERO;
+            }
+            if are_apart {
+                let found = self.nearest::<S, V>(simd, reach);
+                if found.is_some() {
+                    return found;
+                }
+            }
+            if is_last {
+                return None;
+            }
         }
+        None
     }
 
-    /// The answer between edges that are no farther from the plane than a way out along the normal of the
-    /// face is long; if it is proved, and solids that overlap have a point in common.
+    /// Whether an answer across edges is one whatever other edges there are: the solids are apart, or
+    /// have a point in common, so that none farther from the plane than the way out along the normal of
+    /// the face can be better.
     #[inline(always)]
-    fn shallow<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
-        let crossing = self.crossing::<S, V>(simd, -self.height())?;
-        let found = self.across::<S, V>(simd, &crossing)?;
+    fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, found: &Found<N>) -> bool {
         let middle = (found.on_own + found.on_other) * N::HALF;
-        let is_common = found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle);
-        is_common.then_some(found)
-    }
-
-    /// The answer between any edges within reach.
-    #[inline(always)]
-    fn thorough<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> Option<Found<N>> {
-        let crossing = self.crossing::<S, V>(simd, reach)?;
-        self.decided::<S, V>(simd, &crossing, reach)
-    }
-
-    /// The answer across two edges, or that of the nearest ones if they part the solids but are not
-    /// themselves the nearest.
-    #[inline(always)]
-    fn decided<S: Simd, V: Wide<S, Scalar = N>>(
-        &self,
-        simd: S,
-        crossing: &Crossing<N>,
-        reach: N,
-    ) -> Option<Found<N>> {
-        match self.across::<S, V>(simd, crossing) {
-            None if crossing.height > N::ZERO => self.nearest::<S, V>(simd, reach),
-            found => found,
-        }
+        found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle)
     }
 
     /// Whether both solids hold a point, up to noise.
     #[inline(always)]
     fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
         let in_other = self.place.rotation.tr_mul(&(point - self.place.translation));
-        let above = |solid: &Flat<'_, N>, point| {
-            highest_over::<S, N, V>(simd, solid.planes, self.shrink, point)
-        };
-        above(self.own.solid, point) <= noise() && above(self.other.solid, &in_other) <= noise()
+        let (own, other) = (self.own.solid.planes, self.other.solid.planes);
+        highest_over::<S, N, V>(simd, own, self.shrink, point) <= noise()
+            && highest_over::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
     }
 
     /// How far the other solid lies above the plane of the face.
