@@ -3,6 +3,7 @@
 
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::math::{Pose, Space};
+use crate::memory::Look;
 use crate::shape::ShapeHandle;
 
 /// The row of an object that has none.
@@ -154,6 +155,18 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     #[inline]
     fn row(&self, index: u32) -> usize {
         self.rows[index as usize] as usize
+    }
+
+    /// Gives memory back that has not been needed for some time.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        look.fit(&mut self.rows);
+        look.fit(&mut self.handles);
+        look.fit(&mut self.poses);
+        look.fit(&mut self.shapes);
+        look.fit(&mut self.queries);
+        look.fit(&mut self.isometries);
+        look.fit(&mut self.is_written);
+        look.trim(&mut self.changed);
     }
 
     /// What is wrong with the rows, if anything.
