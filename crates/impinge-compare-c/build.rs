@@ -14,4 +14,24 @@ fn main() {
         "Box2D and Box3D would be raced with their assertions on: build in crates/impinge-compare, or \
          set CFLAGS='-O3 -DNDEBUG'"
     );
+    #[cfg(feature = "coal")]
+    coal();
+}
+
+/// Compiles the calls of Coal, which lies in the directories of COAL_PREFIX as wheels or packages install it.
+#[cfg(feature = "coal")]
+fn coal() {
+    println!("cargo::rerun-if-env-changed=COAL_PREFIX");
+    println!("cargo::rerun-if-changed=src/coal.cpp");
+    let prefixes = std::env::var_os("COAL_PREFIX").expect(
+        "COAL_PREFIX names the directories, separated by colons, with include and lib of Coal, Boost and Eigen",
+    );
+    let mut build = cc::Build::new();
+    build.cpp(true).std("c++17").flag("-O3").define("NDEBUG", None).warnings(false);
+    for prefix in std::env::split_paths(&prefixes) {
+        build.include(prefix.join("include")).include(prefix.join("include/eigen3"));
+        println!("cargo::rustc-link-search=native={}", prefix.join("lib").display());
+    }
+    build.file("src/coal.cpp").compile("impinge_coal");
+    println!("cargo::rustc-link-lib=dylib=coal");
 }

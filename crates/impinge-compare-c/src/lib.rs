@@ -1,12 +1,14 @@
 //! Rivals in C and C++ behind safe types, for `impinge-compare`.
 //!
-//! They are engines with dynamics, driven so that as little of it runs as can be; what each does
+//! Coal answers questions about two shapes. The others are engines with dynamics, driven so that as little of it runs as can be; what each does
 //! between two readings is said there. All run on the calling thread alone.
 
 #[cfg(feature = "box2d")]
 mod box2d;
 #[cfg(feature = "box3d")]
 mod box3d;
+#[cfg(feature = "coal")]
+mod coal;
 #[cfg(any(feature = "box2d", feature = "box3d"))]
 mod contacts;
 #[cfg(feature = "jolt")]
@@ -16,6 +18,8 @@ mod jolt;
 pub use box2d::Box2d;
 #[cfg(feature = "box3d")]
 pub use box3d::Box3d;
+#[cfg(feature = "coal")]
+pub use coal::{CoalPairs, CoalPose, CoalSolid};
 #[cfg(feature = "jolt")]
 pub use jolt::Jolt;
 
@@ -38,6 +42,7 @@ pub enum Recycling {
     On,
 }
 
+#[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 /// The pairs in order, each once.
 fn sorted(mut pairs: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
     for pair in &mut pairs {

@@ -119,6 +119,7 @@ pub(crate) struct PartitioningTables<N: Space<D>, const D: usize> {
     pub(crate) by_time: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) near_first: InOrderFn<N, D, Sweep<N, D>>,
     pub(crate) by_distance: InOrderFn<N, D, Aabb<N, D>>,
+    pub(crate) nearest_first: InOrderFn<N, D, Aabb<N, D>>,
 }
 
 type BuildFn<N, const D: usize> = fn(Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError>;
@@ -135,6 +136,7 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
             by_time: BoxTree::by_time,
             near_first: BoxTree::near_first,
             by_distance: BoxTree::by_distance,
+            nearest_first: BoxTree::nearest_first,
         }
     }
 }

@@ -5,13 +5,11 @@ use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::shape::{Cuboid, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use ncollide3d::pipeline as ncollide;
-use rapier3d::prelude as rapier;
 
 use crate::broad::swarm::{Cell, is_borderline};
 use crate::broad::{MARGIN, key};
-
-/// The sum over a pair of the distances at which boxes have contact points.
-const PREDICTION: f32 = 0.002;
+use crate::world::PREDICTION;
+pub use crate::world::rapier::space::Colliders as Rapier;
 
 /// A world of boxes.
 pub trait World: Send {
@@ -85,79 +83,35 @@ impl World for Ours {
     }
 
     fn touching(&self) -> Vec<u64> {
-        let manifolds = self.world.contact_manifolds();
-        let touching = manifolds.filter(|(_, _, manifold)| !manifold.is_empty());
+        let manifolds = self.world.contact_views();
+        let touching = manifolds.filter(|(_, _, manifold)| manifold.len() > 0);
         touching.map(|(a, b, _)| key(*a.data(), *b.data())).collect()
     }
 }
 
-/// A world of rapier: colliders without bodies, which cost it the least.
-pub struct Rapier {
-    islands: rapier::IslandManager,
-    broad_phase: rapier::BroadPhaseBvh,
-    narrow_phase: rapier::NarrowPhase,
-    bodies: rapier::RigidBodySet,
-    colliders: rapier::ColliderSet,
-    pipeline: rapier::CollisionPipeline,
-    handles: Vec<rapier::ColliderHandle>,
-}
-
-impl Rapier {
-    /// A world without boxes.
-    pub fn new() -> Self {
-        Self {
-            islands: rapier::IslandManager::new(),
-            broad_phase: rapier::BroadPhaseBvh::new(),
-            narrow_phase: rapier::NarrowPhase::new(),
-            bodies: rapier::RigidBodySet::new(),
-            colliders: rapier::ColliderSet::new(),
-            pipeline: rapier::CollisionPipeline::new(),
-            handles: Vec::new(),
-        }
-    }
-}
-
+/// Colliders without bodies, which cost it the least.
 impl World for Rapier {
     fn add(&mut self, cell: &Cell<3>) {
-        let number = self.handles.len();
         let [x, y, z] = cell.half;
-        let collider = rapier::ColliderBuilder::cuboid(x, y, z)
-            .translation(cell.center.into())
-            .active_collision_types(rapier::ActiveCollisionTypes::all())
-            .user_data(number as u128);
-        self.handles.push(self.colliders.insert(collider));
+        let collider = rapier3d::prelude::ColliderBuilder::cuboid(x, y, z);
+        self.add(collider.translation(cell.center.into()));
     }
 
     fn step(&mut self, moved: &[(u32, Cell<3>)]) {
         for (n, cell) in moved {
-            self.colliders[self.handles[*n as usize]].set_translation(cell.center.into());
+            self.get_mut(*n as usize).set_translation(cell.center.into());
         }
-        self.pipeline.step(
-            PREDICTION,
-            &mut self.islands,
-            &mut self.broad_phase,
-            &mut self.narrow_phase,
-            &mut self.bodies,
-            &mut self.colliders,
-            &(),
-            &(),
-        );
+        self.step();
     }
 
     fn read(&self) -> (usize, f32) {
-        let manifolds = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
-        let points = manifolds.flat_map(|manifold| &manifold.points);
-        points.fold((0, 0.0), |(count, sum), point| (count + 1, sum - point.dist))
+        let reading = self.read();
+        (reading.points, reading.depth as f32)
     }
 
     fn touching(&self) -> Vec<u64> {
-        let near = |pair: &&rapier::ContactPair| {
-            let mut points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
-            points.any(|point| point.dist <= PREDICTION)
-        };
-        let number = |handle: rapier::ColliderHandle| self.colliders[handle].user_data as u32;
-        let touching = self.narrow_phase.contact_pairs().filter(near);
-        touching.map(|pair| key(number(pair.collider1), number(pair.collider2))).collect()
+        let numbers = self.touching().into_iter();
+        numbers.map(|(a, b)| key(a as u32, b as u32)).collect()
     }
 }
 

@@ -16,6 +16,14 @@
 //! | time of impact | `impact` within 10 | `cast_shapes` | `time_of_impact` |
 //! | manifold | `PairManifoldGenerator` | `contact_manifolds` | a generator of `DefaultContactDispatcher` |
 //!
+//! With the feature `coal` Coal runs in space as well, in `f64`: `ComputeDistance` for distances,
+//! `ComputeCollision` with a security margin for contacts and proximity, `ComputeContactPatch` after it
+//! for manifolds, all pairs in one call from C++. Warm searches begin with the last direction. It has no
+//! time of impact, and throws for triangles.
+//!
+//! Left out: FCL, whose wheel can be asked for one pair at a time from Python alone, at a microsecond for
+//! each call, and from whose library Coal came.
+//!
 //! Single calls are given both placements, in the world; parry's manifold is given the second one in
 //! the frame of the first, and making it is part of the time. "impinge" is that call; its manifold is
 //! one in the world's frame, with all that belongs to a contact. "impinge world" is the batch: a world
@@ -43,6 +51,8 @@
 //! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --steps 8 --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
 //! ```
 
+#[cfg(feature = "coal")]
+mod coal;
 mod form;
 mod kernels;
 mod ncollide;
@@ -144,6 +154,8 @@ fn contest_in_space(pair: &Pair<3>, regime: Regime) -> Option<Vec<Box<dyn Conten
     ];
     contenders.extend(boxed(parry::space::Parry::new(pair, &poses)));
     contenders.extend(boxed(ncollide::space::Ncollide::new(pair, &poses)));
+    #[cfg(feature = "coal")]
+    contenders.extend(boxed(coal::Coal::new(pair, &poses)));
     Some(contenders)
 }
 

@@ -82,24 +82,13 @@ impl<const D: usize> Scene<D> {
         let mut random = Random(0x0a5c);
         let taken = BoxTree::from_boxes(&self.boxes.iter().map(aabb).collect::<Vec<_>>());
         let is_free = |corners: &Corners<D>| taken.overlapping(&aabb(corners)).is_empty();
-        let mut outside = || {
-            std::iter::repeat_with(|| random.point(self.edge))
-                .find(|&p| is_free(&(p, p)))
-                .expect("")
-        };
-        let outside: Vec<_> = (0..count).map(|_| outside()).collect();
-        let rays: Vec<Ray<D>> =
-            outside.iter().map(|&from| (from, random.direction().map(|x| x as f32))).collect();
+        let outside = random.many(count, |random| random.point(self.edge), |&p| is_free(&(p, p)));
+        let rays: Vec<Ray<D>> = outside.iter().map(|&from| (from, random.heading())).collect();
         let anywhere: Vec<_> = (0..count).map(|_| random.point(self.edge)).collect();
         let solids: Vec<_> = (0..count / 5).map(|_| random.solid(self.edge, 1.0)).collect();
-        let mut cast = || {
-            let solids = std::iter::repeat_with(|| random.solid(self.edge, 0.5));
-            let mut free = solids.filter(|(shape, placement)| is_free(&corners(shape, placement)));
-            free.next().expect("there is always a next one")
-        };
-        let casts: Vec<_> = (0..count / 5).map(|_| cast()).collect();
-        let casts: Vec<_> =
-            casts.into_iter().map(|solid| (solid, random.direction().map(|x| x as f32))).collect();
+        let small = |random: &mut Random| random.solid(self.edge, 0.5);
+        let casts = random.many(count / 5, small, |(shape, place)| is_free(&corners(shape, place)));
+        let casts = casts.into_iter().map(|solid| (solid, random.heading())).collect();
         let boxes = anywhere.iter().map(|&at| (at, at.map(|x| x + 2.0 * HALF as f32))).collect();
         vec![
             ("first on a ray", Questions::Rays(rays.clone(), self.reach)),
@@ -160,6 +149,21 @@ impl Random {
                 return v.map(|x| x / squared.sqrt());
             }
         }
+    }
+
+    /// A direction as the queries have it.
+    fn heading<const D: usize>(&mut self) -> [f32; D] {
+        self.direction().map(|x| x as f32)
+    }
+
+    /// So many of what is drawn and wanted.
+    fn many<T>(
+        &mut self,
+        count: usize,
+        draw: impl Fn(&mut Self) -> T,
+        is_wanted: impl Fn(&T) -> bool,
+    ) -> Vec<T> {
+        std::iter::repeat_with(|| draw(self)).filter(is_wanted).take(count).collect()
     }
 
     /// A ball or a turned box somewhere in the cube.

@@ -39,8 +39,7 @@ mod contender;
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 mod engines;
 mod ours;
-mod rapier2;
-mod rapier3;
+pub mod rapier;
 
 #[cfg(feature = "jolt")]
 use impinge_compare_c::Jolt;
@@ -57,7 +56,7 @@ use crate::table::Table;
 
 /// Two objects whose distance is at most this have contact points: the sum of what the objects of
 /// the scenes ask for.
-const PREDICTION: f32 = 0.002;
+pub const PREDICTION: f32 = 0.002;
 
 /// Makes a world with the objects of a scene as they are at step 0; none where it lacks a shape.
 type Maker<const D: usize> = fn(&Scene<D>) -> Option<Box<dyn Contender<D>>>;
@@ -70,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("world", "ms");
     let plane: &[(&str, Maker<2>)] = &[
         ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
-        ("rapier", |scene| Some(Box::new(rapier2::Rapier::new(scene)))),
+        ("rapier", |scene| Some(Box::new(rapier::plane::Rapier::new(scene)))),
         #[cfg(feature = "box2d")]
         ("box2d", |scene| engines::box2d(scene, Recycling::Off)),
         #[cfg(feature = "box2d")]
@@ -78,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     ];
     let space: &[(&str, Maker<3>)] = &[
         ("impinge", |scene| Some(Box::new(ours::space(scene)))),
-        ("rapier", |scene| Some(Box::new(rapier3::Rapier::new(scene)))),
+        ("rapier", |scene| Some(Box::new(rapier::space::Rapier::new(scene)))),
         #[cfg(feature = "box3d")]
         ("box3d", |scene| engines::box3d(scene, Recycling::Off)),
         #[cfg(feature = "box3d")]

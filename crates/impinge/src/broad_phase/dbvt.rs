@@ -278,6 +278,28 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_nearest(bv, max_distance, &mut by_id);
     }
 
+    fn visit_nearest_roughly(
+        &self,
+        bv: &Aabb<N, D>,
+        max_distance: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_id);
+    }
+
+    fn visit_cast_roughly(
+        &self,
+        bv: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        let sweep = Sweep { aabb: *bv, velocity: *velocity };
+        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_id);
+    }
+
     fn visit_cast(
         &self,
         bv: &Aabb<N, D>,

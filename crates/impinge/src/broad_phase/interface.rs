@@ -181,6 +181,24 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         self.interferences_with_bounding_volume(&bv.swept(velocity, end), &mut met);
         visit_all(&met, max_time, visit);
     }
+
+    /// [`Self::visit_nearest`] in no promised order, for those who sort what they find: near ones first
+    /// is better. The default is [`Self::visit_nearest`].
+    fn visit_nearest_roughly(&self, bv: &BV, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
+        self.visit_nearest(bv, max_distance, visit);
+    }
+
+    /// [`Self::visit_cast`] in no promised order, for those who sort what they find: near ones first is
+    /// better. The default is [`Self::visit_cast`].
+    fn visit_cast_roughly(
+        &self,
+        bv: &BV,
+        velocity: &BV::Vector,
+        max_time: N,
+        visit: &mut dyn FnMut(&T) -> N,
+    ) {
+        self.visit_cast(bv, velocity, max_time, visit);
+    }
 }
 
 /// Visits all until the limit is negative (or NaN).

@@ -56,6 +56,16 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_distance(aabb, max_distance, visit);
     }
 
+    /// [`Self::visit_nearest`] in no exact order, but near ones first.
+    pub fn visit_nearest_roughly(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().nearest_first(aabb, max_distance, visit);
+    }
+
     /// Calls `visit` with each object whose exact box the moving one touches at or before `max_time`
     /// and the first time of that, in ascending order of (time, id); `visit` returns the new
     /// `max_time`, which never grows.
@@ -66,6 +76,16 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
         self.search().by_time(sweep, max_time, visit);
+    }
+
+    /// [`Self::visit_cast`] in no exact order, but near ones first.
+    pub(crate) fn visit_cast_roughly(
+        &self,
+        sweep: &Sweep<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().near_first(sweep, max_time, visit);
     }
 
     fn search(&self) -> Search<'_, N, D, 2> {

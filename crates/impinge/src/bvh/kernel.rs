@@ -6,6 +6,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 
+use super::gaps::Gaps;
 use super::slabs::Slabs;
 use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
@@ -154,6 +155,20 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
+    /// The lanes that may be as near as `limit`, and the squares of their distances, or a little less,
+    /// in the units of the gaps. Never without a lane that is; a finite limit leaves out empty lanes.
+    fn apart<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32;
+
+    /// The lane of the mask, which is not empty, with the least key; the first of equals. Keys are
+    /// finite.
+    fn least(self, keys: &[f32; LANES], mask: u32) -> usize;
+
     /// The triangles that the line may cross between zero and `limit`. Never without one of which an
     /// exact test might say so.
     fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32;
@@ -183,6 +198,20 @@ impl Kernel for Scalar {
         keys: &mut [f32; LANES],
     ) -> u32 {
         self.enter_block(block, slabs, limit, keys)
+    }
+
+    fn apart<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        self.apart_from_block(block, gaps, limit, keys)
+    }
+
+    fn least(self, keys: &[f32; LANES], mask: u32) -> usize {
+        self.least_key(keys, mask)
     }
 
     fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32 {
@@ -244,6 +273,22 @@ impl<S: Simd> Kernel for Wide<S> {
         keys: &mut [f32; LANES],
     ) -> u32 {
         self.enter_block(block, slabs, limit, keys)
+    }
+
+    #[inline(always)]
+    fn apart<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        self.apart_from_block(block, gaps, limit, keys)
+    }
+
+    #[inline(always)]
+    fn least(self, keys: &[f32; LANES], mask: u32) -> usize {
+        self.least_key(keys, mask)
     }
 
     #[inline(always)]

@@ -25,9 +25,11 @@
 mod block;
 mod bounds;
 mod farthest;
+mod gaps;
 mod join;
 mod kernel;
 mod near_first;
+mod nearest;
 mod order;
 mod ordered;
 mod query;
@@ -45,6 +47,7 @@ mod tests;
 
 pub use block::{Block, LANES};
 pub use bounds::Bounds;
+pub(crate) use gaps::Gaps;
 pub use join::{Changes, Joiner};
 pub use kernel::Lanes;
 pub(crate) use near_first::RayProbe;

@@ -7,7 +7,7 @@ use crate::query::{
     BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, Placed,
     Placement, Proximity, RawManifold, canonical, materialise, own_distance,
 };
-use crate::shape::{Geometry, Kind, Shape};
+use crate::shape::{Kind, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -32,10 +32,9 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
             .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
     }
 
-    /// Where the pair in canonical order stands.
-    fn placement(&self, pair: u64, is_swapped: bool) -> Placement<'a, N, D> {
-        let pose1 = if is_swapped { self.pose2 } else { self.pose1 };
-        Placement { pose1, pair, is_swapped }
+    /// The two poses.
+    const fn poses(&self) -> [&'a Pose<N, D>; 2] {
+        [self.pose1, self.pose2]
     }
 
     /// A composite is among them.
@@ -74,25 +73,41 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
     ) -> Self::Manifolds;
 }
 
-/// The contacts of two convex solids, in the frame of the solid that comes first in canonical order.
+/// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ContactState<N: Real, const D: usize> {
-    raw: RawManifold<N, D>,
+pub(crate) struct InOrder<C> {
+    contacts: C,
     /// The canonical order at the last update was the reverse of the pair's own.
     swapped: bool,
+}
+
+/// The contacts of two convex solids.
+pub(crate) type ContactState<N, const D: usize> = InOrder<RawManifold<N, D>>;
+
+/// The contacts of a pair of which one solid at least is a composite.
+pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
+
+impl<C> InOrder<C> {
+    /// The canonical order is this one now.
+    fn turn(&mut self, swapped: bool, flip_names: fn(&mut C)) {
+        if swapped != self.swapped {
+            flip_names(&mut self.contacts);
+            self.swapped = swapped;
+        }
+    }
 }
 
 impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
     type Manifolds = ContactManifold<N, D>;
 
     fn len(&self) -> usize {
-        self.raw.points.len()
+        self.contacts.points.len()
     }
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
-        self.turn(swapped);
-        (N::tables().contacts)(&pair, request, &mut self.raw);
+        self.turn(swapped, RawManifold::flip_names);
+        (N::tables().contacts)(&pair, request, &mut self.contacts);
     }
 
     fn manifolds(
@@ -101,11 +116,12 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         pair_number: u64,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> {
-        if self.raw.points.is_empty() {
+        if self.contacts.points.is_empty() {
             return ContactManifold::default();
         }
         let (pair, is_swapped) = posed.canonical();
-        materialise(&pair, &self.raw, &posed.placement(pair_number, is_swapped), old)
+        let placement = Placement::new(posed.poses(), pair_number, is_swapped);
+        materialise(&pair, &self.contacts, &placement, old)
     }
 }
 
@@ -117,24 +133,17 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
         let (shape1, shape2) = (posed.shape1.geometry(), posed.shape2.geometry());
-        self.turn(is_swapped(posed.pose1, shape1, posed.pose2, shape2));
+        let swapped = is_swapped(posed.pose1, shape1, posed.pose2, shape2);
+        self.turn(swapped, RawManifold::flip_names);
         let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (shape1.0, shape2.0) else {
             return None;
         };
-        let (mut poses, mut cuboids) = ([posed.pose1, posed.pose2], [cuboid1, cuboid2]);
-        if self.swapped {
+        let (mut poses, mut cuboids) = (posed.poses(), [cuboid1, cuboid2]);
+        if swapped {
             poses.reverse();
             cuboids.reverse();
         }
-        Some(BoxJob { poses, cuboids, request, raw: &mut self.raw })
-    }
-
-    /// The canonical order is this one now.
-    fn turn(&mut self, swapped: bool) {
-        if swapped != self.swapped {
-            self.raw.flip_names();
-            self.swapped = swapped;
-        }
+        Some(BoxJob { poses, cuboids, request, raw: &mut self.contacts })
     }
 
     /// The contacts, which are not none, read in place; the poses are those of the last update.
@@ -144,9 +153,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         pair_number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let pose1 = poses[usize::from(self.swapped)];
-        let placement = Placement { pose1, pair: pair_number, is_swapped: self.swapped };
-        ManifoldView::of_convex(&self.raw, placement)
+        let placement = Placement::new(poses, pair_number, self.swapped);
+        ManifoldView::of_convex(&self.contacts, placement)
     }
 }
 
@@ -157,17 +165,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         pair_number: u64,
     ) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
-        let pose1 = poses[usize::from(self.swapped)];
-        let placement = Placement { pose1, pair: pair_number, is_swapped: self.swapped };
-        self.contacts.views(placement)
+        self.contacts.views(Placement::new(poses, pair_number, self.swapped))
     }
-}
-
-/// The contacts of a pair of which one solid at least is a composite, as [`ContactState`].
-#[derive(Clone, Debug, Default)]
-pub(crate) struct CompositeState<N: Real, const D: usize> {
-    contacts: CompositeContacts<N, D>,
-    swapped: bool,
 }
 
 impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
@@ -179,12 +178,9 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
-        if swapped != self.swapped {
-            self.contacts.flip_names();
-            self.swapped = swapped;
-        }
-        let (first, second) =
-            if swapped { (posed.pose2, posed.pose1) } else { (posed.pose1, posed.pose2) };
+        self.turn(swapped, CompositeContacts::flip_names);
+        let [first, second] =
+            if swapped { [posed.pose2, posed.pose1] } else { [posed.pose1, posed.pose2] };
         let between = Between { pair, pose21: Pose::relative(second, first) };
         self.contacts.update(&between, posed.is_self, request);
     }
@@ -196,7 +192,8 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> {
         let (pair, is_swapped) = posed.canonical();
-        self.contacts.manifolds(&pair, &posed.placement(pair_number, is_swapped), old)
+        let placement = Placement::new(posed.poses(), pair_number, is_swapped);
+        self.contacts.manifolds(&pair, &placement, old)
     }
 }
 
@@ -205,14 +202,13 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     posed: &Posed<'_, N, D>,
     margin: N,
 ) -> Proximity {
-    let (pair, _) = posed.canonical();
-    let is_composite = |kind| Geometry(kind).as_composite().is_some();
     let found = if posed.is_self {
-        own_distance(&pair, margin)
-    } else if is_composite(pair.first) || is_composite(pair.second) {
+        own_distance(&posed.canonical().0, margin)
+    } else if posed.has_composite() {
         let [placed1, placed2] = posed.placed();
-        (N::tables().touching_in_world)(&placed1, &placed2, margin).map(|found| found.distance)
+        (N::tables().distance_in_world)(&placed1, &placed2, margin)
     } else {
+        let (pair, _) = posed.canonical();
         (N::tables().separation)(&pair, margin).map(|found| found.distance)
     };
     match found {

@@ -1,7 +1,8 @@
 //! The tree over a user's own boxes.
 
-use super::{BoxTreeError, Search, Sweep};
-use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
+use super::boxes::{around, check, count};
+use super::{Best, BoxTreeError, Search, Sweep};
+use crate::bounding_volume::{Aabb, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Point, Real, Space, Vector, max};
 
@@ -282,24 +283,22 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// least index.
     #[must_use]
     pub fn first_hit(&self, ray: &Ray<N, D>, max_time: N) -> Option<(usize, N)> {
-        let mut first = None;
-        self.visit_ray(ray, max_time, |index, time| {
-            first = Some((index, time));
-            -N::ONE
+        let (mut first, sweep) = (Best::none(max_time), Sweep::along(ray));
+        (N::tables().partitioning.near_first)(self, &sweep, max_time, &mut |id, time| {
+            first.offer(id, time)
         });
-        first
+        first.of
     }
 
     /// The box nearest to the point, at most `max_distance` away, and its distance; of several the one
     /// of least index.
     #[must_use]
     pub fn nearest(&self, point: &Point<N, D>, max_distance: N) -> Option<(usize, N)> {
-        let mut nearest = None;
-        self.visit_nearest(point, max_distance, |index, distance| {
-            nearest = Some((index, distance));
-            -N::ONE
-        });
-        nearest
+        let mut nearest = Best::none(max_distance);
+        let mut found = |id: u32, distance: N| nearest.offer(id, distance);
+        let at = Aabb::at(*point);
+        (N::tables().partitioning.nearest_first)(self, &at, max_distance, &mut found);
+        nearest.of
     }
 
     fn collect(&self, question: &Question<'_, N, D>) -> Vec<usize> {
@@ -461,40 +460,18 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_distance(aabb, max_distance, found);
     }
 
+    /// [`Self::by_distance`] in no exact order, which is faster.
+    pub(crate) fn nearest_first(
+        &self,
+        aabb: &Aabb<N, D>,
+        max_distance: N,
+        found: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        self.search().nearest_first(aabb, max_distance, found);
+    }
+
     fn search(&self) -> Search<'_, N, D, 1> {
         let (exact, trees) = (self.boxes.as_slice(), [&self.tree]);
         Search { exact, trees, unbounded: &self.unbounded, lanes: self.lanes }
-    }
-}
-
-/// No box is inverted or holds a NaN.
-fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
-    for (index, aabb) in boxes.iter().enumerate() {
-        Aabb::try_new(*aabb.mins(), *aabb.maxs())
-            .map_err(|error| BoxTreeError::BadBox { index, error })?;
-    }
-    Ok(())
-}
-
-/// The smallest box around some boxes.
-fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aabb<N, D>> {
-    boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
-}
-
-/// The number of boxes as the tree counts them, which keeps one number for "none".
-fn count(given: usize) -> Result<u32, BoxTreeError> {
-    let count = u32::try_from(given).ok().filter(|&count| count < u32::MAX);
-    count.ok_or(BoxTreeError::TooMany { given })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn more_boxes_than_numbers_are_refused() {
-        assert_eq!(count(7), Ok(7), "few");
-        let given = u32::MAX as usize;
-        assert_eq!(count(given), Err(BoxTreeError::TooMany { given }), "too many");
     }
 }

@@ -9,10 +9,12 @@
 //! stand in a list beside the tree.
 
 mod box_tree;
+mod boxes;
 mod error;
 mod search;
 
 pub use box_tree::BoxTree;
 pub(crate) use box_tree::Question;
 pub use error::BoxTreeError;
+use search::Best;
 pub(crate) use search::{Search, Sweep};

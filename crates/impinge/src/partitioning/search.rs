@@ -1,7 +1,7 @@
 //! Searches of trees whose boxes stand for exact ones: the trees propose, the exact boxes decide.
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::{Block, Bounds, Frontier, Keys, LANES, Lanes, Slabs, Tree};
+use crate::bvh::{Block, Bounds, Frontier, Gaps, Keys, LANES, Lanes, Slabs, Tree};
 use crate::math::{Point, Real, Vector, min};
 
 /// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
@@ -133,10 +133,38 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
             lowest
         };
         let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
-        let size = self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max);
-        let slabs = Slabs::new(aabb, velocity, size);
+        let slabs = Slabs::new(aabb, velocity, self.size());
         let first = slabs.limit(first);
         self.lanes.visit_near_first(&self.trees, &slabs, first, |id| slabs.limit(decide(id)));
+    }
+
+    /// [`Self::by_distance`] in no exact order, but near ones first.
+    pub(crate) fn nearest_first(
+        &self,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        mut found: impl FnMut(u32, N) -> N,
+    ) {
+        if !aabb.holds_finite_point() {
+            return;
+        }
+        let mut lowest = limit;
+        let mut decide = |id: u32| {
+            let distance = self.exact[id as usize].distance_to_aabb(aabb);
+            if distance <= lowest {
+                lowest = min(lowest, found(id, distance));
+            }
+            lowest
+        };
+        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
+        let gaps = Gaps::new(aabb, self.size());
+        let first = gaps.limit(first);
+        self.lanes.visit_nearest_first(&self.trees, &gaps, first, |id| gaps.limit(decide(id)));
+    }
+
+    /// The largest magnitude of a coordinate in the trees.
+    fn size(&self) -> f32 {
+        self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max)
     }
 
     fn best_first(
@@ -158,6 +186,27 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
             lowest
         };
         frontier.search(&self.trees, limit, keys, lowered);
+    }
+}
+
+/// The box of least key so far, of several that of least index.
+pub(super) struct Best<N: Real> {
+    pub(super) of: Option<(usize, N)>,
+    limit: N,
+}
+
+impl<N: Real> Best<N> {
+    pub(super) const fn none(limit: N) -> Self {
+        Self { of: None, limit }
+    }
+
+    /// Takes a box into account that is within the limit; returns the new limit.
+    pub(super) fn offer(&mut self, id: u32, key: N) -> N {
+        let index = id as usize;
+        if self.of.is_none_or(|(best, least)| key < least || (key == least && index < best)) {
+            (self.of, self.limit) = (Some((index, key)), key);
+        }
+        self.limit
     }
 }
 

@@ -125,6 +125,14 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) is_swapped: bool,
 }
 
+impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
+    /// Of a pair whose solids have these poses in the user's order.
+    #[inline]
+    pub(crate) fn new(poses: [&'a Pose<N, D>; 2], pair: u64, is_swapped: bool) -> Self {
+        Self { pose1: poses[usize::from(is_swapped)], pair, is_swapped }
+    }
+}
+
 /// The manifold as users see it; `pair` is the one that `raw` was built for. It is written over the
 /// memory of a manifold that is no longer needed.
 pub(crate) fn materialise<N: Real, const D: usize>(

@@ -42,12 +42,14 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) feature2: FeatureId,
     /// The number of the contact within its pair; kept while the features stay.
     pub(crate) id: u32,
+    /// What the builder that made the point knows its features again by; 0 for most.
+    pub(crate) code: u32,
 }
 
 impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     fn default() -> Self {
         let (feature1, feature2) = (FeatureId::Vertex(0), FeatureId::Vertex(0));
-        Self { point1: Point::origin(), distance: N::ZERO, feature1, feature2, id: 0 }
+        Self { point1: Point::origin(), distance: N::ZERO, feature1, feature2, id: 0, code: 0 }
     }
 }
 
@@ -92,6 +94,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     pub(crate) fn flip_names(&mut self) {
         for point in &mut self.points {
             core::mem::swap(&mut point.feature1, &mut point.feature2);
+            point.code = 0;
         }
     }
 

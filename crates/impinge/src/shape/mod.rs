@@ -71,6 +71,7 @@ pub use height_field::{Diagonal, Diagonals, HeightField};
 pub use mesh_error::MeshError;
 pub use plane::Plane;
 pub use polyline::Polyline;
+pub(crate) use polytope::Planes;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
 pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;

@@ -15,7 +15,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
     }
 
     fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        self.visit_nearest_to_box(aabb, limit, |index, apart| visit(number(index), apart));
+        (N::tables().partitioning.nearest_first)(self, aabb, limit, visit);
     }
 
     fn cast(

@@ -21,6 +21,8 @@ pub struct Polytope<N: Real, const D: usize> {
     /// The vertices again, some at a time, coordinate by coordinate; the last one fills the rest.
     pub(super) blocks: Vec<[[N; LANES]; D]>,
     pub(super) faces: Vec<PolytopeFace<N, D>>,
+    /// The planes of the faces again, as the vertices in `blocks`.
+    pub(super) planes: Vec<Planes<N, D>>,
     /// The vertices of all faces, one loop after the other.
     pub(super) loops: Vec<u32>,
     /// For each entry of `loops`, the edge (in the plane: the face) that leads to the next vertex.
@@ -37,8 +39,15 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) reach: N,
 }
 
-/// How many vertices are looked at side by side.
-const LANES: usize = 4;
+/// How many vertices or faces are looked at side by side.
+const LANES: usize = 8;
+
+/// The planes of some faces side by side, coordinate by coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Planes<N: Real, const D: usize> {
+    pub(crate) normals: [[N; LANES]; D],
+    pub(crate) offsets: [N; LANES],
+}
 
 /// A flat face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +99,16 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
+    }
+
+    /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.
+    pub(crate) fn blocks(&self) -> &[[[N; LANES]; D]] {
+        &self.blocks
+    }
+
+    /// The planes of the faces, eight at a time; the last one fills the rest.
+    pub(crate) fn planes(&self) -> &[Planes<N, D>] {
+        &self.planes
     }
 
     /// The edges (in the plane: the faces) that end at a vertex.
@@ -156,6 +175,19 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
         };
         vertices.chunks(LANES).map(block).collect()
+    }
+
+    /// What [`Self::planes`] holds.
+    pub(super) fn planes_of(faces: &[PolytopeFace<N, D>]) -> Vec<Planes<N, D>> {
+        let block = |some: &[PolytopeFace<N, D>]| {
+            let last = some.len() - 1;
+            let at = |lane: usize| &some[if lane < last { lane } else { last }];
+            Planes {
+                normals: from_fn(|axis| from_fn(|lane| at(lane).normal[axis])),
+                offsets: from_fn(|lane| at(lane).offset),
+            }
+        };
+        faces.chunks(LANES).map(block).collect()
     }
 
     /// The largest distance of a vertex from the origin.

@@ -34,6 +34,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             blocks: Self::blocks_of(&vertices),
             vertices,
             faces: Vec::new(),
+            planes: Vec::new(),
             loops: Vec::new(),
             loop_sides: Vec::new(),
             edges: Vec::new(),
@@ -69,6 +70,7 @@ impl<N: Real> Polytope<N, 2> {
             polygon.push_face(-perp(&along), &[side, next]);
             polygon.loop_sides.extend([side, side]);
         }
+        polygon.planes = Self::planes_of(&polygon.faces);
         polygon.collect_fans();
         polygon
     }
@@ -88,6 +90,7 @@ impl<N: Real> Polytope<N, 3> {
             let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();
             hull.push_face(*normal, &ring);
         }
+        hull.planes = Self::planes_of(&hull.faces);
         hull.connect()?;
         hull.collect_fans();
         Some(hull)

@@ -136,13 +136,13 @@ impl<'a, N: Real> Sides<'a, N> {
 }
 
 /// The number of the vertex with these positive coordinates.
-fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
-    FeatureId::Vertex(u32::from(is_positive) << axis | u32::from(other_is_positive) << (1 - axis))
+pub(super) const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
+    FeatureId::Vertex((is_positive as u32) << axis | (other_is_positive as u32) << (1 - axis))
 }
 
 /// The number of the side that is perpendicular to an axis.
-fn side(axis: usize, is_positive: bool) -> FeatureId {
-    FeatureId::Face(2 * u32::from(axis == 1) + u32::from(!is_positive))
+pub(super) const fn side(axis: usize, is_positive: bool) -> FeatureId {
+    FeatureId::Face(2 * (axis == 1) as u32 + !is_positive as u32)
 }
 
 /// The side of the box whose frame it is.

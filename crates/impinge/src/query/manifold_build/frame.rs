@@ -42,7 +42,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 
     pub(super) fn named(&self, id: u32) -> RawPoint<N, D> {
         let [feature1, feature2] = self.features;
-        RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id }
+        RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id, code: 0 }
     }
 }
 

@@ -23,6 +23,7 @@ pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
 mod flat_core;
 mod general;
+mod hulls;
 mod outline;
 mod plane_any;
 mod polygon_polygon;

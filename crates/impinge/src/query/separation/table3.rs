@@ -3,7 +3,7 @@
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, flipped, general,
-    look_up, plane_any, rounded, segment_segment,
+    hulls, look_up, plane_any, rounded, segment_segment,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -28,6 +28,7 @@ impl<N: Real> Space<N> {
         let rr: Algorithm<N, 3> = rounded::separation;
         let gg: Algorithm<N, 3> = general::separation;
         let ff: Algorithm<N, 3> = general::of_flat_cores;
+        let hh: Algorithm<N, 3> = hulls::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -39,8 +40,8 @@ impl<N: Real> Space<N> {
             [__, ss, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, ff, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, ff, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, hh, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],

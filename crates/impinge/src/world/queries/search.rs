@@ -1,4 +1,4 @@
-//! The way all ranked queries go: box by box in ascending order, as long as a box may hold an answer.
+//! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
 use super::QueryFilter;
 use super::ranking::{Ranked, Ranking};
@@ -34,7 +34,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
         self.key(aabb).is_some()
     }
 
-    /// The boxes of the broad phase in ascending order of their keys.
+    /// The boxes of the broad phase, those of least keys about first.
     fn visit(
         &self,
         broad_phase: &WorldBroadPhase<N, D>,
@@ -43,8 +43,8 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
     ) {
         match self {
             Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
-            Self::Near(own) => broad_phase.visit_nearest(own, limit, visit),
-            Self::Cast(own, velocity) => broad_phase.visit_cast(own, velocity, limit, visit),
+            Self::Near(own) => broad_phase.visit_nearest_roughly(own, limit, visit),
+            Self::Cast(own, velocity) => broad_phase.visit_cast_roughly(own, velocity, limit, visit),
         }
     }
 }

@@ -208,6 +208,7 @@ fn of_ball<N: Real, const D: usize>(
         feature1: FeatureId::Face(0),
         feature2: over,
         id,
+        code: 0,
     });
     raw
 }

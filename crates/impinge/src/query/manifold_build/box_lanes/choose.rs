@@ -2,15 +2,18 @@
 
 use smallvec::SmallVec;
 
-use super::clip::{SLOTS, Slots};
-use super::names::Naming;
-use crate::math::{Real, Vector, cross2, max, min};
-use crate::query::RawManifold;
+use super::admit::Slots;
+use crate::math::{Point, Real, Vector, cross2, max, min};
 use crate::query::manifold_build::reduce::{ALMOST, NEW_POINT_WEIGHT};
+use crate::query::{RawManifold, RawPoint};
+use crate::shape::FeatureId;
+
+/// The most slots of a pair: those of space.
+pub(super) const SLOTS: usize = 24;
 
 /// The slots of one pair.
-pub(super) struct Choice<'a, N: Real> {
-    pub(super) slots: &'a Slots<N>,
+pub(super) struct Choice<'a, N: Real, const COUNT: usize> {
+    pub(super) slots: &'a Slots<N, COUNT>,
     pub(super) lane: usize,
     /// The slots that hold a candidate, by bits.
     pub(super) valid: u32,
@@ -21,8 +24,50 @@ pub(super) struct Choice<'a, N: Real> {
     pub(super) tolerance: N,
 }
 
+/// How the slots of one pair are named.
+pub(super) trait Naming {
+    /// The features of a candidate, of the first and the second box.
+    fn features(&self, slot: usize) -> [FeatureId; 2];
+
+    /// The candidate of these features, among those that there are.
+    fn slot(&self, features: [FeatureId; 2], valid: u32) -> Option<usize>;
+
+    /// A number, not zero, that no candidate of any pair has but in this slot with these features;
+    /// the slot is in the lowest bits.
+    fn code(&self, slot: usize) -> u32;
+}
+
+/// The bits of a code that are the slot.
+const SLOT_BITS: u32 = 31;
+
+/// The slot that a code tells.
+#[inline(always)]
+const fn slot_of(code: u32) -> usize {
+    (code & SLOT_BITS) as usize
+}
+
+/// The slots of the old points if all of them are candidates again, in the same slots: nothing has
+/// changed but places then.
+#[inline(always)]
+fn still<N: Real, const D: usize>(
+    old: &[RawPoint<N, D>],
+    naming: &impl Naming,
+    valid: u32,
+) -> Option<u32> {
+    let mut slots = 0;
+    for point in old {
+        let slot = slot_of(point.code);
+        let is_same = point.code == naming.code(slot) && valid >> slot & 1 == 1;
+        if !is_same {
+            return None;
+        }
+        slots |= 1 << slot;
+    }
+    Some(slots)
+}
+
 /// The numbers of the old points, for the slots that have their names.
-pub(super) struct Kept {
+struct Kept {
     slots: u32,
     ids: [u32; SLOTS],
 }
@@ -30,9 +75,13 @@ pub(super) struct Kept {
 impl Kept {
     /// Takes over the numbers; no two old points share their names, nor do two slots.
     #[inline(always)]
-    pub(super) fn of<N: Real>(old: &RawManifold<N, 3>, naming: &Naming, valid: u32) -> Self {
+    fn of<N: Real, const D: usize>(
+        old: &[RawPoint<N, D>],
+        naming: &impl Naming,
+        valid: u32,
+    ) -> Self {
         let mut kept = Self { slots: 0, ids: [0; SLOTS] };
-        for point in &old.points {
+        for point in old {
             let slot = naming.slot([point.feature1, point.feature2], valid & !kept.slots);
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
@@ -43,13 +92,8 @@ impl Kept {
     }
 
     #[inline(always)]
-    pub(super) fn id(&self, slot: usize) -> Option<u32> {
-        self.has(slot).then(|| self.ids[slot])
-    }
-
-    #[inline(always)]
-    fn has(&self, slot: usize) -> bool {
-        self.slots >> slot & 1 == 1
+    fn id(&self, slot: usize) -> Option<u32> {
+        (self.slots >> slot & 1 == 1).then(|| self.ids[slot])
     }
 }
 
@@ -77,12 +121,18 @@ impl Chosen {
     }
 
     #[inline(always)]
-    pub(super) const fn len(&self) -> usize {
+    const fn len(&self) -> usize {
         self.len
     }
 
+    /// Which slots these are, by bits.
     #[inline(always)]
-    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+    fn mask(&self) -> u32 {
+        self.iter().fold(0, |mask, slot| mask | 1 << slot)
+    }
+
+    #[inline(always)]
+    fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         self.slots[..self.len].iter().map(|&slot| usize::from(slot))
     }
 
@@ -104,9 +154,70 @@ fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     })
 }
 
-impl<N: Real> Choice<'_, N> {
+impl<N: Real, const COUNT: usize> Choice<'_, N, COUNT> {
+    /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates,
+    /// which lie at `place`.
     #[inline(always)]
-    pub(super) fn distance(&self, slot: usize) -> N {
+    pub(super) fn settle<const D: usize>(
+        &self,
+        naming: &impl Naming,
+        place: impl Fn(usize) -> Point<N, D>,
+        limit: usize,
+        raw: &mut RawManifold<N, D>,
+    ) {
+        let still = still(&raw.points, naming, self.valid);
+        let kept = still.unwrap_or_else(|| Kept::of(&raw.points, naming, self.valid).slots);
+        let deepest = self.deepest(kept);
+        let is_full = self.valid.count_ones() as usize > limit;
+        let chosen = if is_full { Some(self.outline(deepest, limit, kept)) } else { None };
+        let slots = chosen.as_ref().map_or(self.valid, Chosen::mask);
+        if still == Some(slots) {
+            return self.renew(deepest, place, &mut raw.points);
+        }
+        let chosen = chosen.unwrap_or_else(|| Chosen::all(slots));
+        self.replace((&chosen, deepest), naming, place, raw);
+    }
+
+    /// Moves points whose names stay.
+    #[inline(always)]
+    fn renew<const D: usize>(
+        &self,
+        deepest: usize,
+        place: impl Fn(usize) -> Point<N, D>,
+        points: &mut [RawPoint<N, D>],
+    ) {
+        for point in points {
+            let slot = slot_of(point.code);
+            point.point1 = place(slot);
+            point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+        }
+    }
+
+    /// Puts the points of some slots, in order of their numbers, in the place of those there are.
+    #[inline(always)]
+    fn replace<const D: usize>(
+        &self,
+        (chosen, deepest): (&Chosen, usize),
+        naming: &impl Naming,
+        place: impl Fn(usize) -> Point<N, D>,
+        raw: &mut RawManifold<N, D>,
+    ) {
+        let kept = Kept::of(&raw.points, naming, self.valid);
+        raw.points.resize(chosen.len(), RawPoint::default());
+        for (slot, point) in chosen.iter().zip(&mut raw.points) {
+            point.id = kept.id(slot).unwrap_or_else(|| raw.ids.next());
+            point.point1 = place(slot);
+            point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+            [point.feature1, point.feature2] = naming.features(slot);
+            point.code = naming.code(slot);
+        }
+        if !raw.points.is_sorted_by_key(|point| point.id) {
+            raw.points.sort_by_key(|point| point.id);
+        }
+    }
+
+    #[inline(always)]
+    fn distance(&self, slot: usize) -> N {
         min(max(self.slots.height[slot][self.lane], self.gap), self.prediction)
     }
 
@@ -119,8 +230,8 @@ impl<N: Real> Choice<'_, N> {
     /// The candidate that stands for the witness: of those whose distance is the smallest but for
     /// rounding one that the previous manifold held, then the deepest.
     #[inline(always)]
-    pub(super) fn deepest(&self, kept: &Kept) -> usize {
-        let old = self.level & kept.slots;
+    fn deepest(&self, kept: u32) -> usize {
+        let old = self.level & kept;
         let level = if self.level == 0 { self.valid } else { self.level };
         self.lowest(if old == 0 { level } else { old })
     }
@@ -140,19 +251,9 @@ impl<N: Real> Choice<'_, N> {
         lowest
     }
 
-    /// At most `limit` candidates.
-    #[inline(always)]
-    pub(super) fn chosen(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
-        if self.valid.count_ones() as usize <= limit {
-            Chosen::all(self.valid)
-        } else {
-            self.outline(deepest, limit, kept)
-        }
-    }
-
     /// The deepest, then whatever adds most to the outline, as `reduce::chosen` has it.
     #[inline(always)]
-    fn outline(&self, deepest: usize, limit: usize, kept: &Kept) -> Chosen {
+    fn outline(&self, deepest: usize, limit: usize, kept: u32) -> Chosen {
         let mut outline = Outline::new(deepest, self.flat(deepest), self.tolerance);
         let rest = self.by_depth(self.valid & !(1 << deepest), kept);
         let mut left = (1_u32 << rest.len) - 1;
@@ -166,7 +267,7 @@ impl<N: Real> Choice<'_, N> {
 
     /// Slots by distance; of equals the first comes first.
     #[inline(always)]
-    fn by_depth(&self, slots: u32, kept: &Kept) -> Rest<N> {
+    fn by_depth(&self, slots: u32, kept: u32) -> Rest<N> {
         let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS] }, [0_i64; SLOTS]);
         for slot in ones(slots) {
             let (key, mut at) = (total(self.distance(slot)), order.len);
@@ -185,7 +286,7 @@ impl<N: Real> Choice<'_, N> {
         };
         for (index, slot) in order.iter().enumerate() {
             rest.flat[index] = self.flat(slot);
-            if !kept.has(slot) {
+            if kept >> slot & 1 == 0 {
                 rest.weights[index] = N::lit(NEW_POINT_WEIGHT);
             }
         }

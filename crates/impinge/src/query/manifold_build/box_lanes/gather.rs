@@ -1,102 +1,229 @@
 //! Eight pairs of boxes side by side, and where the second of each lies in the frame of the first.
 
-use fearless_simd::Simd;
+use fearless_simd::{Select, Simd};
 
-use super::axis::by_axis;
 use super::{BoxJob, LANES};
 use crate::math::{Real, Wide};
-
-/// Two poses (a rotation by columns, a translation), two boxes, the prediction.
-const ROWS: usize = 31;
+use crate::query::manifold_build::frame::ROUNDING_ERRORS;
 
 /// What the queries of eight pairs start from: a row for each number, a column for each pair.
-pub(super) struct Inputs<N: Real> {
-    rows: [[N; LANES]; ROWS],
+pub(super) struct Inputs<N: Real, const D: usize> {
+    boxes: [Placed<N, D>; 2],
+    prediction: [N; LANES],
     /// The lanes whose request has no angle.
     pub(super) straight: u64,
 }
 
-impl<N: Real> Inputs<N> {
+/// The first or the second box of eight pairs.
+#[derive(Clone, Copy)]
+struct Placed<N: Real, const D: usize> {
+    /// By columns.
+    rotation: [[[N; LANES]; D]; D],
+    translation: [[N; LANES]; D],
+    half: [[N; LANES]; D],
+}
+
+impl<N: Real, const D: usize> Inputs<N, D> {
     pub(super) const fn new() -> Self {
-        Self { rows: [[N::ZERO; LANES]; ROWS], straight: 0 }
+        let rows = [[N::ZERO; LANES]; D];
+        let placed = Placed { rotation: [rows; D], translation: rows, half: rows };
+        Self { boxes: [placed; 2], prediction: [N::ZERO; LANES], straight: 0 }
     }
 
     /// Takes up to eight pairs. Lanes beyond them keep what they had.
     #[inline(always)]
-    pub(super) fn gather(&mut self, jobs: &[BoxJob<'_, N, 3>]) {
+    pub(super) fn gather(&mut self, jobs: &[BoxJob<'_, N, D>]) {
         self.straight = 0;
         for (lane, job) in jobs.iter().enumerate().take(LANES) {
-            for (index, pose) in job.poses.iter().enumerate() {
-                self.put(lane, 12 * index, pose.rotation.as_slice());
-                self.put(lane, 12 * index + 9, pose.translation.as_slice());
-                self.put(lane, 24 + 3 * index, job.cuboids[index].half_extents().as_slice());
+            for (index, placed) in self.boxes.iter_mut().enumerate() {
+                let (pose, cuboid) = (job.poses[index], job.cuboids[index]);
+                put(placed.rotation.as_flattened_mut(), lane, pose.rotation.as_slice());
+                put(&mut placed.translation, lane, pose.translation.as_slice());
+                put(&mut placed.half, lane, cuboid.half_extents().as_slice());
             }
-            self.put(lane, 30, &[job.request.prediction]);
+            self.prediction[lane & (LANES - 1)] = job.request.prediction;
             self.straight |= u64::from(job.request.sine <= N::ZERO) << lane;
         }
     }
 
     #[inline(always)]
-    fn put(&mut self, lane: usize, first: usize, numbers: &[N]) {
-        for (row, &number) in self.rows[first..].iter_mut().zip(numbers) {
-            row[lane & (LANES - 1)] = number;
-        }
-    }
-
-    #[inline(always)]
-    fn load<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, first: usize) -> [V; 3] {
-        by_axis(
-            #[inline(always)]
-            |axis| V::load(simd, &self.rows[first + axis]),
-        )
-    }
-
-    #[inline(always)]
-    fn rotation<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, first: usize) -> [[V; 3]; 3] {
-        [self.load(simd, first), self.load(simd, first + 3), self.load(simd, first + 6)]
-    }
-
-    #[inline(always)]
     pub(super) fn prediction<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> V {
-        V::load(simd, &self.rows[30])
+        V::load(simd, &self.prediction)
     }
 
     /// The boxes, the second of each pair in the frame of the first, as `Pose::relative` has it.
     #[inline(always)]
-    pub(super) fn boxes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Boxes<V> {
-        let (rotation1, rotation2) = (self.rotation(simd, 0), self.rotation(simd, 12));
-        let (from, to) = (self.load::<S, V>(simd, 9), self.load::<S, V>(simd, 21));
-        let away = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    pub(super) fn boxes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Boxes<V, D> {
+        let [first, second] = &self.boxes;
+        let rotation1 = first.axes(simd);
+        let rotation2: [[V; D]; D] = second.axes(simd);
+        let (from, to): ([V; D], [V; D]) =
+            (load(simd, &first.translation), load(simd, &second.translation));
+        let away = by_axis(
+            #[inline(always)]
+            |axis| to[axis] - from[axis],
+        );
         Boxes {
-            rotation: [
-                seen_from(&rotation1, &rotation2[0]),
-                seen_from(&rotation1, &rotation2[1]),
-                seen_from(&rotation1, &rotation2[2]),
-            ],
+            rotation: by_axis(
+                #[inline(always)]
+                |axis| seen_from(&rotation1, &rotation2[axis]),
+            ),
             translation: seen_from(&rotation1, &away),
-            half1: self.load(simd, 24),
-            half2: self.load(simd, 27),
+            half1: load(simd, &first.half),
+            half2: load(simd, &second.half),
         }
     }
 }
 
+impl<N: Real, const D: usize> Placed<N, D> {
+    #[inline(always)]
+    fn axes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [[V; D]; D] {
+        by_axis(
+            #[inline(always)]
+            |axis| load(simd, &self.rotation[axis]),
+        )
+    }
+}
+
+#[inline(always)]
+fn put<N: Real>(rows: &mut [[N; LANES]], lane: usize, numbers: &[N]) {
+    for (row, &number) in rows.iter_mut().zip(numbers) {
+        row[lane & (LANES - 1)] = number;
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd, V: Wide<S, Scalar = N>, N: Real, const D: usize>(
+    simd: S,
+    rows: &[[N; LANES]; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::load(simd, &rows[axis]),
+    )
+}
+
 /// Eight pairs of boxes, the second of each placed in the frame of the first.
-pub(super) struct Boxes<V> {
+pub(super) struct Boxes<V, const D: usize> {
     /// By columns: the axes of the second box.
-    pub(super) rotation: [[V; 3]; 3],
-    pub(super) translation: [V; 3],
-    pub(super) half1: [V; 3],
-    pub(super) half2: [V; 3],
+    pub(super) rotation: [[V; D]; D],
+    pub(super) translation: [V; D],
+    pub(super) half1: [V; D],
+    pub(super) half2: [V; D],
+}
+
+/// The same number in all lanes.
+#[inline(always)]
+pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
+    V::all(simd, N::lit(value))
+}
+
+/// What there is for each axis.
+#[inline(always)]
+pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
+    let mut all = [of(0); D];
+    for (axis, one) in all.iter_mut().enumerate().skip(1) {
+        *one = of(axis);
+    }
+    all
 }
 
 /// The sum of the products, in the order of the axes.
 #[inline(always)]
-pub(super) fn dot<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> V {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
+    let mut sum = a[0] * b[0];
+    for axis in 1..D {
+        sum = sum + a[axis] * b[axis];
+    }
+    sum
+}
+
+/// The length.
+#[inline(always)]
+pub(super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+    dot(v, v).sqrt()
 }
 
 /// A vector in the frame with these axes.
 #[inline(always)]
-pub(super) fn seen_from<S: Simd, V: Wide<S>>(axes: &[[V; 3]; 3], vector: &[V; 3]) -> [V; 3] {
-    [dot(&axes[0], vector), dot(&axes[1], vector), dot(&axes[2], vector)]
+pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
+    axes: &[[V; D]; D],
+    vector: &[V; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| dot(&axes[axis], vector),
+    )
+}
+
+/// Of two vectors the one that each lane wants.
+#[inline(always)]
+pub(super) fn either<S: Simd, V: Wide<S>, const D: usize>(
+    is: V::Mask,
+    one: &[V; D],
+    other: &[V; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| is.select(one[axis], other[axis]),
+    )
+}
+
+/// What a box of the pair sees of the other, the second where the mask says so: the other's axes and
+/// its translation, as `Pose::inverse` has them for the second.
+#[inline(always)]
+pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
+    boxes: &Boxes<V, D>,
+    is_second: V::Mask,
+) -> ([[V; D]; D], [V; D]) {
+    let (r, t) = (&boxes.rotation, &boxes.translation);
+    let inverse = seen_from(r, t);
+    let rotation = by_axis(
+        #[inline(always)]
+        |j| {
+            let row = by_axis(
+                #[inline(always)]
+                |axis| r[axis][j],
+            );
+            either(is_second, &row, &r[j])
+        },
+    );
+    let shift = by_axis(
+        #[inline(always)]
+        |axis| is_second.select(-inverse[axis], t[axis]),
+    );
+    (rotation, shift)
+}
+
+/// Lengths below this are rounding errors, as for the general builder.
+#[inline(always)]
+pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    boxes: &Boxes<V, D>,
+) -> V {
+    let size = norm(&boxes.half1) + norm(&boxes.half2) + norm(&boxes.translation);
+    lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
+}
+
+/// The lanes all of whose numbers are finite, and so is the sum of their magnitudes.
+#[inline(always)]
+pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    boxes: &Boxes<V, D>,
+) -> V::Mask {
+    let mut all = size(&boxes.translation);
+    for axis in &boxes.rotation {
+        all = all + size(axis);
+    }
+    all.simd_lt(V::all(simd, N::INFINITY))
+}
+
+/// The sum of the magnitudes.
+#[inline(always)]
+fn size<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+    let mut sum = v[0].abs();
+    for x in &v[1..] {
+        sum = sum + x.abs();
+    }
+    sum
 }

@@ -2,12 +2,11 @@
 
 use fearless_simd::Level;
 
-use super::super::contacts3;
 use super::super::tests::scene::Random;
-use super::{BoxJob, update_at};
-use crate::math::{Isometry3, Pose, Real, Vector};
-use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::{Cuboid, Kind};
+use super::{BoxJob, Eights, plane, space, update_at};
+use crate::math::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
+use crate::query::{ManifoldRequest, RawManifold};
+use crate::shape::Cuboid;
 
 /// Everything that runs on this machine.
 fn levels() -> Vec<Level> {
@@ -22,9 +21,28 @@ fn levels() -> Vec<Level> {
     all
 }
 
-struct Case<N: Real> {
-    poses: [Pose<N, 3>; 2],
-    cuboids: [Cuboid<N, 3>; 2],
+/// The dimensions: how boxes are treated there, and how they turn.
+trait Turning<N: Real, const D: usize>: Eights<N, D> {
+    /// A rotation by the components of a vector, each at most `lean`.
+    fn turn(random: &mut Random, lean: f64) -> Matrix<f64, D>;
+}
+
+impl<N: Real> Turning<N, 2> for plane::Found<N> {
+    fn turn(random: &mut Random, lean: f64) -> Matrix<f64, 2> {
+        Pose::from_isometry(&Isometry2::rotation(random.between(-lean, lean))).rotation
+    }
+}
+
+impl<N: Real> Turning<N, 3> for space::Found<N> {
+    fn turn(random: &mut Random, lean: f64) -> Matrix<f64, 3> {
+        let turn = Vector::<f64, 3>::from_fn(|_, _| random.between(-lean, lean));
+        Pose::from_isometry(&Isometry3::rotation(turn)).rotation
+    }
+}
+
+struct Case<N: Real, const D: usize> {
+    poses: [Pose<N, D>; 2],
+    cuboids: [Cuboid<N, D>; 2],
     request: ManifoldRequest<N>,
 }
 
@@ -34,7 +52,7 @@ fn bits<N: Real>(value: N) -> u64 {
 }
 
 /// All that a manifold says.
-fn facts<N: Real>(raw: &RawManifold<N, 3>) -> Vec<u64> {
+fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
         facts.extend(point.point1.coords.iter().map(|&x| bits(x)));
@@ -49,32 +67,30 @@ fn facts<N: Real>(raw: &RawManifold<N, 3>) -> Vec<u64> {
     facts
 }
 
-fn one_by_one<N: Real>(cases: &[Case<N>], raws: &mut [RawManifold<N, 3>]) {
-    for (case, raw) in cases.iter().zip(raws) {
-        let [first, second] = [&case.cuboids[0], &case.cuboids[1]].map(Kind::Cuboid);
-        let pose12 = Pose::relative(&case.poses[0], &case.poses[1]);
-        contacts3(&Pair { first, second, pose12 }, &case.request, raw);
-    }
-}
-
-fn in_lanes<N: Real>(level: Level, cases: &[Case<N>], raws: &mut [RawManifold<N, 3>]) {
+fn jobs<'a, N: Real, const D: usize>(
+    cases: &'a [Case<N, D>],
+    raws: &'a mut [RawManifold<N, D>],
+) -> Vec<BoxJob<'a, N, D>> {
     let mut jobs = Vec::new();
     for (case, raw) in cases.iter().zip(raws) {
         let (poses, cuboids) = (case.poses.each_ref(), case.cuboids.each_ref());
         jobs.push(BoxJob { poses, cuboids, request: &case.request, raw });
     }
-    update_at(level, &mut jobs);
+    jobs
 }
 
 /// Some steps of the same pairs, so that names are inherited; answers how many points there were.
-fn compare<N: Real>(steps: &[Vec<Case<N>>], what: &str) -> usize {
+fn compare<N: Real, E: Eights<N, D>, const D: usize>(
+    steps: &[Vec<Case<N, D>>],
+    what: &str,
+) -> usize {
     let mut points = 0;
     for level in levels() {
-        let fresh = || vec![RawManifold::<N, 3>::default(); steps[0].len()];
+        let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
         let (mut expected, mut found) = (fresh(), fresh());
         for (step, cases) in steps.iter().enumerate() {
-            one_by_one(cases, &mut expected);
-            in_lanes(level, cases, &mut found);
+            jobs(cases, &mut expected).iter_mut().for_each(E::one_by_one);
+            update_at::<N, E, D>(level, &mut jobs(cases, &mut found));
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
                 assert_eq!(
                     facts(one),
@@ -89,43 +105,44 @@ fn compare<N: Real>(steps: &[Vec<Case<N>>], what: &str) -> usize {
 }
 
 /// A draw of two boxes near each other.
-struct Draw {
-    halves: [Vector<f64, 3>; 2],
-    at: [Isometry3<f64>; 2],
+struct Draw<const D: usize> {
+    halves: [Vector<f64, D>; 2],
+    at: [Pose<f64, D>; 2],
 }
 
-impl Draw {
+impl<const D: usize> Draw<D> {
     /// `snapped` boxes have sides and places on a grid and no turn; `lean` is the angle of others.
-    fn new(random: &mut Random, snapped: bool, lean: f64) -> Self {
+    fn new<N: Real, E: Turning<N, D>>(random: &mut Random, snapped: bool, lean: f64) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
-        let mut half = || Vector::<f64, 3>::from_fn(|_, _| snap(random.between(0.2, 1.3)));
+        let mut half = || Vector::<f64, D>::from_fn(|_, _| snap(random.between(0.2, 1.3)));
         let halves = [half(), half()];
         let lean = if snapped { 0.0 } else { lean };
-        let mut turn = || Vector::<f64, 3>::from_fn(|_, _| random.between(-lean, lean));
-        let turns = [turn(), turn()];
-        let mut shift = Vector::<f64, 3>::from_fn(|_, _| snap(random.between(-1.2, 1.2)));
+        let turns = [E::turn(random, lean), E::turn(random, lean)];
+        let mut shift = Vector::<f64, D>::from_fn(|_, _| snap(random.between(-1.2, 1.2)));
         let axis = usize::from(random.between(0.0, 1.0) < 0.5);
         let side = if random.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
         shift[axis] = side * (halves[0][axis] + halves[1][axis] - snap(random.between(-0.1, 0.2)));
-        let place = Vector::<f64, 3>::from_fn(|_, _| random.between(-9.0, 9.0).round());
-        let first = Isometry3::new(place, turns[0]);
-        let second = Isometry3::new(place + shift, turns[1]);
+        let place = Vector::<f64, D>::from_fn(|_, _| random.between(-9.0, 9.0).round());
+        let [rotation, other] = turns;
+        let first = Pose { rotation, translation: place };
+        let second = Pose { rotation: other, translation: place + shift };
         Self { halves, at: [first, second] }
     }
 
     /// The same, shaken a little.
-    fn shaken(&self, random: &mut Random, by: f64) -> Self {
-        let mut shake = || Vector::<f64, 3>::from_fn(|_, _| random.between(-by, by));
-        let at = self.at.map(|at| at * Isometry3::new(shake(), shake()));
+    fn shaken<N: Real, E: Turning<N, D>>(&self, random: &mut Random, by: f64) -> Self {
+        let at = self.at.map(|at| {
+            let translation = Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
+            at.compose(&Pose { rotation: E::turn(random, by), translation })
+        });
         Self { halves: self.halves, at }
     }
 
     /// In another unit of length.
-    fn case<N: Real>(&self, unit: f64, request: &ManifoldRequest<N>) -> Case<N> {
-        let pose = |at: &Isometry3<f64>| {
-            let exact = Pose::from_isometry(at);
-            let translation = exact.translation.map(|x| N::lit(x * unit));
-            Pose { rotation: exact.rotation.map(N::lit), translation }
+    fn case<N: Real>(&self, unit: f64, request: &ManifoldRequest<N>) -> Case<N, D> {
+        let pose = |at: &Pose<f64, D>| {
+            let translation = at.translation.map(|x| N::lit(x * unit));
+            Pose { rotation: at.rotation.map(N::lit), translation }
         };
         let request = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
         Case {
@@ -141,52 +158,63 @@ fn request<N: Real>(prediction: f64, max_points: usize) -> ManifoldRequest<N> {
 }
 
 /// 203 pairs of a kind, in three steps.
-fn drawn<N: Real>(seed: u64, unit: f64, points: usize, lean: f64) -> Vec<Vec<Case<N>>> {
+fn drawn<N: Real, E: Turning<N, D>, const D: usize>(
+    seed: u64,
+    unit: f64,
+    points: usize,
+    lean: f64,
+) -> Vec<Vec<Case<N, D>>> {
     let mut random = Random(seed);
     let snaps: Vec<bool> = (0..203).map(|index| index % 3 == 0).collect();
-    let mut draws: Vec<_> = snaps.iter().map(|&snap| Draw::new(&mut random, snap, lean)).collect();
+    let mut draws: Vec<_> =
+        snaps.iter().map(|&snap| Draw::new::<N, E>(&mut random, snap, lean)).collect();
     let mut steps = Vec::new();
     for _ in 0..3 {
         steps.push(draws.iter().map(|draw| draw.case(unit, &request(0.05, points))).collect());
-        draws = draws.iter().map(|draw| draw.shaken(&mut random, 0.002)).collect();
+        draws = draws.iter().map(|draw| draw.shaken::<N, E>(&mut random, 0.002)).collect();
     }
     steps
 }
 
-fn ordinary<N: Real>() {
+fn ordinary<N: Real, E: Turning<N, D>, const D: usize>() {
     for (seed, points) in [(1, 4), (2, 4), (3, 1), (4, 2), (5, 3), (6, 16)] {
         for lean in [0.005, 0.1, 3.0] {
-            let found = compare(&drawn::<N>(seed, 1.0, points, lean), "drawn");
+            let steps = drawn::<N, E, D>(seed, 1.0, points, lean);
+            let found = compare::<N, E, D>(&steps, "drawn");
             assert!(found > 200, "{found} points, {points} at most, lean {lean}");
         }
     }
     for unit in [1e-30, 1e-15, 1e12, 1e18, 1e30] {
-        compare(&drawn::<N>(7, unit, 4, 0.02), "in another unit");
+        compare::<N, E, D>(&drawn::<N, E, D>(7, unit, 4, 0.02), "in another unit");
     }
 }
 
 #[test]
 fn eight_pairs_are_as_one() {
-    ordinary::<f32>();
+    ordinary::<f32, plane::Found<f32>, 2>();
+    ordinary::<f32, space::Found<f32>, 3>();
     #[cfg(feature = "f64")]
-    ordinary::<f64>();
+    {
+        ordinary::<f64, plane::Found<f64>, 2>();
+        ordinary::<f64, space::Found<f64>, 3>();
+    }
 }
 
 /// Boxes without height, width or any size; poses that are no numbers, no rotations or far away.
-fn spoiled<N: Real>(case: &mut Case<N>, number: usize) {
+fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
-    let (which, axis) = (number % 2, number / 2 % 3);
+    let (which, axis) = (number % 2, number / 2 % D);
     match number % 7 {
         0 => case.poses[which].translation[axis] = value,
-        1 => case.poses[which].rotation[(axis, number / 6 % 3)] = value,
+        1 => case.poses[which].rotation[(axis, number / 6 % D)] = value,
         2 => case.poses[which].rotation *= N::ZERO,
         3 => {
             let mut half = *case.cuboids[which].half_extents();
             half[axis] = if value.is_finite_number() && value >= N::ZERO { value } else { N::ZERO };
             case.cuboids[which] = Cuboid::new(half);
         }
-        4 => case.cuboids[which] = Cuboid::new(Vector::<N, 3>::zeros()),
+        4 => case.cuboids[which] = Cuboid::new(Vector::<N, D>::zeros()),
         5 => case.poses[1] = case.poses[0],
         _ => {
             case.request.prediction = [N::ZERO, N::INFINITY, N::MAX][number / 7 % 3];
@@ -195,33 +223,42 @@ fn spoiled<N: Real>(case: &mut Case<N>, number: usize) {
     }
 }
 
-fn strange<N: Real>() {
+fn strange<N: Real, E: Turning<N, D>, const D: usize>() {
     for seed in 11..15 {
-        let mut steps = drawn::<N>(seed, 1.0, 4, 0.05);
+        let mut steps = drawn::<N, E, D>(seed, 1.0, 4, 0.05);
         for cases in &mut steps {
             for (number, case) in cases.iter_mut().enumerate() {
                 spoiled(case, number + usize::try_from(seed).expect("small"));
             }
         }
-        compare(&steps, "spoiled");
+        compare::<N, E, D>(&steps, "spoiled");
     }
 }
 
 #[test]
 fn strange_numbers_are_treated_as_one_by_one() {
-    strange::<f32>();
+    strange::<f32, plane::Found<f32>, 2>();
+    strange::<f32, space::Found<f32>, 3>();
     #[cfg(feature = "f64")]
-    strange::<f64>();
+    {
+        strange::<f64, plane::Found<f64>, 2>();
+        strange::<f64, space::Found<f64>, 3>();
+    }
+}
+
+fn counted<E: Turning<f32, D>, const D: usize>() {
+    let steps = drawn::<f32, E, D>(21, 1.0, 4, 0.02);
+    for count in 0..20 {
+        let some: Vec<Vec<Case<f32, D>>> = steps
+            .iter()
+            .map(|cases| cases.iter().take(count).map(|case| Case { ..*case }).collect())
+            .collect();
+        compare::<f32, E, D>(&some, "some");
+    }
 }
 
 #[test]
 fn any_number_of_pairs() {
-    let steps = drawn::<f32>(21, 1.0, 4, 0.02);
-    for count in 0..20 {
-        let some: Vec<Vec<Case<f32>>> = steps
-            .iter()
-            .map(|cases| cases.iter().take(count).map(|case| Case { ..*case }).collect())
-            .collect();
-        compare(&some, "some");
-    }
+    counted::<plane::Found<f32>, 2>();
+    counted::<space::Found<f32>, 3>();
 }

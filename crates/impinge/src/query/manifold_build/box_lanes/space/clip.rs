@@ -6,12 +6,12 @@
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::LANES;
+use super::super::admit::{Admission, Limits, Slots};
+use super::super::choose::SLOTS;
+use super::super::masks::bits;
 use super::faces::{Faces, cross};
 use crate::math::{Real, Wide};
 
-/// Corners of the parallelogram, of the rectangle, crossings.
-pub(super) const SLOTS: usize = 24;
 /// The first eight slots are corners, above which or below which the other face is to be named.
 pub(super) const CORNERS: usize = 8;
 
@@ -19,40 +19,18 @@ pub(super) const CORNERS: usize = 8;
 pub(super) const SIGNS: [[bool; 2]; 4] =
     [[true, true], [false, true], [false, false], [true, false]];
 
-/// The places of eight pairs, and for each of them a bit of a mask.
-pub(super) struct Slots<N: Real> {
-    /// Seen along the normal.
-    pub(super) flat: [[[N; LANES]; SLOTS]; 2],
-    /// Above the rectangle.
-    pub(super) height: [[N; LANES]; SLOTS],
-    /// The lanes where the slot holds a candidate.
-    pub(super) valid: [u8; SLOTS],
-    /// Those where its distance is the smallest but for rounding.
-    pub(super) level: [u8; SLOTS],
-    /// Of each corner: it is at an end of the other face along its first or second axis.
+/// How the corners of eight pairs lie to the other face, of each pair a bit.
+pub(super) struct Corners {
+    /// At an end of the other face along its first or second axis.
     pub(super) at_end: [[u8; CORNERS]; 2],
-    /// It is on the positive side of that axis.
+    /// On the positive side of that axis.
     pub(super) beyond: [[u8; CORNERS]; 2],
 }
 
-impl<N: Real> Slots<N> {
+impl Corners {
     pub(super) const fn new() -> Self {
-        Self {
-            flat: [[[N::ZERO; LANES]; SLOTS]; 2],
-            height: [[N::ZERO; LANES]; SLOTS],
-            valid: [0; SLOTS],
-            level: [0; SLOTS],
-            at_end: [[0; CORNERS]; 2],
-            beyond: [[0; CORNERS]; 2],
-        }
+        Self { at_end: [[0; CORNERS]; 2], beyond: [[0; CORNERS]; 2] }
     }
-}
-
-/// What the candidates are held against.
-pub(super) struct Limits<V> {
-    /// The distance that the axis says, which the lowest candidate must have.
-    pub(super) gap: V,
-    pub(super) prediction: V,
 }
 
 /// A corner as the other face sees it.
@@ -69,11 +47,6 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-#[inline(always)]
-fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
-    mask.to_bitmask().to_le_bytes()[0]
-}
-
 /// The end of the side that lies at `sign` of `arm`: the lower or the upper one.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
@@ -81,15 +54,11 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
 
 /// The clipping of eight pairs under way.
 pub(super) struct Clip<'a, S, N: Real, V, M> {
-    pub(super) simd: S,
-    pub(super) faces: &'a Faces<V, M>,
-    pub(super) limits: Limits<V>,
-    pub(super) slots: &'a mut Slots<N>,
-    /// The lowest candidate so far.
-    lowest: V,
-    /// The largest distance that is admitted, and the largest that is level with the gap.
-    most: V,
-    level: V,
+    simd: S,
+    faces: &'a Faces<V, M>,
+    admission: Admission<V>,
+    slots: &'a mut Slots<N, SLOTS>,
+    corners: &'a mut Corners,
 }
 
 impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
@@ -103,13 +72,10 @@ where
     pub(super) fn new(
         simd: S,
         faces: &'a Faces<V, M>,
-        limits: Limits<V>,
-        slots: &'a mut Slots<N>,
+        limits: &Limits<V>,
+        (slots, corners): (&'a mut Slots<N, SLOTS>, &'a mut Corners),
     ) -> Self {
-        let infinity = V::all(simd, N::INFINITY);
-        let (most, level) = (limits.prediction + faces.tolerance, limits.gap + faces.tolerance);
-        let level = limits.prediction.simd_le(level).select(infinity, level);
-        Self { simd, faces, limits, slots, lowest: infinity, most, level }
+        Self { simd, faces, admission: Admission::new(simd, limits), slots, corners }
     }
 
     /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
@@ -134,7 +100,7 @@ where
         self.crossings(CORNERS + 4, 0, false);
         self.crossings(CORNERS + 8, 1, true);
         self.crossings(CORNERS + 12, 1, false);
-        (self.lowest - self.limits.gap).abs().simd_le(self.faces.tolerance)
+        self.admission.is_found()
     }
 
     /// Where a corner of the parallelogram is seen, and its height.
@@ -192,8 +158,8 @@ where
     #[inline(always)]
     fn corner(&mut self, slot: usize, place: &Place<V, M>) {
         for axis in 0..2 {
-            self.slots.at_end[axis][slot] = bits(place.at_end[axis]);
-            self.slots.beyond[axis][slot] = bits(place.beyond[axis]);
+            self.corners.at_end[axis][slot] = bits(place.at_end[axis]);
+            self.corners.beyond[axis][slot] = bits(place.beyond[axis]);
         }
         self.admit(slot, (&place.flat, place.height), place.is_inside);
     }
@@ -238,12 +204,7 @@ where
     fn admit(&mut self, slot: usize, (flat, height): (&[V; 2], V), is_there: M) {
         flat[0].store(&mut self.slots.flat[0][slot]);
         flat[1].store(&mut self.slots.flat[1][slot]);
-        height.store(&mut self.slots.height[slot]);
-        self.lowest = (is_there & height.simd_lt(self.lowest)).select(height, self.lowest);
-        // Distances are never less than the gap nor more than the prediction: both pass anyway.
-        let is_admitted = is_there & !height.simd_gt(self.most);
-        self.slots.valid[slot] = bits(is_admitted);
-        self.slots.level[slot] = bits(is_admitted & !height.simd_gt(self.level));
+        self.admission.admit(self.slots, slot, height, is_there);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Names of the slots of one pair, and the slots of names.
 
-use super::clip::{CORNERS, SIGNS, SLOTS};
+use super::super::choose::{Naming, SLOTS};
+use super::Sides;
+use super::clip::{CORNERS, SIGNS};
 use crate::query::manifold_build::box_faces::{edge, face, vertex};
 use crate::shape::FeatureId;
 
@@ -87,10 +89,10 @@ const fn own_parts() -> [u8; 4] {
 }
 
 /// The pairs of parts that the slots stand for; of a corner only what its own part adds.
-const OWN_PAIRS: [u8; SLOTS] = own_pairs();
+const OWN_PAIRS: [u8; PLACES] = own_pairs();
 
-const fn own_pairs() -> [u8; SLOTS] {
-    let mut pairs = [0; SLOTS];
+const fn own_pairs() -> [u8; PLACES] {
+    let mut pairs = [NONE; PLACES];
     let mut slot = 0;
     while slot < SLOTS {
         pairs[slot] = if slot < 4 {
@@ -147,17 +149,26 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
 const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// How the slots of one pair are named.
-pub(super) struct Naming {
+pub(super) struct Names {
     rectangle: &'static FaceNames,
     parallelogram: &'static FaceNames,
     is_second: bool,
-    pairs: [u8; SLOTS],
+    /// The faces as a code has them.
+    faces: u32,
+    pairs: [u8; PLACES],
 }
 
-impl Naming {
-    /// For a rectangle of the second box or the first.
+/// As many as a code may name slots.
+const PLACES: usize = 32;
+/// Where the two parts stand in a code, and the faces; every code has the last bit.
+const PARTS_AT: u32 = 5;
+const FACES_AT: u32 = 12;
+const MARK: u32 = 1 << 31;
+
+impl Names {
+    /// From the two faces, as bits too.
     #[inline(always)]
-    pub(super) fn new([rectangle, parallelogram]: [Side; 2], is_second: bool, parts: u64) -> Self {
+    pub(super) fn new(sides: &Sides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
@@ -166,21 +177,27 @@ impl Naming {
         let corners = own + 9 * below + (parts - below);
         pairs[..CORNERS].copy_from_slice(&corners.to_le_bytes());
         let names = |side: Side| &FACES[side.axis][usize::from(side.is_positive)];
-        Self { rectangle: names(rectangle), parallelogram: names(parallelogram), is_second, pairs }
+        Self {
+            rectangle: names(sides.rectangle),
+            parallelogram: names(sides.parallelogram),
+            is_second: sides.is_second,
+            faces: MARK | u32::from(bits) << FACES_AT,
+            pairs,
+        }
     }
+}
 
-    /// The names of a candidate, of the first and the second box.
+impl Naming for Names {
     #[inline(always)]
-    pub(super) fn features(&self, slot: usize) -> [FeatureId; 2] {
+    fn features(&self, slot: usize) -> [FeatureId; 2] {
         let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];
         let below = self.rectangle.parts[usize::from(below)];
         let above = self.parallelogram.parts[usize::from(above)];
         if self.is_second { [above, below] } else { [below, above] }
     }
 
-    /// The candidate of these names, among those that there are.
     #[inline(always)]
-    pub(super) fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
+    fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
         let (below, above) = if self.is_second { (second, first) } else { (first, second) };
         let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
         if below == NONE || above == NONE {
@@ -194,6 +211,12 @@ impl Naming {
         let [one, other] = SLOTS_OF[usize::from(pair)];
         let slot = if is_it(one) { one } else { other };
         is_it(slot).then_some(usize::from(slot))
+    }
+
+    #[inline(always)]
+    fn code(&self, slot: usize) -> u32 {
+        let pair = u32::from(self.pairs[slot & (PLACES - 1)]);
+        self.faces | pair << PARTS_AT | slot as u32
     }
 }
 

@@ -2,10 +2,9 @@
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::axis::{BestAxis, by_axis, lit, of_three, which};
-use super::gather::{Boxes, dot, seen_from};
+use super::super::gather::{Boxes, by_axis, dot, either, lit, norm, other, seen_from, tolerance};
+use super::axis::{BestAxis, of_three, which};
 use crate::math::{Real, Wide};
-use crate::query::manifold_build::frame::ROUNDING_ERRORS;
 use crate::shape::FACING_SINE_SQUARED;
 
 /// A face of a box, and the face of the other above it, in the frame of the first of these.
@@ -67,7 +66,7 @@ struct Below<V, M> {
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    boxes: &Boxes<V>,
+    boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, V::Mask>,
 ) -> Below<V, V::Mask> {
     let (zero, normal) = (V::all(simd, N::ZERO), &axis.normal);
@@ -94,45 +93,11 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-#[inline(always)]
-fn either<S: Simd, V: Wide<S>>(is: V::Mask, one: &[V; 3], other: &[V; 3]) -> [V; 3] {
-    by_axis(
-        #[inline(always)]
-        |axis| is.select(one[axis], other[axis]),
-    )
-}
-
 /// The axis that each lane names, of three, times a length.
 #[inline(always)]
 fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) -> [V; 3] {
     let [x, y, z] = of_three(is, axes);
     [x * length, y * length, z * length]
-}
-
-#[inline(always)]
-fn norm2<S: Simd, V: Wide<S>>(v: &[V; 2]) -> V {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
-}
-
-#[inline(always)]
-fn norm3<S: Simd, V: Wide<S>>(v: &[V; 3]) -> V {
-    dot(v, v).sqrt()
-}
-
-/// The other box, seen from the rectangle's.
-#[inline(always)]
-fn other<S: Simd, V: Wide<S>>(boxes: &Boxes<V>, is_second: V::Mask) -> ([[V; 3]; 3], [V; 3]) {
-    let (r, t) = (&boxes.rotation, &boxes.translation);
-    let inverse = seen_from(r, t);
-    let rotation = by_axis(
-        #[inline(always)]
-        |j| either(is_second, &[r[0][j], r[1][j], r[2][j]], &r[j]),
-    );
-    let shift = by_axis(
-        #[inline(always)]
-        |a| is_second.select(-inverse[a], t[a]),
-    );
-    (rotation, shift)
 }
 
 /// Where a vector, by the axes in turn, ends when seen along the normal, and how far along.
@@ -152,7 +117,7 @@ impl<V, M> Faces<V, M> {
     #[inline(always)]
     pub(super) fn meeting<S: Simd, N: Real>(
         simd: S,
-        boxes: &Boxes<V>,
+        boxes: &Boxes<V, 3>,
         axis: &BestAxis<V, M>,
     ) -> Self
     where
@@ -160,7 +125,7 @@ impl<V, M> Faces<V, M> {
         M: SimdMask<S>,
     {
         let below = below(simd, boxes, axis);
-        let (rotation, shift) = other::<S, V>(boxes, axis.is_second);
+        let (rotation, shift) = other(boxes, axis.is_second);
         let toward = in_turn(&below.is_w, &below.toward);
         let facing = seen_from(&rotation, &below.toward);
         let facing = [-facing[0], -facing[1], -facing[2]];
@@ -181,7 +146,7 @@ impl<V, M> Faces<V, M> {
         let arm2 = in_turn(&below.is_w, &arm(&is_m, [z, x, y], half[2]));
         let ((arm1, climb1), (arm2, climb2)) = (seen(arm1, &toward), seen(arm2, &toward));
         let area = cross(&arm1, &arm2);
-        let widths = [area.abs() / norm2(&arm2), area.abs() / norm2(&arm1)];
+        let widths = [area.abs() / norm(&arm2), area.abs() / norm(&arm1)];
         let across = [below.half[1], below.half[2]];
         let tolerance = tolerance(simd, boxes);
         let narrow = lit::<S, N, V>(simd, 4.0) * tolerance;
@@ -207,11 +172,4 @@ impl<V, M> Faces<V, M> {
             is_fit,
         }
     }
-}
-
-/// Lengths below this are rounding errors, as for the general builder.
-#[inline(always)]
-fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, boxes: &Boxes<V>) -> V {
-    let size = norm3(&boxes.half1) + norm3(&boxes.half2) + norm3(&boxes.translation);
-    lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
 }

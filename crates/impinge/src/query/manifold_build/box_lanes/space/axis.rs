@@ -2,7 +2,7 @@
 
 use fearless_simd::{Select, Simd};
 
-use super::gather::{Boxes, dot};
+use super::super::gather::{Boxes, by_axis, dot, is_finite, lit};
 use crate::math::{Real, Wide};
 
 /// The axis of the largest gap of eight pairs.
@@ -19,23 +19,6 @@ pub(super) struct BestAxis<V, M> {
     pub(super) noise: V,
     /// All numbers of the pose are finite, and so is their sum.
     pub(super) is_finite: M,
-}
-
-#[inline(always)]
-pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
-    V::all(simd, N::lit(value))
-}
-
-/// What there is for each of three axes.
-#[inline(always)]
-pub(super) fn by_axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
-    [of(0), of(1), of(2)]
-}
-
-/// The sum of the magnitudes.
-#[inline(always)]
-fn sizes<S: Simd, V: Wide<S>>(v: &[V; 3]) -> V {
-    v[0].abs() + v[1].abs() + v[2].abs()
 }
 
 /// The vector whose number each lane names, of three.
@@ -66,7 +49,7 @@ fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
     )
 }
 
-impl<V> Boxes<V> {
+impl<V> Boxes<V, 3> {
     /// What arithmetic on these numbers cannot resolve.
     #[inline(always)]
     fn noise<S: Simd, N: Real>(&self, simd: S) -> V
@@ -93,8 +76,7 @@ impl<V> Boxes<V> {
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
         let normal = self.direction(simd, ends, (is_second, is_edges));
-        let all = sizes(&leans[0]) + sizes(&leans[1]) + sizes(&leans[2]) + sizes(&self.translation);
-        let is_finite = all.simd_lt(V::all(simd, N::INFINITY));
+        let is_finite = is_finite(simd, self);
         let gap = is_edges.select(bound, gap);
         BestAxis { face, is_second, is_edges, normal, gap, noise, is_finite }
     }

@@ -1,0 +1,197 @@
+//! Coal, asked for many pairs in one call.
+
+use std::ffi::c_void;
+use std::marker::PhantomData;
+use std::ptr::NonNull;
+
+type Handle = *mut c_void;
+
+// They take what `coal.cpp` says; lists of numbers are as long as the counts beside them.
+unsafe extern "C" {
+    fn impinge_coal_ball(radius: f64) -> Handle;
+    fn impinge_coal_box(half: *const f64, radius: f64) -> Handle;
+    fn impinge_coal_capsule(half: f64, radius: f64) -> Handle;
+    fn impinge_coal_cylinder(half: f64, radius: f64) -> Handle;
+    fn impinge_coal_cone(half: f64, radius: f64) -> Handle;
+    fn impinge_coal_hull(points: *const f64, count: usize) -> Handle;
+    fn impinge_coal_half_space(normal: *const f64) -> Handle;
+    fn impinge_coal_mesh(v: *const f64, vertices: usize, t: *const u32, triangles: usize)
+    -> Handle;
+    fn impinge_coal_drop_solid(solid: Handle);
+    fn impinge_coal_pairs(a: Handle, b: Handle, first: *const f64, count: usize) -> Handle;
+    fn impinge_coal_add_set(pairs: Handle, second: *const f64);
+    fn impinge_coal_drop_pairs(pairs: Handle);
+    fn impinge_coal_reset(pairs: Handle, margin: f64, is_warm: bool);
+    fn impinge_coal_distances(pairs: Handle, set: usize, answers: *mut f32);
+    fn impinge_coal_contacts(pairs: Handle, set: usize, answers: *mut f32);
+    fn impinge_coal_patches(pairs: Handle, set: usize);
+    fn impinge_coal_deepest(pairs: Handle, answers: *mut f32);
+}
+
+/// A solid around the origin, in `f64`; axes go along the second coordinate.
+#[derive(Debug)]
+pub struct CoalSolid(NonNull<c_void>);
+
+impl CoalSolid {
+    fn owned(handle: Handle) -> Self {
+        Self(NonNull::new(handle).expect("it is made by `new`"))
+    }
+
+    /// A ball.
+    #[must_use]
+    pub fn ball(radius: f64) -> Self {
+        // SAFETY: plain numbers; this owns what is made, as below.
+        Self::owned(unsafe { impinge_coal_ball(radius) })
+    }
+
+    /// A box, rounded outwards by a radius.
+    #[must_use]
+    pub fn cuboid(half_extents: &[f64; 3], radius: f64) -> Self {
+        // SAFETY: three numbers are read.
+        Self::owned(unsafe { impinge_coal_box(half_extents.as_ptr(), radius) })
+    }
+
+    /// A capsule.
+    #[must_use]
+    pub fn capsule(half_height: f64, radius: f64) -> Self {
+        // SAFETY: plain numbers.
+        Self::owned(unsafe { impinge_coal_capsule(half_height, radius) })
+    }
+
+    /// A cylinder.
+    #[must_use]
+    pub fn cylinder(half_height: f64, radius: f64) -> Self {
+        // SAFETY: plain numbers.
+        Self::owned(unsafe { impinge_coal_cylinder(half_height, radius) })
+    }
+
+    /// A cone, its apex above.
+    #[must_use]
+    pub fn cone(half_height: f64, radius: f64) -> Self {
+        // SAFETY: plain numbers.
+        Self::owned(unsafe { impinge_coal_cone(half_height, radius) })
+    }
+
+    /// The hull of points that span space.
+    #[must_use]
+    pub fn hull(points: &[[f64; 3]]) -> Self {
+        // SAFETY: three numbers are read for each point.
+        Self::owned(unsafe { impinge_coal_hull(points.as_flattened().as_ptr(), points.len()) })
+    }
+
+    /// All below a plane through the origin, by its outward normal.
+    #[must_use]
+    pub fn half_space(normal: &[f64; 3]) -> Self {
+        // SAFETY: three numbers are read.
+        Self::owned(unsafe { impinge_coal_half_space(normal.as_ptr()) })
+    }
+
+    /// Triangles, with a tree over them.
+    ///
+    /// # Panics
+    /// Where a triangle names a vertex that is not there.
+    #[must_use]
+    pub fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
+        let named = triangles.as_flattened();
+        let is_there = |n: &u32| (*n as usize) < vertices.len();
+        assert!(named.iter().all(is_there), "a triangle names a vertex that is not there");
+        let (points, corners) = (vertices.as_flattened().as_ptr(), named.as_ptr());
+        // SAFETY: three numbers are read for each vertex and triangle, and these name vertices.
+        Self::owned(unsafe { impinge_coal_mesh(points, vertices.len(), corners, triangles.len()) })
+    }
+}
+
+impl Drop for CoalSolid {
+    fn drop(&mut self) {
+        // SAFETY: it was made above and is dropped once.
+        unsafe { impinge_coal_drop_solid(self.0.as_ptr()) }
+    }
+}
+
+/// A translation and a quaternion `[x, y, z, w]`.
+pub type CoalPose = [f64; 7];
+
+/// Two solids in many placements.
+#[derive(Debug)]
+pub struct CoalPairs {
+    handle: NonNull<c_void>,
+    count: usize,
+    sets: usize,
+    /// Searches keep state.
+    thread: PhantomData<*const ()>,
+}
+
+impl CoalPairs {
+    /// Placements of the first solid, and sets of as many placements of the second; none where Coal has
+    /// no algorithm for the two.
+    ///
+    /// # Panics
+    /// Where a set has another length.
+    #[must_use]
+    pub fn new(
+        solids: &[CoalSolid; 2],
+        first: &[CoalPose],
+        sets: &[Vec<CoalPose>],
+    ) -> Option<Self> {
+        let [a, b] = solids.each_ref().map(|solid| solid.0.as_ptr());
+        let numbers = first.as_flattened().as_ptr();
+        // SAFETY: seven numbers are read for each placement; the pairs share the solids' geometry.
+        let handle = NonNull::new(unsafe { impinge_coal_pairs(a, b, numbers, first.len()) })?;
+        let mut pairs = Self { handle, count: first.len(), sets: sets.len(), thread: PhantomData };
+        for set in sets {
+            assert_eq!(set.len(), first.len(), "every pair has one placement in a set");
+            // SAFETY: as many placements as before.
+            unsafe { impinge_coal_add_set(handle.as_ptr(), set.as_flattened().as_ptr()) };
+        }
+        pairs.reset(0.0, false);
+        Some(pairs)
+    }
+
+    /// Forgets what was kept of earlier questions. Contacts are wanted up to a margin; with `is_warm` a
+    /// search for contacts begins with the direction that the last one ended with.
+    pub fn reset(&mut self, margin: f64, is_warm: bool) {
+        // SAFETY: the pairs are owned, as below.
+        unsafe { impinge_coal_reset(self.handle.as_ptr(), margin, is_warm) }
+    }
+
+    /// The distance of every pair in a set, 0 where they overlap.
+    pub fn distances(&mut self, set: usize, answers: &mut Vec<f32>) {
+        let handle = self.begin(set, answers);
+        // SAFETY: the set is there, and the answers are as many as the pairs.
+        unsafe { impinge_coal_distances(handle, set, answers.as_mut_ptr()) }
+    }
+
+    /// The signed distance of the deepest contact of every pair, infinite for none.
+    pub fn contacts(&mut self, set: usize, answers: &mut Vec<f32>) {
+        let handle = self.begin(set, answers);
+        // SAFETY: as before.
+        unsafe { impinge_coal_contacts(handle, set, answers.as_mut_ptr()) }
+    }
+
+    /// Contacts, and the polygons in which surfaces touch; they are kept.
+    pub fn patches(&mut self, set: usize) {
+        assert!(set < self.sets, "there are {} sets", self.sets);
+        // SAFETY: the set is there.
+        unsafe { impinge_coal_patches(self.handle.as_ptr(), set) }
+    }
+
+    /// The signed distance of the deepest contact that was kept, of every pair.
+    pub fn deepest(&self, answers: &mut Vec<f32>) {
+        answers.resize(self.count, 0.0);
+        // SAFETY: the answers are as many as the pairs.
+        unsafe { impinge_coal_deepest(self.handle.as_ptr(), answers.as_mut_ptr()) }
+    }
+
+    fn begin(&mut self, set: usize, answers: &mut Vec<f32>) -> Handle {
+        assert!(set < self.sets, "there are {} sets", self.sets);
+        answers.resize(self.count, 0.0);
+        self.handle.as_ptr()
+    }
+}
+
+impl Drop for CoalPairs {
+    fn drop(&mut self) {
+        // SAFETY: it was made above and is dropped once.
+        unsafe { impinge_coal_drop_pairs(self.handle.as_ptr()) }
+    }
+}

@@ -1,0 +1,28 @@
+//! rapier's `CollisionPipeline`: its two crates differ in nothing but their names and some constructors, and
+//! so do the modules here.
+//!
+//! Set up as in the tests of that pipeline: colliders without bodies,
+//! which cost it less than kinematic ones, all collision types active (colliders without bodies are
+//! fixed, and fixed ones ignore one another otherwise), the workspace kept between steps, no hooks
+//! and no events. Its boxes are loosened by 0.04, as those of the scenes are.
+
+use impinge_scenes::{Placement, Scene, SceneShape};
+
+use super::PREDICTION;
+use super::contender::{Contender, Reading};
+
+/// rapier in the plane.
+pub mod plane {
+    use super::*;
+    use ::rapier2d::prelude::*;
+    include!("rapier_plane.rs");
+    include!("rapier_common.rs");
+}
+
+/// rapier in space.
+pub mod space {
+    use super::*;
+    use ::rapier3d::prelude::*;
+    include!("rapier_space.rs");
+    include!("rapier_common.rs");
+}

@@ -1,0 +1,209 @@
+//! A box at rest, made ready to be held against blocks: squares of distances in `f32`, never too large.
+
+use super::kernel::{Scalar, Wide, low_half};
+use super::{Block, Bounds, LANES};
+use crate::bounding_volume::Aabb;
+use crate::math::Real;
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
+
+/// Coordinates from here on are too large for differences in `f32`: 2 to the power of 125.
+const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
+
+/// Coordinates below this count as this, so that the unit has an inverse: 2 to the power of -120.
+const SMALLEST: f32 = f32::from_bits((127 - 120) << 23);
+
+/// Rounding units of `f32` by which squares may be off, here and in the exact test.
+const SQUARE: f32 = 16.0;
+
+/// A box as blocks see it, for how far they are from it.
+///
+/// Distances are in units of a power of two near the largest coordinate: then squares stay in range,
+/// whatever the scale.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gaps<const D: usize> {
+    lo: [f32; D],
+    hi: [f32; D],
+    /// One over the unit.
+    scale: f32,
+    /// What the square of a distance of the caller's may lose where it is hardly a number of the type.
+    lost: f64,
+}
+
+impl<const D: usize> Gaps<D> {
+    /// A box that holds a finite point, for boxes with coordinates up to `size`.
+    ///
+    /// One with coordinates beyond what `f32` can subtract is near everything.
+    pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
+        let faces = aabb.mins().iter().chain(aabb.maxs().iter()).filter(|x| x.is_finite_number());
+        let reach = faces.map(|x| x.as_f32().abs()).fold(size, f32::max);
+        let lost = N::MIN_POSITIVE.as_f64();
+        if reach < LARGEST {
+            let Bounds { lo, hi } = Bounds::enclosing(aabb).clamped();
+            return Self { lo, hi, scale: 1.0 / reach.max(SMALLEST).power_of_two_below(), lost };
+        }
+        Self { lo: [-f32::MAX; D], hi: [f32::MAX; D], scale: 1.0, lost }
+    }
+
+    /// The square of a distance of the caller's, or a little more, in the units of this; finite, and
+    /// negative for NaN.
+    #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
+    pub(crate) fn limit<N: Real>(&self, distance: N) -> f32 {
+        let (distance, scale) = (distance.as_f64(), f64::from(self.scale));
+        let is_distance = distance >= 0.0;
+        if !is_distance {
+            return -1.0;
+        }
+        let squared = (distance * scale) * (distance * scale) + self.lost * scale * scale;
+        let slack = f64::from(SQUARE * f32::EPSILON);
+        f32::min((squared + squared * slack) as f32 + f32::MIN_POSITIVE, f32::MAX)
+    }
+}
+
+impl Scalar {
+    /// One lane after another: see [`Kernel::apart`](super::kernel::Kernel::apart).
+    #[inline(always)]
+    pub(super) fn apart_from_block<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let mut mask = 0;
+        for (lane, key) in keys.iter_mut().enumerate() {
+            let mut squared = 0.0;
+            for axis in 0..D {
+                let above = block.lo[axis][lane] - gaps.hi[axis];
+                let below = gaps.lo[axis] - block.hi[axis][lane];
+                let gap = larger(larger(above, below), 0.0) * gaps.scale;
+                squared += gap * gap;
+            }
+            *key = squared;
+            mask |= u32::from(squared <= limit) << lane;
+        }
+        mask
+    }
+
+    /// See [`Kernel::least`](super::kernel::Kernel::least).
+    #[inline(always)]
+    pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
+        let among = (0..LANES).filter(|lane| mask >> lane & 1 == 1);
+        among.min_by(|&a, &b| keys[a].total_cmp(&keys[b])).unwrap_or(0)
+    }
+}
+
+impl<S: Simd> Wide<S> {
+    /// All lanes at once: see [`Kernel::apart`](super::kernel::Kernel::apart).
+    #[inline(always)]
+    pub(super) fn apart_from_block<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        let simd = self.0;
+        let mut squared = f32x16::splat(simd, 0.0);
+        for axis in 0..D {
+            let above = f32x16::load_array_ref(simd, &block.lo[axis]) - gaps.hi[axis];
+            let hi = f32x16::load_array_ref(simd, &block.hi[axis]);
+            let below = f32x16::splat(simd, gaps.lo[axis]) - hi;
+            let gap = above.max(below).max(0.0) * gaps.scale;
+            squared = squared + gap * gap;
+        }
+        squared.store_slice(keys);
+        low_half(squared.simd_le(limit).to_bitmask())
+    }
+
+    /// See [`Kernel::least`](super::kernel::Kernel::least).
+    #[inline(always)]
+    pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
+        let simd = self.0;
+        let wanted = mask32x16::from_bitmask(simd, u64::from(mask));
+        let keys = f32x16::load_array_ref(simd, keys);
+        let among = wanted.select(keys, f32x16::splat(simd, f32::INFINITY));
+        let least = among.reduce_min();
+        (low_half(among.simd_eq(least).to_bitmask()) & mask).trailing_zeros() as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::kernel::{Kernel, Lanes, with_kernel};
+    use super::*;
+    use crate::math::{Point, Vector};
+
+    /// Numbers of all sizes up to `largest`, with repeats.
+    fn number(state: &mut u64, largest: f32) -> f32 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
+        let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;
+        match *state >> 40 & 7 {
+            0 => 0.0,
+            1 => small * largest * 0.0078125,
+            2 => small * 1e-30,
+            3 => small * 1e-42,
+            _ => small * 0.125,
+        }
+    }
+
+    fn asked(lanes: Lanes, block: &Block<3>, gaps: &Gaps<3>, limit: f32) -> (u32, [u32; LANES], usize) {
+        let mut keys = [0.0; LANES];
+        with_kernel!(lanes, kernel => {
+            let mask = kernel.apart(block, gaps, limit, &mut keys);
+            let least = if mask == 0 { LANES } else { kernel.least(&keys, mask) };
+            (mask, keys.map(f32::to_bits), least)
+        })
+    }
+
+    #[test]
+    fn every_instruction_set_proposes_what_is_near() {
+        let (state, mut near) = (&mut 5, 0);
+        for round in 0..4000 {
+            let largest = [1.0, 1e18, 1e37, f32::MAX][round % 4];
+            let mut block = Block::<3>::EMPTY;
+            for lane in 0..LANES - 2 {
+                let lo = [(); 3].map(|()| number(state, largest));
+                let hi = lo.map(|x| x.max(number(state, largest)));
+                block.set_lane(lane, &Bounds { lo, hi });
+            }
+            let corner = Point::<f32, 3>::from([(); 3].map(|()| number(state, largest)));
+            let extent = Vector::<f32, 3>::from([(); 3].map(|()| number(state, 1.0).abs()));
+            let unbounded = if round % 16 == 5 { f32::INFINITY } else { 0.0 };
+            let end = corner + extent + Vector::<f32, 3>::new(0.0, unbounded, 0.0);
+            let Ok(aabb) = Aabb::try_new(corner, end) else { continue };
+            let gaps = Gaps::new(&aabb, largest);
+            for limit in [0.0, number(state, largest).abs(), f32::INFINITY] {
+                let expected = asked(Lanes::scalar(), &block, &gaps, gaps.limit(limit));
+                for lanes in Lanes::available() {
+                    let own = asked(lanes, &block, &gaps, gaps.limit(limit));
+                    assert_eq!(own, expected, "{lanes:?} {aabb:?} {limit}");
+                }
+                let (mask, keys, least) = expected;
+                assert_eq!(mask >> (LANES - 2), 0, "nothing is in empty lanes");
+                let is_least = |key: &u32| least == LANES || keys[least] <= *key;
+                assert!(keys.iter().all(is_least), "{least} of {keys:?}");
+                for lane in 0..LANES - 2 {
+                    let Bounds { lo, hi } = block.lane(lane);
+                    let exact = Aabb::new(Point::from(lo), Point::from(hi));
+                    let distance = exact.distance_to_aabb(&aabb);
+                    if distance <= limit {
+                        assert!(mask >> lane & 1 == 1, "{aabb:?} {exact:?}: {distance} {limit}");
+                        let bound = f32::from_bits(keys[lane]);
+                        assert!(bound <= gaps.limit(distance), "a bound of {distance}");
+                        near += 1;
+                    }
+                }
+            }
+        }
+        assert!(near > 50_000, "{near} boxes were near");
+    }
+
+    #[test]
+    fn what_is_no_distance_ends_the_search() {
+        let gaps = Gaps::new(&Aabb::at(Point::<f64, 2>::new(1e300, 0.0)), 1.0);
+        assert_eq!(gaps.limit(f64::NAN), -1.0, "NaN");
+        assert_eq!(gaps.limit(-1e-300), -1.0, "negative");
+        assert_eq!(gaps.limit(f64::INFINITY), f32::MAX, "finite, so that empty lanes are beyond it");
+    }
+}

@@ -1,0 +1,115 @@
+//! The separating axis test of eight pairs of boxes in the plane:
+//! `query/separation/rectangle_axes.rs` in lanes.
+
+use fearless_simd::{Select, Simd, SimdMask};
+
+use super::super::gather::{Boxes, by_axis, dot, is_finite, lit};
+use crate::math::{Real, Wide};
+
+/// The axis of the largest gap of eight pairs.
+pub(super) struct BestSide<V, M> {
+    /// The side belongs to the second box.
+    pub(super) is_second: M,
+    /// It is perpendicular to the second axis of its box.
+    pub(super) is_y: M,
+    /// A unit vector from the first box to the second.
+    pub(super) normal: [V; 2],
+    pub(super) gap: V,
+    pub(super) noise: V,
+    /// All numbers of the pose are finite, and so is their sum.
+    pub(super) is_finite: M,
+}
+
+/// The side of one box that leaves the larger gap.
+struct Side<V, M> {
+    gap: V,
+    is_y: M,
+    /// The other box is on the positive side of the axis.
+    is_positive: M,
+}
+
+/// Of two masks the one that a third chooses.
+#[inline(always)]
+fn choose<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
+    (is & one) | (!is & other)
+}
+
+impl<V> Boxes<V, 2> {
+    /// What arithmetic on these numbers cannot resolve.
+    #[inline(always)]
+    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (half1, half2, t) = (&self.half1, &self.half2, &self.translation);
+        let farthest = t[1].abs().larger(t[0].abs());
+        let size = (half1[0] + half1[1]) + (half2[0] + half2[1]) + farthest;
+        lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * size
+    }
+
+    /// The direction of the largest gap, as `Rectangles::best_axis` has it for one pair.
+    #[inline(always)]
+    pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let (first, second) = self.best_sides(simd);
+        let is_second = !second.gap.simd_le(first.gap);
+        let is_y = choose(is_second, second.is_y, first.is_y);
+        let is_positive = choose(is_second, second.is_positive, first.is_positive);
+        let unit = [is_y.select(zero, one), is_y.select(one, zero)];
+        let normal = by_axis(
+            #[inline(always)]
+            |axis| {
+                let own = is_y.select(self.rotation[1][axis], self.rotation[0][axis]);
+                let along = is_second.select(own, unit[axis]);
+                is_positive.select(along, -along)
+            },
+        );
+        let gap = is_second.select(second.gap, first.gap);
+        let (noise, is_finite) = (self.noise(simd), is_finite(simd, self));
+        BestSide { is_second, is_y, normal, gap, noise, is_finite }
+    }
+
+    /// The best side of each box; of equal gaps the one that comes first in the box's outline.
+    #[inline(always)]
+    fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (Side<V, M>, Side<V, M>)
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
+        let leans = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
+        let reach2: [V; 2] = by_axis(
+            #[inline(always)]
+            |i| dot(&[leans[0][i], leans[1][i]], &self.half2),
+        );
+        let gaps: [V; 2] = by_axis(
+            #[inline(always)]
+            |i| t[i].abs() - self.half1[i] - reach2[i],
+        );
+        let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
+        let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
+        let first = side(gaps, is_y, is);
+        let seen = [dot(&r[0], t), dot(&r[1], t)];
+        let gaps: [V; 2] = by_axis(
+            #[inline(always)]
+            |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
+        );
+        let is = [seen[0].simd_gt(zero), seen[1].simd_ge(zero)];
+        let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
+        (first, side(gaps, is_y, is))
+    }
+}
+
+#[inline(always)]
+fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S> + Select<V>>(
+    gaps: [V; 2],
+    is_y: M,
+    is_positive: [M; 2],
+) -> Side<V, M> {
+    let gap = is_y.select(gaps[1], gaps[0]);
+    Side { gap, is_y, is_positive: choose(is_y, is_positive[1], is_positive[0]) }
+}

@@ -1,0 +1,160 @@
+//! Boxes side to side in the plane: `box_sides.rs` and the separating axis test in lanes.
+
+mod axis;
+mod names;
+mod sides;
+
+use fearless_simd::{Select, Simd};
+
+use self::names::Names;
+use self::sides::Sides;
+use super::admit::{Admission, Limits, Slots};
+use super::choose::Choice;
+use super::gather::{Boxes, Inputs, lit};
+use super::masks::{bits, transposed};
+use super::{BoxJob, Eights, LANES};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::query::manifold_build::contacts2;
+
+/// The ends of the upper side, the one with the smaller place first, and of the lower one.
+const SLOTS: usize = 4;
+
+/// What is known of eight pairs before points are chosen.
+pub(super) struct Found<N: Real> {
+    slots: Slots<N, SLOTS>,
+    /// The points of the slots on the first boxes, in their frames.
+    points1: [[[N; LANES]; 2]; SLOTS],
+    gap: [N; LANES],
+    tolerance: [N; LANES],
+    prediction: [N; LANES],
+    normal: [[N; LANES]; 2],
+    /// The lanes: the axis across the lower side is the second, the side is on the positive side of
+    /// it; the same of the upper side; the lower side is the second box's; the upper side's first
+    /// end is the one on the positive side of its box; too far apart; the slots are filled.
+    sides: [u8; 8],
+    /// Of each slot, whether it is at the first end of the other side, and at the second.
+    at_ends: [u8; 2 * SLOTS],
+}
+
+impl<N: Real> Eights<N, 2> for Found<N> {
+    fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            slots: Slots::new(),
+            points1: [[row; 2]; SLOTS],
+            gap: row,
+            tolerance: row,
+            prediction: row,
+            normal: [row; 2],
+            sides: [0; 8],
+            at_ends: [0; 2 * SLOTS],
+        }
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2>) {
+        let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
+        let axis = boxes.best_side(simd);
+        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
+        let is_apart = bits(is_apart & axis.is_finite);
+        let is_ordinary = bits(is_near) & inputs.straight.to_le_bytes()[0];
+        self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
+        if is_ordinary == 0 {
+            return;
+        }
+        let sides = Sides::meeting(simd, &boxes, &axis);
+        let limits = Limits { gap: axis.gap, prediction, tolerance: sides.tolerance };
+        let mut admission = Admission::new(simd, &limits);
+        self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
+        let is_built = bits(admission.is_found() & sides.is_fit) & is_ordinary;
+        self.sides = [
+            bits(sides.is_y),
+            bits(sides.is_upward),
+            bits(sides.is_own_y),
+            bits(sides.is_positive),
+            bits(axis.is_second),
+            bits(sides.is_turned),
+            is_apart,
+            is_built,
+        ];
+        axis.gap.store(&mut self.gap);
+        sides.tolerance.store(&mut self.tolerance);
+        prediction.store(&mut self.prediction);
+        axis.normal[0].store(&mut self.normal[0]);
+        axis.normal[1].store(&mut self.normal[1]);
+        self.place(simd, &boxes, &sides, axis.is_second);
+    }
+
+    #[inline(always)]
+    fn settle(&self, jobs: &mut [BoxJob<'_, N, 2>]) {
+        let turned = |rows| transposed(u64::from_le_bytes(rows)).to_le_bytes();
+        let (sides, at_ends) = (turned(self.sides), turned(self.at_ends));
+        let [a, b, c, d] = self.slots.valid;
+        let [e, f, g, h] = self.slots.level;
+        let slots = turned([a, b, c, d, e, f, g, h]);
+        for (lane, job) in jobs.iter_mut().enumerate().take(LANES) {
+            let names = Names { sides: sides[lane], at_ends: at_ends[lane] };
+            if names.sides & 64 != 0 {
+                job.raw.points.clear();
+            } else if names.sides & 128 != 0 {
+                self.choose(lane, names, u32::from(slots[lane]), job);
+            } else {
+                Self::one_by_one(job);
+            }
+        }
+    }
+
+    fn one_by_one(job: &mut BoxJob<'_, N, 2>) {
+        contacts2(&job.pair(), job.request, job.raw);
+    }
+}
+
+impl<N: Real> Found<N> {
+    /// Where the slots are on the first boxes: as `Pose::point` for a lower side of the second box,
+    /// above which the first one is.
+    #[inline(always)]
+    fn place<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        boxes: &Boxes<V, 2>,
+        sides: &Sides<V, V::Mask>,
+        is_second: V::Mask,
+    ) {
+        let ([column1, column2], shift) = (&boxes.rotation, &boxes.translation);
+        for (slot, point1) in self.points1.iter_mut().enumerate() {
+            let place = V::load(simd, &self.slots.flat[0][slot]);
+            let height = V::load(simd, &self.slots.height[slot]);
+            let rise =
+                is_second.select(sides.is_upward.select(height, -height), V::all(simd, N::ZERO));
+            let level = sides.level + rise;
+            let x = sides.is_y.select(place, level);
+            let y = sides.is_y.select(level, place);
+            let there = [0, 1].map(
+                #[inline(always)]
+                |axis: usize| column1[axis] * x + column2[axis] * y + shift[axis],
+            );
+            is_second.select(there[0], x).store(&mut point1[0]);
+            is_second.select(there[1], y).store(&mut point1[1]);
+        }
+    }
+
+    #[inline(always)]
+    fn choose(&self, lane: usize, names: Names, slots: u32, job: &mut BoxJob<'_, N, 2>) {
+        let choice = Choice {
+            slots: &self.slots,
+            lane,
+            valid: slots & 15,
+            level: slots >> SLOTS,
+            gap: self.gap[lane],
+            prediction: self.prediction[lane],
+            tolerance: self.tolerance[lane],
+        };
+        let place = |slot: usize| {
+            let [x, y] = &self.points1[slot & (SLOTS - 1)];
+            Point::<N, 2>::new(x[lane], y[lane])
+        };
+        choice.settle(&names, place, job.request.max_points.clamp(1, 2), job.raw);
+        job.raw.normal = Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane]);
+    }
+}

@@ -1,0 +1,65 @@
+//! Names of the slots of one pair in the plane.
+
+use super::SLOTS;
+use crate::query::manifold_build::box_lanes::choose::Naming;
+use crate::query::manifold_build::box_sides::{side, vertex};
+use crate::shape::FeatureId;
+
+/// A side, the end on the negative side of the axis along it, the other end.
+type Parts = [FeatureId; 3];
+
+/// The sides of a box by their axis, plus twice whether they are on its positive side.
+static SIDES: [Parts; 4] = [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
+
+const fn parts(axis: usize, is_positive: bool) -> Parts {
+    [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
+}
+
+/// How the slots of one pair are named: from the bits of the sides (`Found::sides`), and two bits for
+/// each slot that say whether it is at the first end of the other side or the second.
+#[derive(Clone, Copy)]
+pub(super) struct Names {
+    pub(super) sides: u8,
+    pub(super) at_ends: u8,
+}
+
+/// The bits of the sides that names depend on, and where they stand in a code; every code has the
+/// last bit.
+const SIDE_BITS: u8 = 63;
+const AT_END_AT: u32 = 5;
+const SIDES_AT: u32 = 7;
+const MARK: u32 = 1 << 31;
+
+impl Names {
+    /// The side that a slot is beside (0), or its first or second end.
+    #[inline(always)]
+    const fn at_end(self, slot: usize) -> u8 {
+        self.at_ends >> (2 * slot) & 3
+    }
+}
+
+impl Naming for Names {
+    #[inline(always)]
+    fn features(&self, slot: usize) -> [FeatureId; 2] {
+        let (own, other) = (usize::from(slot & 1 == 1) + 1, usize::from(self.at_end(slot)));
+        let (below, above) = if slot < 2 { (other, own) } else { (own, other) };
+        let is_turned = self.sides & 32 != 0;
+        let above = if is_turned && above != 0 { 3 - above } else { above };
+        let below = SIDES[usize::from(self.sides & 3)][below];
+        let above = SIDES[usize::from(self.sides >> 2 & 3)][above];
+        if self.sides & 16 == 0 { [below, above] } else { [above, below] }
+    }
+
+    #[inline(always)]
+    fn slot(&self, features: [FeatureId; 2], valid: u32) -> Option<usize> {
+        (0..SLOTS).find(|&slot| valid >> slot & 1 == 1 && self.features(slot) == features)
+    }
+
+    #[inline(always)]
+    fn code(&self, slot: usize) -> u32 {
+        let slot = slot & (SLOTS - 1);
+        MARK | u32::from(self.sides & SIDE_BITS) << SIDES_AT
+            | u32::from(self.at_end(slot)) << AT_END_AT
+            | slot as u32
+    }
+}

@@ -1,0 +1,244 @@
+//! The two sides that meet, of eight pairs, and the ends of what they share: those of `box_sides.rs`,
+//! side by side.
+
+use fearless_simd::{Select, Simd, SimdMask};
+
+use super::super::admit::{Admission, Slots};
+use super::super::gather::{Boxes, by_axis, dot, either, lit, other, tolerance};
+use super::super::masks::bits;
+use super::SLOTS;
+use super::axis::BestSide;
+use crate::math::{Real, Wide};
+use crate::shape::FACING_SINE_SQUARED;
+
+/// A side of a box, and the side of the other above it, in the frame of the first of these.
+pub(super) struct Sides<V, M> {
+    /// The axis across the lower side is the second; the side is on its positive side.
+    pub(super) is_y: M,
+    pub(super) is_upward: M,
+    /// The side's place on that axis, and half of its length.
+    pub(super) level: V,
+    half: V,
+    /// The same of the upper side, in its own box.
+    pub(super) is_own_y: M,
+    pub(super) is_positive: M,
+    /// The end with the smaller place is that on the positive side of the upper box.
+    pub(super) is_turned: M,
+    /// The ends of the upper side, the one with the smaller place first.
+    ends: [End<V>; 2],
+    length: V,
+    pub(super) tolerance: V,
+    /// The upper side does not lean too far, and neither is too short.
+    pub(super) is_fit: M,
+}
+
+/// A place along the lower side and a height above it.
+#[derive(Clone, Copy)]
+struct End<V> {
+    place: V,
+    height: V,
+}
+
+/// An end of one side as the other side sees it.
+struct Candidate<V, M> {
+    end: End<V>,
+    is_inside: M,
+    /// At the first end of the other side, at the second.
+    at_end: [M; 2],
+}
+
+/// The number that an axis has, the second where the mask says so.
+#[inline(always)]
+fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
+    is_y.select(v[1], v[0])
+}
+
+impl<V, M> Sides<V, M> {
+    /// The sides that meet along the axes.
+    #[inline(always)]
+    pub(super) fn meeting<S: Simd, N: Real>(
+        simd: S,
+        boxes: &Boxes<V, 2>,
+        axis: &BestSide<V, M>,
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let (zero, is_y) = (V::all(simd, N::ZERO), axis.is_y);
+        let own = by_axis(
+            #[inline(always)]
+            |i| is_y.select(boxes.rotation[1][i], boxes.rotation[0][i]),
+        );
+        let outward = axis.is_second.select(-dot(&own, &axis.normal), on(is_y, &axis.normal));
+        let is_upward = !outward.simd_lt(zero);
+        let half = either(axis.is_second, &boxes.half2, &boxes.half1);
+        let level = on(is_y, &half);
+        let level = is_upward.select(level, -level);
+        let upper = Upper::facing(simd, boxes, axis, (is_upward, level));
+        let half = is_y.select(half[0], half[1]);
+        let (tolerance, length) =
+            (tolerance(simd, boxes), upper.ends[1].place - upper.ends[0].place);
+        let shortest = (half + half).smaller(length);
+        let is_long = shortest.simd_gt(lit::<S, N, V>(simd, 8.0) * tolerance);
+        Self {
+            is_y,
+            is_upward,
+            level,
+            half,
+            is_own_y: upper.is_own_y,
+            is_positive: upper.is_positive,
+            is_turned: upper.is_turned,
+            ends: upper.ends,
+            length,
+            tolerance,
+            is_fit: is_long & upper.is_aligned,
+        }
+    }
+
+    /// Fills the slots with the ends of what the sides share, as far as they are admitted. Answers for
+    /// each slot whether it is at the first or the second end of the other side, a bit for each pair.
+    #[inline(always)]
+    pub(super) fn share<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        admission: &mut Admission<V>,
+        slots: &mut Slots<N, SLOTS>,
+    ) -> [u8; 2 * SLOTS]
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let above = [self.above(simd, 0), self.above(simd, 1)];
+        let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
+        // Ends of both sides are there already.
+        for (end, found) in below.iter_mut().enumerate() {
+            for (other, known) in above.iter().enumerate() {
+                let is_same = found.at_end[other] & known.at_end[end] & known.is_inside;
+                found.is_inside &= !is_same;
+            }
+        }
+        let mut at_ends = [0; 2 * SLOTS];
+        for (slot, found) in above.iter().chain(&below).enumerate() {
+            found.end.place.store(&mut slots.flat[0][slot]);
+            admission.admit(slots, slot, found.end.height, found.is_inside);
+            at_ends[2 * slot] = bits(found.at_end[0]);
+            at_ends[2 * slot + 1] = bits(found.at_end[1]);
+        }
+        at_ends
+    }
+
+    /// An end of the upper side as the lower one sees it.
+    #[inline(always)]
+    fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> Candidate<V, M>
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let end = self.ends[end];
+        self.beside(simd, end, (end.place + self.half, self.half + self.half))
+    }
+
+    /// An end of the lower side as the upper one sees it.
+    #[inline(always)]
+    fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> Candidate<V, M>
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let along = place - self.ends[0].place;
+        let share = (along / self.length).larger(zero).smaller(one);
+        let [low, high] = self.ends.map(
+            #[inline(always)]
+            |end| end.height,
+        );
+        let height = low + (high - low) * share;
+        self.beside(simd, End { place, height }, (along, self.length))
+    }
+
+    /// An end that is so far along the other side, of a given length.
+    #[inline(always)]
+    fn beside<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        end: End<V>,
+        (along, length): (V, V),
+    ) -> Candidate<V, M>
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let slack = V::all(simd, N::TWO) * self.tolerance;
+        let is_inside = !(along.simd_lt(-slack) | along.simd_gt(length + slack));
+        let at_second = along.simd_ge(length - self.tolerance);
+        let at_first = along.simd_le(self.tolerance) & !at_second;
+        Candidate { end, is_inside, at_end: [at_first, at_second] }
+    }
+}
+
+/// The side of the other box that is most aligned with the lower one.
+struct Upper<V, M> {
+    is_own_y: M,
+    is_positive: M,
+    is_turned: M,
+    ends: [End<V>; 2],
+    is_aligned: M,
+}
+
+impl<V, M> Upper<V, M> {
+    /// Above a side at a level that faces up or down.
+    #[inline(always)]
+    fn facing<S: Simd, N: Real>(
+        simd: S,
+        boxes: &Boxes<V, 2>,
+        axis: &BestSide<V, M>,
+        (is_upward, level): (M, V),
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let (rotation, shift) = other(boxes, axis.is_second);
+        let facing: [V; 2] = by_axis(
+            #[inline(always)]
+            |j| {
+                let along = on(axis.is_y, &rotation[j]);
+                is_upward.select(-along, along)
+            },
+        );
+        let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
+        let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
+        let is_aligned = !(lean * lean).simd_gt(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
+        let is_positive = across.simd_gt(V::all(simd, N::ZERO));
+        let half = either(axis.is_second, &boxes.half1, &boxes.half2);
+        let out = on(is_own_y, &half);
+        let out = is_positive.select(out, -out);
+        let side = is_own_y.select(half[0], half[1]);
+        let ends = [-side, side].map(
+            #[inline(always)]
+            |side| {
+                let point = by_axis(
+                    #[inline(always)]
+                    |i| {
+                        let own = is_own_y.select(rotation[1][i], rotation[0][i]);
+                        let next = is_own_y.select(rotation[0][i], rotation[1][i]);
+                        own * out + next * side + shift[i]
+                    },
+                );
+                let height = on(axis.is_y, &point) - level;
+                let place = axis.is_y.select(point[0], point[1]);
+                End { place, height: is_upward.select(height, -height) }
+            },
+        );
+        let [near, far] = ends;
+        let is_turned = far.place.simd_lt(near.place);
+        let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
+        Self { is_own_y, is_positive, is_turned, ends, is_aligned }
+    }
+}
+
+#[inline(always)]
+fn in_order<S: Simd, V: Wide<S>>(is: V::Mask, one: End<V>, other: End<V>) -> End<V> {
+    End { place: is.select(one.place, other.place), height: is.select(one.height, other.height) }
+}

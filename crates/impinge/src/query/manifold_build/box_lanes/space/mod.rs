@@ -1,0 +1,235 @@
+//! Boxes face to face in space: `box_faces.rs` and the separating axis test in lanes.
+
+mod axis;
+mod clip;
+mod faces;
+mod names;
+
+use fearless_simd::Simd;
+
+use self::clip::{Clip, Corners};
+use self::faces::Faces;
+use self::names::{Names, Side, parts_at};
+use super::admit::{Limits, Slots};
+use super::choose::{Choice, SLOTS};
+use super::gather::{Boxes, Inputs, lit};
+use super::masks::{bits, transposed};
+use super::{BoxJob, Eights, LANES};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::query::manifold_build::contacts3;
+
+/// What is known of eight pairs before points are chosen.
+pub(super) struct Found<N: Real> {
+    slots: Slots<N, SLOTS>,
+    corners: Corners,
+    gap: [N; LANES],
+    tolerance: [N; LANES],
+    prediction: [N; LANES],
+    normal: [[N; LANES]; 3],
+    /// The pose of the second box in the frame of the first, the rotation by columns.
+    rotation: [[[N; LANES]; 3]; 3],
+    translation: [[N; LANES]; 3],
+    /// Half of the rectangle's box across the rectangle.
+    half: [N; LANES],
+    /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
+    /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
+    sides: [u8; 8],
+    /// The lanes that are too far apart, and those whose slots are filled.
+    is_apart: u8,
+    is_built: u8,
+}
+
+impl<N: Real> Eights<N, 3> for Found<N> {
+    fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            slots: Slots::new(),
+            corners: Corners::new(),
+            gap: row,
+            tolerance: row,
+            prediction: row,
+            normal: [row; 3],
+            rotation: [[row; 3]; 3],
+            translation: [row; 3],
+            half: row,
+            sides: [0; 8],
+            is_apart: 0,
+            is_built: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3>) {
+        let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
+        let axis = boxes.best_axis(simd);
+        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
+        self.is_apart = bits(is_apart & axis.is_finite);
+        let is_ordinary = bits(is_near) & inputs.straight.to_le_bytes()[0];
+        self.is_built = 0;
+        if is_ordinary == 0 {
+            return;
+        }
+        let faces = Faces::meeting(simd, &boxes, &axis);
+        let limits = Limits { gap: axis.gap, prediction, tolerance: faces.tolerance };
+        let slots = (&mut self.slots, &mut self.corners);
+        let is_found = Clip::new(simd, &faces, &limits, slots).run();
+        self.is_built = bits(is_found & faces.is_fit) & is_ordinary;
+        self.sides = [
+            bits(faces.is_w[0]),
+            bits(faces.is_w[1]),
+            bits(faces.is_upward),
+            bits(faces.is_m[0]),
+            bits(faces.is_m[1]),
+            bits(faces.is_positive),
+            bits(axis.is_second),
+            0,
+        ];
+        axis.gap.store(&mut self.gap);
+        faces.tolerance.store(&mut self.tolerance);
+        prediction.store(&mut self.prediction);
+        faces.half.store(&mut self.half);
+        self.store(&boxes, &axis.normal);
+    }
+
+    #[inline(always)]
+    fn settle(&self, jobs: &mut [BoxJob<'_, N, 3>]) {
+        let columns = Columns::of(self);
+        for (lane, job) in jobs.iter_mut().enumerate().take(LANES) {
+            if self.is_apart >> lane & 1 == 1 {
+                job.raw.points.clear();
+            } else if self.is_built >> lane & 1 == 1 {
+                self.choose(lane, &columns, job);
+            } else {
+                Self::one_by_one(job);
+            }
+        }
+    }
+
+    fn one_by_one(job: &mut BoxJob<'_, N, 3>) {
+        contacts3(&job.pair(), job.request, job.raw);
+    }
+}
+
+impl<N: Real> Found<N> {
+    #[inline(always)]
+    fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, boxes: &Boxes<V, 3>, normal: &[V; 3]) {
+        for (axis, &along) in normal.iter().enumerate() {
+            along.store(&mut self.normal[axis]);
+            boxes.translation[axis].store(&mut self.translation[axis]);
+            for row in 0..3 {
+                boxes.rotation[axis][row].store(&mut self.rotation[axis][row]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
+        let bits = columns.byte(6, lane);
+        let sides = Sides::of(bits);
+        let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
+        let choice = Choice {
+            slots: &self.slots,
+            lane,
+            valid: columns.slots(0, lane),
+            level: columns.slots(3, lane),
+            gap: self.gap[lane],
+            prediction: self.prediction[lane],
+            tolerance: self.tolerance[lane],
+        };
+        let place = |slot| self.point1(lane, slot, &sides);
+        let limit = job.request.max_points.max(1);
+        choice.settle(&Names::new(&sides, bits, parts), place, limit, job.raw);
+        job.raw.normal = self.vector(&self.normal, lane);
+    }
+
+    #[inline(always)]
+    fn vector(&self, rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
+        Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
+    }
+
+    /// The point of a slot on the first box, in its frame: as `Pose::point` for a rectangle of the
+    /// second box.
+    #[inline(always)]
+    fn point1(&self, lane: usize, slot: usize, sides: &Sides) -> Point<N, 3> {
+        let w = sides.rectangle.axis;
+        let rise = if sides.is_second { self.slots.height[slot][lane] } else { N::ZERO };
+        let level = self.half[lane] + rise;
+        let mut point = [N::ZERO; 3];
+        point[w] = if sides.rectangle.is_positive { level } else { -level };
+        point[(w + 1) % 3] = self.slots.flat[0][slot][lane];
+        point[(w + 2) % 3] = self.slots.flat[1][slot][lane];
+        let [x, y, z] = point;
+        if !sides.is_second {
+            return Point::<N, 3>::new(x, y, z);
+        }
+        let [column1, column2, column3] = &self.rotation;
+        let along = self.vector(column1, lane) * x
+            + self.vector(column2, lane) * y
+            + self.vector(column3, lane) * z;
+        Point::from(along + self.vector(&self.translation, lane))
+    }
+}
+
+/// The faces of one pair.
+struct Sides {
+    rectangle: Side,
+    parallelogram: Side,
+    is_second: bool,
+}
+
+impl Sides {
+    /// From the bits of `Found::sides`.
+    #[inline(always)]
+    fn of(bits: u8) -> Self {
+        const AXES: [usize; 4] = [2, 0, 1, 0];
+        let side =
+            |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+        Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
+    }
+}
+
+/// The masks of eight pairs, turned so that a byte has the bits of one pair: three bytes of the slots
+/// that are there, three of those that are level, one of the faces.
+struct Columns([[u8; LANES]; 7]);
+
+impl Columns {
+    #[inline(always)]
+    fn of<N: Real>(found: &Found<N>) -> Self {
+        let Slots { valid, level, .. } = &found.slots;
+        let rows = [
+            part(valid, 0),
+            part(valid, 8),
+            part(valid, 16),
+            part(level, 0),
+            part(level, 8),
+            part(level, 16),
+            found.sides,
+        ];
+        Self(rows.map(
+            #[inline(always)]
+            |row| transposed(u64::from_le_bytes(row)).to_le_bytes(),
+        ))
+    }
+
+    #[inline(always)]
+    fn byte(&self, row: usize, lane: usize) -> u8 {
+        self.0[row][lane & (LANES - 1)]
+    }
+
+    /// The bits of all slots.
+    #[inline(always)]
+    fn slots(&self, row: usize, lane: usize) -> u32 {
+        let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
+        u32::from_le_bytes(bytes)
+    }
+}
+
+/// Eight bytes in a row.
+#[inline(always)]
+fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
+    core::array::from_fn(
+        #[inline(always)]
+        |index| bytes[first + index],
+    )
+}

@@ -1,0 +1,299 @@
+//! An edge of each solid: faces of the Minkowski difference where they overlap, nearest points where
+//! they are apart.
+
+use core::array::from_fn;
+
+use fearless_simd::{Select, Simd, SimdMask};
+use smallvec::SmallVec;
+
+use super::cloud::{dot, highest_lane, load, spread};
+use super::face::{Meeting, Side};
+use super::{Found, LANES, noise};
+use crate::math::{Point, Real, Vector, Wide, cross, unit};
+use crate::query::separation::segments::nearest_of_segments;
+use crate::shape::PolytopeEdge;
+
+/// An edge of the solid with the face, in its frame.
+struct Edge<N: Real> {
+    index: usize,
+    from: Vector<N, 3>,
+    along: Vector<N, 3>,
+    squared: N,
+}
+
+/// Eight edges of the other solid, in the same frame.
+struct Edges<N: Real> {
+    indices: [usize; LANES],
+    from: [[N; LANES]; 3],
+    along: [[N; LANES]; 3],
+    normals: [[[N; LANES]; 3]; 2],
+}
+
+/// The edges that may decide.
+type Chosen = SmallVec<[u8; 96]>;
+
+/// An edge of each solid that are a face of the Minkowski difference.
+pub(super) struct Crossing<N> {
+    edges: [usize; 2],
+    /// How far it parts the solids.
+    pub(super) height: N,
+}
+
+impl<N: Real> Meeting<'_, '_, N> {
+    /// The edges of each solid that may hold the points of the answer, if these are no farther from
+    /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
+    /// other.
+    #[inline(always)]
+    fn chosen(&self, reach: N) -> [Chosen; 2] {
+        let slack = N::lit(4.0) * noise();
+        let (least, most) = (self.other.low - reach - slack, self.level() + reach + slack);
+        let choose = |side: &Side<'_, '_, N>, is_near: &dyn Fn(N) -> bool| {
+            let is_chosen = |edge: &PolytopeEdge| {
+                edge.vertices.iter().any(|&vertex| is_near(side.heights.at(vertex as usize)))
+            };
+            let edges = (0_u8..).zip(side.solid.edges).filter(|(_, edge)| is_chosen(edge));
+            edges.map(|(index, _)| index).collect()
+        };
+        [
+            choose(&self.own, &|height| height >= least),
+            choose(&self.other, &|height| height <= most),
+        ]
+    }
+
+    fn ends(side: &Side<'_, '_, N>, index: usize) -> [Vector<N, 3>; 2] {
+        side.solid.edges[index].vertices.map(|vertex| side.cloud.at(vertex as usize))
+    }
+
+    fn edge(&self, index: usize) -> Edge<N> {
+        let [from, to] = Self::ends(&self.own, index);
+        let along = to - from;
+        Edge { index, from, along, squared: along.norm_squared() }
+    }
+
+    /// Eight edges of the other solid; the last one fills the rest.
+    #[inline(always)]
+    fn edges<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        chosen: &[u8],
+        with_normals: bool,
+    ) -> Edges<N> {
+        let last = chosen.len() - 1;
+        let indices: [usize; LANES] =
+            from_fn(|lane| usize::from(chosen[if lane < last { lane } else { last }]));
+        let zero = [[N::ZERO; LANES]; 3];
+        let mut edges = Edges { indices, from: zero, along: zero, normals: [zero; 2] };
+        for (lane, &index) in indices.iter().enumerate() {
+            let [from, to] = Self::ends(&self.other, index);
+            for axis in 0..3 {
+                edges.from[axis][lane] = from[axis];
+                edges.along[axis][lane] = to[axis] - from[axis];
+            }
+        }
+        if with_normals {
+            for side in 0..2 {
+                let normal = |index: usize| {
+                    let face = self.other.solid.edges[index].faces[side];
+                    self.other.solid.normal(face as usize)
+                };
+                let mut local = zero;
+                for (lane, &index) in indices.iter().enumerate() {
+                    let normal = normal(index);
+                    (0..3).for_each(|axis| local[axis][lane] = normal[axis]);
+                }
+                let turned = self.place.turned::<S, V>(simd, &load(simd, &local));
+                (0..3).for_each(|axis| turned[axis].store(&mut edges.normals[side][axis]));
+            }
+        }
+        edges
+    }
+
+    /// The face of the Minkowski difference between an edge of each solid that parts the solids most,
+    /// if by more than the face does, and more than noise.
+    #[inline(always)]
+    pub(super) fn crossing<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> Option<Crossing<N>> {
+        let [chosen1, chosen2] = self.chosen(reach);
+        let (mut best, mut least) = (None, self.height() + N::TWO * noise());
+        for eight in chosen2.chunks(LANES) {
+            let edges2 = self.edges::<S, V>(simd, eight, true);
+            for &index in &chosen1 {
+                let edge1 = self.edge(usize::from(index));
+                let normals1 = self.own.solid.edges[edge1.index]
+                    .faces
+                    .map(|face| self.own.solid.normal(face as usize));
+                let heights = heights::<S, N, V>(simd, (&edge1, &normals1), &edges2);
+                let Some(heights) = heights else { continue };
+                let highest = highest_lane(heights);
+                if highest > least {
+                    let is_highest = heights.simd_eq(V::all(simd, highest)).to_bitmask();
+                    let lane = is_highest.trailing_zeros() as usize;
+                    let edges = [edge1.index, edges2.indices[lane]];
+                    (best, least) = (Some(Crossing { edges, height: highest }), highest);
+                }
+            }
+        }
+        best
+    }
+
+    /// The answer where the common perpendicular of two edges meets both, if it is proved.
+    #[inline(always)]
+    pub(super) fn across<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        crossing: &Crossing<N>,
+    ) -> Option<Found<N>> {
+        let (points, across) = self.of_edges(crossing.edges);
+        let (normal, _) = unit(&across)?;
+        let beside = self.own.solid.edges[crossing.edges[0]].faces;
+        let [normal1, normal2] = beside.map(|face| self.own.solid.normal(face as usize));
+        let is_outward = normal.dot(&(normal1 + normal2)) > N::ZERO;
+        self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
+    }
+
+    /// The nearest points of the edges of two solids that are apart, if supporting planes prove them.
+    #[inline(always)]
+    pub(super) fn nearest<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> Option<Found<N>> {
+        let [chosen1, chosen2] = self.chosen(reach);
+        let (mut nearest, mut least) = (None, N::INFINITY);
+        for eight in chosen2.chunks(LANES) {
+            let edges2 = self.edges::<S, V>(simd, eight, false);
+            for &index in &chosen1 {
+                let edge1 = self.edge(usize::from(index));
+                let squares = squares::<S, N, V>(simd, &edge1, &edges2);
+                let lowest = -highest_lane(-squares);
+                if lowest < least {
+                    let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
+                    let lane = is_lowest.trailing_zeros() as usize;
+                    (nearest, least) = (Some([edge1.index, edges2.indices[lane]]), lowest);
+                }
+            }
+        }
+        let (points, across) = self.of_edges(nearest?);
+        let [on_own, on_other] = points;
+        let away = on_other - on_own;
+        // The perpendicular of the edges is right to the last bits, however near the points are.
+        let is_across = |across: &Vector<N, 3>| {
+            (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
+        };
+        let normal = match unit(&across).map(|(across, _)| across).filter(is_across) {
+            Some(across) if across.dot(&away) < N::ZERO => -across,
+            Some(across) => across,
+            None => unit(&away)?.0,
+        };
+        self.proved::<S, V>(simd, &normal, points)
+    }
+
+    /// The nearest points of two edges, and a vector perpendicular to both, to either side.
+    fn of_edges(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
+        let (ends1, ends2) = (Self::ends(&self.own, edge1), Self::ends(&self.other, edge2));
+        let (point1, point2) =
+            nearest_of_segments(&ends1.map(Point::from), &ends2.map(Point::from));
+        let across = cross(&(ends1[1] - ends1[0]), &(ends2[1] - ends2[0]));
+        ([point1.coords, point2.coords], across)
+    }
+
+    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
+    /// supporting planes.
+    #[inline(always)]
+    fn proved<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        normal: &Vector<N, 3>,
+        [on_own, on_other]: [Vector<N, 3>; 2],
+    ) -> Option<Found<N>> {
+        let low = self.other.cloud.heights::<S, V>(simd, normal).1;
+        let high = -self.own.cloud.heights::<S, V>(simd, &-normal).1;
+        let distance = low - high;
+        let off = on_other - on_own - normal * distance;
+        let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
+        is_proved.then_some(Found { distance, normal: *normal, on_own, on_other })
+    }
+}
+
+/// How far eight pairs of edges part the solids: those that are a face of the Minkowski difference, the
+/// others by minus infinity; `None` if no pair is one.
+#[inline(always)]
+fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    (edge1, normals1): (&Edge<N>, &[Vector<N, 3>; 2]),
+    edges2: &Edges<N>,
+) -> Option<V> {
+    let zero = V::all(simd, N::ZERO);
+    let (along1, along2) = (spread(simd, &edge1.along), load(simd, &edges2.along));
+    let beside1: [V; 2] = normals1.map(
+        #[inline(always)]
+        |normal| dot(&along2, &spread(simd, &normal)),
+    );
+    let is_negative = |height: V| height.simd_lt(zero);
+    let beside2: [V; 2] = [0, 1].map(
+        #[inline(always)]
+        |side: usize| dot(&along1, &load::<S, N, V>(simd, &edges2.normals[side])),
+    );
+    // The arcs between the normals of each edge cross on the sphere of normals, those of the second
+    // solid turned round.
+    let [left1, right1] = [is_negative(beside1[0]), is_negative(beside1[1])];
+    let [left2, right2] = [is_negative(beside2[0]), is_negative(beside2[1])];
+    let is_face = (left1 ^ right1) & (left2 ^ right2) & (left2 ^ right1);
+    if is_face.to_bitmask() == 0 {
+        return None;
+    }
+    let across = crossed(&along1, &along2);
+    let squared = dot(&across, &across);
+    let from1: [V; 3] = spread(simd, &edge1.from);
+    let away = [0, 1, 2].map(
+        #[inline(always)]
+        |axis: usize| V::load(simd, &edges2.from[axis]) - from1[axis],
+    );
+    let height = dot(&across, &away) / squared.sqrt();
+    let outward = left1.select(-height, height);
+    // Parallel edges have no perpendicular, and faces that part as much.
+    let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
+    let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
+    Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))
+}
+
+#[inline(always)]
+fn crossed<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
+/// 5.1.9. Edges of no length count as their first ends.
+#[inline(always)]
+fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    edge1: &Edge<N>,
+    edges2: &Edges<N>,
+) -> V {
+    let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+    let clamp = |share: V| share.larger(zero).smaller(one);
+    let (along1, along2): ([V; 3], [V; 3]) =
+        (spread(simd, &edge1.along), load(simd, &edges2.along));
+    let from1: [V; 3] = spread(simd, &edge1.from);
+    let away = [0, 1, 2].map(
+        #[inline(always)]
+        |axis: usize| from1[axis] - V::load(simd, &edges2.from[axis]),
+    );
+    let least = V::all(simd, N::MIN_POSITIVE);
+    let squared1 = V::all(simd, edge1.squared).larger(least);
+    let squared2 = dot(&along2, &along2).larger(least);
+    let (both, toward1, toward2) =
+        (dot(&along1, &along2), dot(&along1, &away), dot(&along2, &away));
+    let spread = (squared1 * squared2 - both * both).larger(least);
+    let share1 = clamp((both * toward2 - toward1 * squared2) / spread);
+    let share2 = clamp((both * share1 + toward2) / squared2);
+    let share1 = clamp((both * share2 - toward1) / squared1);
+    let off = [0, 1, 2].map(
+        #[inline(always)]
+        |axis: usize| away[axis] + along1[axis] * share1 - along2[axis] * share2,
+    );
+    dot(&off, &off)
+}

@@ -1,0 +1,188 @@
+//! A face of one solid, and the vertices of the other that lie nearest to it.
+
+use fearless_simd::Simd;
+use smallvec::SmallVec;
+
+use super::cloud::{Cloud, Heights, Place};
+use super::solid::Flat;
+use super::{Found, noise};
+use crate::math::{Point, Real, Vector, Wide, cross, max, min};
+use crate::query::separation::segments::nearest_on_segment;
+
+/// A solid in the frame of the one whose face it is about.
+pub(super) struct Side<'s, 'a, N: Real> {
+    pub(super) solid: &'s Flat<'a, N>,
+    pub(super) cloud: Cloud<N>,
+    /// Of the vertices along the normal of the face.
+    pub(super) heights: Heights<N>,
+    pub(super) low: N,
+}
+
+impl<'s, 'a, N: Real> Side<'s, 'a, N> {
+    #[inline(always)]
+    pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        solid: &'s Flat<'a, N>,
+        cloud: Cloud<N>,
+        normal: &Vector<N, 3>,
+    ) -> Self {
+        let (heights, low) = cloud.heights::<S, V>(simd, normal);
+        Self { solid, cloud, heights, low }
+    }
+}
+
+/// The face of all that the other solid lies farthest above, or least deep below.
+pub(super) struct Meeting<'s, 'a, N: Real> {
+    pub(super) own: Side<'s, 'a, N>,
+    pub(super) other: Side<'s, 'a, N>,
+    /// Where the frame of the other solid lies.
+    pub(super) place: Place<N>,
+    pub(super) face: usize,
+    pub(super) normal: Vector<N, 3>,
+    pub(super) shrink: N,
+}
+
+/// Whether the other solid lies above the face, there where it is lowest.
+enum Seen<N: Real> {
+    /// Here, up to noise.
+    Above(Vector<N, 3>),
+    /// Beside it; a length that the distance of the solids, or their depth, does not exceed.
+    Beside(N),
+}
+
+impl<N: Real> Meeting<'_, '_, N> {
+    /// The answer; `None` if it is not proved.
+    #[inline(always)]
+    pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
+        let height = self.height();
+        let (above, reach) = match self.seen() {
+            Seen::Above(point) => (Some(self.at(&point)), height.abs()),
+            Seen::Beside(reach) => (None, max(reach, height.abs())),
+        };
+        if height > N::ZERO {
+            return above.or_else(|| self.nearest::<S, V>(simd, reach));
+        }
+        match self.crossing::<S, V>(simd, reach) {
+            None => above,
+            Some(crossing) => match self.across::<S, V>(simd, &crossing) {
+                None if crossing.height > N::ZERO => self.nearest::<S, V>(simd, reach),
+                found => found,
+            },
+        }
+    }
+
+    /// How far the other solid lies above the plane of the face.
+    pub(super) fn height(&self) -> N {
+        self.other.low - self.level()
+    }
+
+    /// How far along its normal the face lies.
+    pub(super) fn level(&self) -> N {
+        self.own.solid.offset(self.face) * self.shrink
+    }
+
+    /// The answer with a point of the other solid that lies above the face.
+    fn at(&self, point: &Vector<N, 3>) -> Found<N> {
+        let distance = self.height();
+        let on_own = point - self.normal * distance;
+        Found { distance, normal: self.normal, on_own, on_other: *point }
+    }
+
+    /// The first of the lowest vertices that lies above the face, or, of edges and faces that are lowest,
+    /// some point that does.
+    fn seen(&self) -> Seen<N> {
+        let lowest = self.lowest();
+        let mut reach = N::INFINITY;
+        for &vertex in &lowest {
+            let point = self.other.cloud.at(vertex);
+            match self.distance_beside(&point) {
+                None => return Seen::Above(point),
+                Some(beside) => reach = min(beside, reach),
+            }
+        }
+        let among = if lowest.len() > 1 { self.among(&lowest) } else { None };
+        among.map_or(Seen::Beside(reach), Seen::Above)
+    }
+
+    /// The vertices of the other solid that are lowest, up to noise.
+    fn lowest(&self) -> SmallVec<[usize; 8]> {
+        let most = self.other.low + noise();
+        let vertices = 0..self.other.solid.vertices;
+        vertices.filter(|&vertex| self.other.heights.at(vertex) <= most).collect()
+    }
+
+    /// The ends of the sides of the face, and the vectors in its plane into the face across them, as long as
+    /// the sides.
+    fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
+        let ring = self.own.solid.ring(self.face);
+        let last = ring[ring.len() - 1];
+        let mut from = self.own.cloud.at(last as usize);
+        ring.iter().map(move |&vertex| {
+            let to = self.own.cloud.at(vertex as usize);
+            let ends = [core::mem::replace(&mut from, to), to];
+            (ends, cross(&self.normal, &(ends[1] - ends[0])))
+        })
+    }
+
+    /// The distance from the face of a point that does not lie above it; `None` of one that does, up
+    /// to noise.
+    fn distance_beside(&self, point: &Vector<N, 3>) -> Option<N> {
+        let mut least: Option<N> = None;
+        for (ends, inward) in self.sides() {
+            let inside = inward.dot(&(point - ends[0]));
+            let is_beside = inside < N::ZERO
+                && inside * inside > noise::<N>() * noise() * inward.norm_squared();
+            if is_beside {
+                let nearest = nearest_on_segment(&ends.map(Point::from), &Point::from(*point)).0;
+                let squared = (point - nearest.coords).norm_squared();
+                least = Some(least.map_or(squared, |least| min(squared, least)));
+            }
+        }
+        least.map(N::sqrt)
+    }
+
+    /// A point of the edges between some vertices that lies above the face; or, of the faces between
+    /// them, above a corner of the face.
+    fn among(&self, lowest: &[usize]) -> Option<Vector<N, 3>> {
+        let solid = self.other.solid;
+        let is_lowest = |vertex: &u32| lowest.contains(&(*vertex as usize));
+        let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
+        let mut crossing = edges.filter_map(|edge| {
+            self.clipped(edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize)))
+        });
+        if let Some(point) = crossing.next() {
+            return Some(point);
+        }
+        let corner = self.own.cloud.at(self.own.solid.ring(self.face)[0] as usize);
+        let mut faces = (0..solid.faces()).filter(|&face| solid.ring(face).iter().all(is_lowest));
+        faces.any(|face| self.is_under(face, &corner)).then(|| corner + self.normal * self.height())
+    }
+
+    /// The middle of the part of an edge that lies above the face.
+    fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
+        let (mut from, mut to) = (N::ZERO, N::ONE);
+        for (ends, inward) in self.sides() {
+            let [inside1, inside2] = [a, b].map(|end| inward.dot(&(end - ends[0])));
+            if inside1 < N::ZERO && inside2 < N::ZERO {
+                return None;
+            }
+            if (inside1 < N::ZERO) != (inside2 < N::ZERO) {
+                let at = inside1 / (inside1 - inside2);
+                (from, to) =
+                    if inside1 < N::ZERO { (max(at, from), to) } else { (from, min(at, to)) };
+            }
+        }
+        (from <= to).then(|| a + (b - a) * ((from + to) * N::HALF))
+    }
+
+    /// Whether a face of the other solid that lies along the plane lies above a point.
+    fn is_under(&self, face: usize, point: &Vector<N, 3>) -> bool {
+        let ring = self.other.solid.ring(face);
+        let at = |place: usize| self.other.cloud.at(ring[place % ring.len()] as usize);
+        // It faces the other way, so it runs clockwise about the normal.
+        (0..ring.len()).all(|place| {
+            let (from, to) = (at(place), at(place + 1));
+            cross(&self.normal, &(to - from)).dot(&(point - from)) <= N::ZERO
+        })
+    }
+}

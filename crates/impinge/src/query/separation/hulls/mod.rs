@@ -1,0 +1,206 @@
+//! Convex hulls and boxes in space, of so few parts that all of them can be looked at.
+//!
+//! No iteration, and nothing that depends on where a search begins: the answer is that of named
+//! features. The separating axis test asks every face of both solids, eight at a time, how far the other
+//! solid lies above it ([`cloud`]). The highest face is the answer where the solids face each other
+//! there ([`face`]). If not, edges decide ([`edges`]), and only those whose vertices lie within reach
+//! of the face: where the solids overlap, pairs of edges that are a face of their Minkowski difference
+//! (the Gauss map test of D. Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013);
+//! where they are apart, the nearest points of edges. What is not proved in the end, by points that
+//! lie as far apart as a pair of supporting planes, is left to the general algorithm.
+
+mod cloud;
+mod edges;
+mod face;
+mod solid;
+#[cfg(test)]
+mod tests;
+
+use fearless_simd::{Level, Simd};
+
+use self::cloud::{Cloud, Place};
+use self::face::{Meeting, Side};
+use self::solid::{BoxParts, Flat};
+use super::{general, wrong_kinds};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, Wide, unit};
+use crate::query::Pair;
+use crate::shape::Kind;
+
+/// How many vertices, faces or edges are treated at once.
+const LANES: usize = 8;
+/// Room for 32 vertices, and for the 60 faces that as many vertices may have.
+const BLOCKS: usize = 4;
+const PLANE_BLOCKS: usize = 8;
+
+/// The separation of a convex hull or a box from a convex hull.
+///
+/// Equal faces: those of the first solid come before those of the second, in their order, and all
+/// before edges. Cost: the product of the numbers of vertices and faces, by eights; larger hulls
+/// are left to the general algorithm.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let Kind::Polytope(second) = pair.second else { wrong_kinds(pair) };
+    let found = match (pair.first, Flat::of_polytope(second)) {
+        (_, None) => Verdict::Undecided,
+        (Kind::Polytope(first), Some(second)) => Flat::of_polytope(first)
+            .map_or(Verdict::Undecided, |first| between(&first, &second, &pair.pose12, limit)),
+        (Kind::Cuboid(first), Some(second)) => {
+            between(&BoxParts::new(first).flat(), &second, &pair.pose12, limit)
+        }
+        _ => wrong_kinds(pair),
+    };
+    match found {
+        Verdict::Beyond => None,
+        Verdict::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        Verdict::Undecided => general::of_flat_cores(pair, limit),
+    }
+}
+
+/// How the test ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict<N: Real> {
+    /// The solids are farther apart than the limit.
+    Beyond,
+    Found(Separation<N, 3>),
+    Undecided,
+}
+
+/// What arithmetic cannot resolve, in units of the pair.
+fn noise<N: Real>() -> N {
+    N::lit(8.0) * N::EPSILON
+}
+
+/// A unit of length in which the pair is about 1 large: a power of two, so that nothing is rounded.
+#[derive(Clone, Copy)]
+struct Units<N> {
+    scale: N,
+    shrink: N,
+}
+
+impl<N: Real> Units<N> {
+    fn of(reach1: N, reach2: N, translation: &Vector<N, 3>) -> Self {
+        // A quarter of everything: the sum of finite lengths must not overflow.
+        let quarter = N::HALF * N::HALF;
+        let away = unit(&(translation * quarter)).map_or(N::ZERO, |(_, length)| length);
+        let size = reach1 * quarter + reach2 * quarter + away;
+        let scale = if size > N::ZERO { size.power_of_two_below() } else { N::ONE };
+        Self { scale: scale / quarter, shrink: quarter / scale }
+    }
+}
+
+fn between<N: Real>(
+    first: &Flat<'_, N>,
+    second: &Flat<'_, N>,
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> Verdict<N> {
+    if !pose12.is_finite() {
+        return Verdict::Beyond;
+    }
+    at(Level::new(), [first, second], pose12, limit)
+}
+
+/// [`between`] with the vectors of an instruction set; the answers do not depend on it.
+fn at<N: Real>(
+    level: Level,
+    solids: [&Flat<'_, N>; 2],
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> Verdict<N> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = level.as_avx2() {
+        simd.vectorize(
+            #[inline(always)]
+            || search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit),
+        )
+    } else if let Some(simd) = level.as_sse2() {
+        simd.vectorize(
+            #[inline(always)]
+            || search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit),
+        )
+    } else {
+        Verdict::Undecided
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
+}
+
+#[inline(always)]
+fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [first, second]: [&Flat<'_, N>; 2],
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> Verdict<N> {
+    let units = Units::of(first.reach, second.reach, &pose12.translation);
+    let shrink = units.shrink;
+    let limit = limit * shrink;
+    // A lower bound: what it rejects by more than rounding is out of reach.
+    let beyond = limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs());
+    let in_first = Place { rotation: pose12.rotation, translation: pose12.translation * shrink };
+    let own2 = Cloud::own::<S, V>(simd, (second.blocks, second.vertices), shrink);
+    let cloud2 = own2.placed::<S, V>(simd, &in_first);
+    let (face1, height1) = cloud2.farthest_plane::<S, V>(simd, first.planes, shrink);
+    if height1 > beyond {
+        return Verdict::Beyond;
+    }
+    let in_second = in_first.inverse();
+    let own1 = Cloud::own::<S, V>(simd, (first.blocks, first.vertices), shrink);
+    let cloud1 = own1.placed::<S, V>(simd, &in_second);
+    let (face2, height2) = cloud1.farthest_plane::<S, V>(simd, second.planes, shrink);
+    if height2 > beyond {
+        return Verdict::Beyond;
+    }
+    // Seen from the solid whose face it is: the other one is placed in its frame.
+    let is_second = height2 > height1 + noise();
+    let (sides, place, face) = if is_second {
+        ([(second, own2), (first, cloud1)], in_second, face2)
+    } else {
+        ([(first, own1), (second, cloud2)], in_first, face1)
+    };
+    let normal = sides[0].0.normal(face);
+    let [own, other] = sides.map(
+        #[inline(always)]
+        |(solid, cloud)| Side::new::<S, V>(simd, solid, cloud, &normal),
+    );
+    let meeting = Meeting { own, other, place, face, normal, shrink };
+    match meeting.resolve::<S, V>(simd) {
+        Some(found) if is_second => {
+            Verdict::Found(in_first_frame(&found.restored(units.scale), pose12))
+        }
+        Some(found) => Verdict::Found(found.restored(units.scale)),
+        None => Verdict::Undecided,
+    }
+}
+
+/// An answer in the frame of the solid that owns the face, from it to the other.
+#[derive(Clone, Copy)]
+struct Found<N: Real> {
+    distance: N,
+    normal: Vector<N, 3>,
+    on_own: Vector<N, 3>,
+    on_other: Vector<N, 3>,
+}
+
+impl<N: Real> Found<N> {
+    /// In the caller's units.
+    fn restored(&self, scale: N) -> Separation<N, 3> {
+        Separation {
+            distance: self.distance * scale,
+            normal: self.normal,
+            point1: Point::from(self.on_own * scale),
+            point2: Point::from(self.on_other * scale),
+        }
+    }
+}
+
+/// An answer found in the frame of the second solid, in that of the first, at which it lies at
+/// `pose12`.
+fn in_first_frame<N: Real>(found: &Separation<N, 3>, pose12: &Pose<N, 3>) -> Separation<N, 3> {
+    Separation {
+        distance: found.distance,
+        normal: -pose12.vector(&found.normal),
+        point1: pose12.point(&found.point2),
+        point2: pose12.point(&found.point1),
+    }
+}

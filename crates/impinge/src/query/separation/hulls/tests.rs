@@ -1,0 +1,163 @@
+//! Against the general algorithm, and on every instruction set.
+
+use fearless_simd::Level;
+
+use super::{BoxParts, Flat, Verdict, at};
+use crate::convex::Separation;
+use crate::math::na::{Quaternion, UnitQuaternion};
+use crate::math::{Point, Pose, Real, Vector};
+use crate::query::Pair;
+use crate::query::separation::general;
+use crate::shape::{ConvexHull, Cuboid, Shape};
+
+/// Numbers between −1 and 1 by splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        let bits = u32::try_from((z ^ (z >> 31)) >> 32).expect("32 bits");
+        f64::from(bits) / f64::from(1_u32 << 31) - 1.0
+    }
+
+    fn vector<N: Real>(&mut self) -> Vector<N, 3> {
+        Vector::from([0; 3].map(|_: i32| N::lit(self.next())))
+    }
+
+    fn direction<N: Real>(&mut self) -> Vector<N, 3> {
+        self.vector::<N>().try_normalize(N::lit(0.1)).unwrap_or_else(Vector::<N, 3>::x)
+    }
+
+    /// Any turn, a quarter turn or a slight one.
+    fn turn<N: Real>(&mut self) -> Pose<N, 3> {
+        let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
+        let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
+        let q = UnitQuaternion::from_quaternion(Quaternion::new(
+            if size == 1.0 { self.next() } else { 1.0 },
+            i,
+            j,
+            k,
+        ));
+        let mut pose = Pose::<N, 3>::identity();
+        pose.rotation = q.to_rotation_matrix().into_inner().map(N::lit);
+        pose
+    }
+
+    fn pick(&mut self, count: usize) -> usize {
+        let share = (self.next() + 1.0) / 2.0;
+        (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
+    }
+
+    /// A hull of points on a sphere, of a grid (with coplanar faces and parallel edges), or a box.
+    fn solid<N: Real>(&mut self, kind: usize) -> Box<dyn Shape<N, 3>> {
+        let points: Vec<Point<N, 3>> = match kind {
+            0 => return Box::new(Cuboid::new(self.vector::<N>().abs())),
+            1 => (0..12).map(|_| Point::from(self.direction())).collect(),
+            2 => (0..26).map(|_| Point::from(self.direction())).collect(),
+            3 => (0..14)
+                .map(|_| Point::from(self.vector::<N>().map(|x| (x * N::lit(1.9)).round())))
+                .collect(),
+            _ => (0..6).map(|_| Point::from(self.direction())).collect(),
+        };
+        match ConvexHull::try_from_points(&points) {
+            Ok(hull) => Box::new(hull),
+            Err(_) => Box::new(Cuboid::new(Vector::<N, 3>::repeat(N::HALF))),
+        }
+    }
+}
+
+fn count_f64(count: usize) -> f64 {
+    f64::from(u32::try_from(count).expect("a small number"))
+}
+
+/// The verdict of a pair of which the second may be a box too.
+fn verdict<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> Verdict<N> {
+    let parts = [pair.first, pair.second].map(|kind| match kind {
+        crate::shape::Kind::Cuboid(cuboid) => Some(BoxParts::new(cuboid)),
+        _ => None,
+    });
+    let kinds = [pair.first, pair.second];
+    let flat = |which: usize| match (kinds[which], &parts[which]) {
+        (crate::shape::Kind::Polytope(hull), _) => Flat::of_polytope(hull).expect("a small hull"),
+        (_, Some(parts)) => parts.flat(),
+        _ => unreachable!("hulls and boxes only"),
+    };
+    at(level, [&flat(0), &flat(1)], &pair.pose12, limit)
+}
+
+fn levels() -> Vec<Level> {
+    let level = Level::new();
+    let mut all = vec![level];
+    #[cfg(target_arch = "x86_64")]
+    {
+        all.extend(level.as_avx2().map(Level::Avx2));
+        all.extend(level.as_sse2().map(Level::Sse2));
+    }
+    all
+}
+
+/// How far off an answer is: from the distance, by its own points, and by what its normal separates.
+fn error<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    found: &Separation<N, 3>,
+    truth: &Separation<N, 3>,
+) -> f64 {
+    let off = found.point2 - found.point1 - found.normal * found.distance;
+    let (shape1, shape2) = (
+        crate::shape::Geometry(pair.first).as_support_map().expect("convex"),
+        crate::shape::Geometry(pair.second).as_support_map().expect("convex"),
+    );
+    let far1 = shape1.core_support(&found.normal);
+    let far2 = pair.pose12.point(&shape2.core_support(&pair.pose12.inverse_vector(&-found.normal)));
+    let proved = found.normal.dot(&(far2 - far1)) - found.distance;
+    let missed = truth.distance - found.distance;
+    let inside = found.normal.dot(&(found.point1 - far1));
+    [off.norm(), proved.abs(), missed, inside.abs()]
+        .into_iter()
+        .fold(0.0, |most, x| x.as_f64().max(most))
+}
+
+fn compare<N: Real>(seed: u64, rounds: usize) {
+    let random = &mut Random(seed);
+    let (mut undecided, mut count) = (0, 0);
+    for round in 0..rounds {
+        let [kind1, kind2] = [random.pick(5), random.pick(5)];
+        let (shape1, shape2) = (random.solid::<N>(kind1), random.solid::<N>(kind2));
+        let mut pair =
+            Pair { first: shape1.geometry().0, second: shape2.geometry().0, pose12: random.turn() };
+        pair.pose12.translation = random.vector::<N>() * N::lit([4.0, 0.3][round % 2]);
+        let truth = general::of_flat_cores(&pair, N::INFINITY).expect("no limit");
+        let gap = [1.0, 0.1, 1e-3, 1e-6, 0.0, -1e-6, -1e-3, -0.1][random.pick(8)];
+        if round % 4 != 1 {
+            pair.pose12.translation += truth.normal * (N::lit(gap) - truth.distance);
+        }
+        let truth = general::of_flat_cores(&pair, N::INFINITY).expect("no limit");
+        let found = levels().into_iter().map(|level| verdict(level, &pair, N::INFINITY));
+        let found: Vec<_> = found.collect();
+        assert!(found.iter().all(|one| *one == found[0]), "round {round}: {found:?}");
+        count += 1;
+        match found[0] {
+            Verdict::Beyond => panic!("nothing is beyond infinity"),
+            Verdict::Undecided => undecided += 1,
+            Verdict::Found(found) => {
+                let error = error(&pair, &found, &truth);
+                let size = 4.0 + truth.distance.as_f64().abs();
+                assert!(
+                    error <= 24.0 * N::EPSILON.as_f64() * size,
+                    "round {round}, kinds {kind1} and {kind2}, gap {gap}: {found:?}, not {truth:?}"
+                );
+            }
+        }
+    }
+    println!("{undecided} of {count} undecided");
+    assert!(undecided * 20 < count, "{undecided} of {count} are left to the general algorithm");
+}
+
+#[test]
+fn answers_are_those_of_the_general_algorithm() {
+    compare::<f64>(1, 4000);
+    compare::<f32>(2, 4000);
+}
