@@ -7,8 +7,10 @@
 
 /// Updates between two looks at the lists.
 const PERIOD: u32 = 64;
-/// The entries for which every list may keep memory.
+/// The entries for which a list may keep memory.
 const KEPT: usize = 4096;
+/// The bytes that a list may have to spare.
+const SPARE: usize = 16384;
 
 /// How long the lists of an owner have been lately, and how many things it has.
 #[derive(Clone, Debug, Default)]
@@ -56,7 +58,8 @@ impl Look {
     /// Leaves a list that has stopped to grow an eighth to spare.
     pub(crate) fn fit<T>(self, list: &mut Vec<T>) {
         let spare = list.len() / 8;
-        if self.is_settled && list.capacity() > list.len() + 2 * spare + KEPT / 4 {
+        let surplus = list.capacity() - list.len();
+        if self.is_settled && surplus > 2 * spare && surplus * size_of::<T>() > SPARE {
             list.shrink_to(list.len() + spare);
         }
     }

@@ -237,6 +237,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.leave_loose(*id, aabb);
         }
         waiting.clear();
+        leavers.clear();
         (self.waiting, self.leavers) = (waiting, leavers);
     }
 

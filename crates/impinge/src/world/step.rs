@@ -23,9 +23,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
         self.events.sort();
-        self.recent.note(self.interactions.len());
+        self.recent.note(self.interactions.len().max(self.events.len()));
         if let Some(look) = self.recent.end_update(self.objects.reach()) {
             self.objects.give_back(look);
+            self.events.give_back(look);
             look.trim(&mut self.interactions);
             look.trim(&mut self.algorithms);
         }
@@ -68,6 +69,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.tell(pair, has_started);
         }
         self.interactions = interactions;
+        self.objects.table.tidy();
     }
 
     /// Tells the narrow phase that a pair started or stopped. It has the rows of its pairs' objects and no
