@@ -12,22 +12,24 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events,
-    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
+    update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
-    touching_in_world,
+    Algorithm, certainly_overlap, distance_in_world, in_world, separation_in_plane,
+    separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
-    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
-    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
+    Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
+    contacts3, impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2,
+    update_box_pairs3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+    witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -36,6 +38,7 @@ use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -62,6 +65,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+    /// Those of the pairs of a group that are due, several at a time, if that can be done.
+    pub(crate) update_lanes: UpdateLanesFn<N, D>,
     /// Those of many pairs of boxes.
     pub(crate) box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     /// Two directions across a normal; the second is zero in the plane.
@@ -108,6 +113,8 @@ type CompositeManifoldsFn<N, const D: usize> = fn(
 ) -> Vec<ContactManifold<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+type UpdateLanesFn<N, const D: usize> =
+    fn([&Solid<N, D>; 2], &mut DueContacts<'_, '_, N, D>) -> bool;
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
@@ -189,7 +196,9 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
+    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
+    update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
@@ -204,7 +213,9 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
+        certainly_overlap,
         contacts: contacts2,
+        update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
@@ -220,7 +231,9 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
+        certainly_overlap,
         contacts: contacts3,
+        update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
@@ -238,6 +251,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
+            certainly_overlap: particular.certainly_overlap,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,
@@ -253,6 +267,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             nearest_part,
             each_hit,
             contacts: particular.contacts,
+            update_lanes: particular.update_lanes,
             box_contacts: particular.box_contacts,
             tangents: particular.tangents,
             update_contacts: ContactState::update,

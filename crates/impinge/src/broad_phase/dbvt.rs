@@ -4,6 +4,7 @@ use core::fmt::Debug;
 
 use super::error::or_panic;
 use super::handle::Handles;
+use super::proposal::{Proposal, Proposals, Proxies};
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
@@ -58,7 +59,7 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
-    proxies: Vec<Option<T>>,
+    proxies: Proxies<T>,
     finder: BV::Finder,
     recent: Recent,
 }
@@ -87,7 +88,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
 }
 
 /// The data of an object that is known to be there.
-fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
+pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
     let data = proxies[id as usize].as_ref();
     data.expect("the finder knows only objects that are there")
 }
@@ -146,6 +147,10 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         sorted.sort_unstable();
         let twice = sorted.windows(2).find(|two| two[0] == two[1]);
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
+    }
+
+    fn proposals(&self, found: &[(u32, N)]) -> Proposals<'_, N, T> {
+        found.iter().map(|&(id, key)| Proposal::kept(&self.proxies, id, key)).collect()
     }
 
     fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
@@ -268,9 +273,14 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_ray(ray, max_time, &mut by_id);
     }
 
-    fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_ray_roughly(ray, max_time, &mut by_id);
+    fn visit_ray_roughly(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+    ) {
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
     }
 
     fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
@@ -282,10 +292,10 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         bv: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_id);
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
     }
 
     fn visit_cast_roughly(
@@ -293,11 +303,11 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         bv: &Aabb<N, D>,
         velocity: &Vector<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         let sweep = Sweep { aabb: *bv, velocity: *velocity };
-        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_id);
+        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }
 
     fn visit_cast(

@@ -101,11 +101,8 @@ mod tests {
 
     #[test]
     fn worn_out_indices_are_retired() {
-        let mut handles = Handles {
-            generations: vec![u32::MAX],
-            is_present: vec![true],
-            free: Vec::new(),
-        };
+        let mut handles =
+            Handles { generations: vec![u32::MAX], is_present: vec![true], free: Vec::new() };
         let last = ProxyHandle { index: 0, generation: u32::MAX };
         handles.remove(last);
         assert_eq!(handles.create().uid(), 1, "index 0 has no generation left");

@@ -119,6 +119,10 @@ impl<S: Simd> Wide<S> {
     /// See [`Kernel::least`](super::kernel::Kernel::least).
     #[inline(always)]
     pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
+        let (first, last) = (mask.trailing_zeros() as usize, 31 - mask.leading_zeros() as usize);
+        if mask.count_ones() <= 2 {
+            return if keys[first] <= keys[last] { first } else { last };
+        }
         let simd = self.0;
         let wanted = mask32x16::from_bitmask(simd, u64::from(mask));
         let keys = f32x16::load_array_ref(simd, keys);
@@ -147,7 +151,12 @@ mod tests {
         }
     }
 
-    fn asked(lanes: Lanes, block: &Block<3>, gaps: &Gaps<3>, limit: f32) -> (u32, [u32; LANES], usize) {
+    fn asked(
+        lanes: Lanes,
+        block: &Block<3>,
+        gaps: &Gaps<3>,
+        limit: f32,
+    ) -> (u32, [u32; LANES], usize) {
         let mut keys = [0.0; LANES];
         with_kernel!(lanes, kernel => {
             let mask = kernel.apart(block, gaps, limit, &mut keys);
@@ -204,6 +213,10 @@ mod tests {
         let gaps = Gaps::new(&Aabb::at(Point::<f64, 2>::new(1e300, 0.0)), 1.0);
         assert_eq!(gaps.limit(f64::NAN), -1.0, "NaN");
         assert_eq!(gaps.limit(-1e-300), -1.0, "negative");
-        assert_eq!(gaps.limit(f64::INFINITY), f32::MAX, "finite, so that empty lanes are beyond it");
+        assert_eq!(
+            gaps.limit(f64::INFINITY),
+            f32::MAX,
+            "finite, so that empty lanes are beyond it"
+        );
     }
 }

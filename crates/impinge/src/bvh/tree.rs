@@ -438,6 +438,11 @@ impl<const D: usize> Tree<D> {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 
+    /// The ids by slot, which is an order of space; [`NONE`] for free slots.
+    pub(crate) fn slots_in_order(&self) -> &[u32] {
+        &self.ids[..self.end]
+    }
+
     /// The slots of changed lanes, ascending if the touched blocks are.
     pub(super) fn list_changed_slots(&self, slots: &mut Vec<u32>) {
         slots.clear();

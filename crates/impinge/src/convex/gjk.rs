@@ -21,6 +21,9 @@ use crate::math::{Real, Vector, max};
 /// whoever comes here is refined from the best normal so far.
 const ROUNDS: usize = 64;
 
+/// A depth, in units of the pair, that is not down to rounding: 2⁻¹⁰.
+const CLEAR: f64 = 1.0 / 1024.0;
+
 /// How the search ended.
 enum Outcome {
     /// The difference lies beyond the limit, certainly.
@@ -72,6 +75,21 @@ where
         Outcome::Overlap => Some(search.finish_overlap(difference)),
         Outcome::Apart => Some(search.finish(difference)),
     }
+}
+
+/// Whether the origin certainly lies in the difference, found by a simplex that holds a ball around it.
+pub(super) fn overlaps<N, S, const D: usize>(difference: &S, start: &Vector<N, D>) -> bool
+where
+    N: Simplicial<D>,
+    S: Difference<N, D>,
+{
+    let mut search = Search::new(Candidate::along(difference, *start));
+    let is_apart = search.best.height > N::ZERO;
+    if is_apart || !matches!(search.run(difference, N::ZERO), Outcome::Overlap) {
+        return false;
+    }
+    let points = search.simplex.points();
+    N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
 }
 
 /// The normal of the nearest point of a difference that lies well away from the origin.

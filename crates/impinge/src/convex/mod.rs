@@ -89,6 +89,21 @@ where
     of_pair(&pair, (a.rounding(), b.rounding()), limit)
 }
 
+/// Whether the cores of two solids certainly overlap: points of their difference span a simplex that holds
+/// a ball around the origin, of a size that no rounding comes near. `false` says nothing.
+///
+/// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
+/// find a separating plane or such a simplex, about four.
+pub(crate) fn cores_overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>) -> bool
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12);
+    pair.is_some_and(|pair| gjk::overlaps(&pair, &pair.start()))
+}
+
 fn of_pair<N, A, B, const D: usize>(
     pair: &Pair<'_, N, A, B, D>,
     (rounding1, rounding2): (N, N),

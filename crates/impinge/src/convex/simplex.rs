@@ -14,6 +14,10 @@ pub(crate) trait Simplicial<const D: usize>: Real {
     /// The point nearest to the origin of the hull of one to `D + 1` points.
     fn nearest(points: &[Vector<Self, D>]) -> Nearest<Self, D>;
 
+    /// Whether the planes of all facets of `D + 1` points are farther from the origin than a radius: where
+    /// the points enclose the origin, they hold a ball around it. `false` for fewer points.
+    fn clears(points: &[Vector<Self, D>], radius: Self) -> bool;
+
     /// Visits a vector perpendicular to each choice of `D` of the points; not of unit length.
     fn visit_facets(points: &[Vector<Self, D>], visit: &mut dyn FnMut(&Vector<Self, D>));
 

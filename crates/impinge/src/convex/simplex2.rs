@@ -14,6 +14,14 @@ impl<N: Real> Simplicial<2> for N {
         }
     }
 
+    fn clears(points: &[Vector<N, 2>], radius: N) -> bool {
+        let is_clear = |[i, j]: [usize; 2]| {
+            let area = cross2(&points[i], &points[j]);
+            area * area > radius * radius * (points[j] - points[i]).norm_squared()
+        };
+        points.len() == 3 && SIDES.into_iter().all(is_clear)
+    }
+
     fn visit_facets(points: &[Vector<N, 2>], visit: &mut dyn FnMut(&Vector<N, 2>)) {
         for (i, a) in points.iter().enumerate() {
             for b in &points[i + 1..] {

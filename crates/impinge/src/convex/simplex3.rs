@@ -15,6 +15,15 @@ impl<N: Real> Simplicial<3> for N {
         }
     }
 
+    fn clears(points: &[Vector<N, 3>], radius: N) -> bool {
+        let is_clear = |[i, j, k]: [usize; 3]| {
+            let normal = cross(&(points[j] - points[i]), &(points[k] - points[i]));
+            let height = normal.dot(&points[i]);
+            height * height > radius * radius * normal.norm_squared()
+        };
+        points.len() == 4 && FACES.into_iter().all(is_clear)
+    }
+
     fn visit_facets(points: &[Vector<N, 3>], visit: &mut dyn FnMut(&Vector<N, 3>)) {
         for (i, a) in points.iter().enumerate() {
             for (j, b) in points.iter().enumerate().skip(i + 1) {

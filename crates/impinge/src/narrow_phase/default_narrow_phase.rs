@@ -9,6 +9,7 @@ use super::entry::{
 };
 use super::generator::DefaultContactDispatcher;
 use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
+use super::state::ContactState;
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::Changes;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
@@ -16,6 +17,7 @@ use crate::math::Space;
 use crate::memory::Recent;
 use crate::pairs::PairTable;
 use crate::query::ManifoldRequest;
+use crate::shape::Shape;
 
 /// Contacts and proximities of the pairs of a world, kept from update to update.
 ///
@@ -188,6 +190,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let (mut entry, moved) = self.lanes.contacts[usize::from(old)].swap_remove(place);
                 self.note_move(moved, place);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
+                entry.state.set_solids(shapes(table, key));
                 let place = self.lanes.contacts[usize::from(new)].push(key, entry);
                 self.locations[index] = Location { lane: new_lane, place, is_touching };
             }
@@ -239,8 +242,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let number = self.ids.allocate();
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
-                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)]
-                    .push(key, ContactEntry::new(request, number, touch)),
+                Lane::Contacts(group) => {
+                    let mut entry =
+                        ContactEntry::<N, ContactState<N, D>>::new(request, number, touch);
+                    entry.state.set_solids(shapes(table, key));
+                    self.lanes.contacts[usize::from(group)].push(key, entry)
+                }
                 Lane::Composites => {
                     self.lanes.composites.push(key, ContactEntry::new(request, number, touch))
                 }
@@ -298,6 +305,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
         self.locations[index].place = place;
     }
+}
+
+/// The shapes of a pair.
+fn shapes<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+) -> [&dyn Shape<N, D>; 2] {
+    [table.shape(first).as_ref(), table.shape(second).as_ref()]
 }
 
 /// Where pairs without an algorithm are.

@@ -121,11 +121,6 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
     u8::try_from(number).expect("there are fewer than 16 kinds")
 }
 
-/// The number of the pair of two boxes.
-#[expect(clippy::cast_possible_truncation, reason = "there are fewer than 16 kinds")]
-pub(crate) const BOX_PAIRS: u8 =
-    (ShapeKind::Cuboid as usize * ShapeKind::COUNT + ShapeKind::Cuboid as usize) as u8;
-
 /// The library's lane for the contacts of two shapes.
 pub(crate) fn contact_lane<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,

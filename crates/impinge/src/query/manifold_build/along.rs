@@ -87,7 +87,7 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     build(pair, &frame(pair, separation, request), (request, request.max_points), out);
 }
 
-fn frame<N: Space<D>, const D: usize>(
+pub(super) fn frame<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     witness: &Separation<N, D>,
     request: &ManifoldRequest<N>,
@@ -96,7 +96,7 @@ fn frame<N: Space<D>, const D: usize>(
 }
 
 /// What the two solids show of themselves along the normal of a frame.
-fn facets<N: Space<D>, const D: usize>(
+pub(super) fn facets<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
 ) -> (Facet<N, D>, Facet<N, D>) {

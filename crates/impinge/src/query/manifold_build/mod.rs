@@ -16,6 +16,7 @@ mod ball;
 mod box_faces;
 mod box_lanes;
 mod box_sides;
+mod closed_lanes;
 mod facet;
 mod frame;
 mod half_space;
@@ -30,6 +31,7 @@ mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between};
 pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
+pub(crate) use self::closed_lanes::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};

@@ -2,8 +2,8 @@
 
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
-    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, flipped, general,
-    hulls, look_up, plane_any, rounded, segment_segment,
+    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cuboid_cylinder,
+    cylinder_cylinder, flipped, general, hulls, look_up, plane_any, rounded, segment_segment,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -29,6 +29,8 @@ impl<N: Real> Space<N> {
         let gg: Algorithm<N, 3> = general::separation;
         let ff: Algorithm<N, 3> = general::of_flat_cores;
         let hh: Algorithm<N, 3> = hulls::separation;
+        let cy: Algorithm<N, 3> = cuboid_cylinder::separation;
+        let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -40,9 +42,9 @@ impl<N: Real> Space<N> {
             [__, ss, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, cy, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, yy, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],

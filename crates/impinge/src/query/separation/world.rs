@@ -32,13 +32,20 @@ pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
-/// The distance in [`touching_in_world`]: a number is the same in every frame.
+/// The distance in [`touching_in_world`], a number that is the same in every frame; of two convex solids
+/// that certainly overlap zero, without asking how deep.
 pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<N> {
     let ordered = Ordered::new(placed1, placed2);
+    if limit >= N::ZERO && !ordered.has_composite() {
+        let pair = ordered.pair();
+        if (N::tables().certainly_overlap)(&pair) {
+            return Some(N::ZERO);
+        }
+    }
     in_first(&ordered, limit, Wanted::Touching).map(|found| found.distance)
 }
 
