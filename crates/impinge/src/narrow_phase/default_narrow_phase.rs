@@ -14,6 +14,7 @@ use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::Changes;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::math::Space;
+use crate::memory::Recent;
 use crate::pairs::PairTable;
 use crate::query::ManifoldRequest;
 use crate::shape::Shape;
@@ -39,6 +40,8 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) indices: Vec<usize>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
+    /// How long the lists of an update have been lately.
+    recent: Recent,
     /// Those of the pairs that touch; made when first needed after a change of either.
     pub(super) touching: OnceLock<Vec<u32>>,
 }
@@ -83,8 +86,23 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             due: Vec::new(),
             changes: Changes::new(),
             indices: Vec::new(),
+            recent: Recent::default(),
             order: OnceLock::new(),
             touching: OnceLock::new(),
+        }
+    }
+
+    /// Brings all pairs up to date, and now and then gives memory back.
+    pub(crate) fn step(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
+        self.recent.note(self.due.len());
+        self.update_pairs(table, events);
+        if let Some(look) = self.recent.end_update(self.pairs.len()) {
+            look.trim(&mut self.due);
+            look.trim(&mut self.changes);
+            look.trim(&mut self.indices);
+            look.fit(&mut self.locations);
+            self.pairs.fit(look);
+            self.lanes.fit(look);
         }
     }
 

@@ -8,6 +8,7 @@ use super::entry::{
 use super::group::Group;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
+use crate::memory::Look;
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
@@ -158,6 +159,13 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
             }
             Lane::Nothing => (Carried::Nothing, None),
         }
+    }
+
+    /// Gives back memory that lanes which have stopped to grow do not need.
+    pub(crate) fn fit(&mut self, look: Look) {
+        self.contacts.iter_mut().for_each(|group| group.fit(look));
+        self.composites.fit(look);
+        self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
     /// Asks for a pair to be updated even if both objects stand still.
