@@ -20,8 +20,8 @@ use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, ov
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, distance_in_world, in_world, separation_in_plane, separation_in_space,
-    touching_in_world,
+    Algorithm, PartedFn, distance_in_world, in_world, parted_in_plane, parted_in_space,
+    separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
@@ -36,6 +36,8 @@ use crate::world::{Bodies, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    /// Whether two convex solids are farther apart than a limit of less than zero.
+    pub(crate) parted: PartedFn<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -191,6 +193,7 @@ struct Particular<N: Space<D>, const D: usize> {
     witness_features: FeaturesFn<N, D>,
     witness_feature: FeatureFn<N, D>,
     over: OverFn<N, D>,
+    parted: PartedFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
@@ -206,6 +209,7 @@ impl<N: Real> Particular<N, 2> {
         witness_features: witness_features2,
         witness_feature: witness_feature2,
         over: over2,
+        parted: parted_in_plane,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
@@ -222,6 +226,7 @@ impl<N: Real> Particular<N, 3> {
         witness_features: witness_features3,
         witness_feature: witness_feature3,
         over: over3,
+        parted: parted_in_space,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
@@ -242,6 +247,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_features: particular.witness_features,
             witness_feature: particular.witness_feature,
             over: particular.over,
+            parted: particular.parted,
             impact: impact_of_pair,
             nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,

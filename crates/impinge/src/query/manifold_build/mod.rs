@@ -33,7 +33,7 @@ pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
-pub(super) use self::patch::{Merging, Patch, PatchPoint, merge};
+pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
