@@ -93,7 +93,8 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
             };
             let is_heir = |&index: &usize| {
                 let new = &self.points[index];
-                kept[index].is_none() && (new.feature1, new.feature2) == (raw.feature1, raw.feature2)
+                kept[index].is_none()
+                    && (new.feature1, new.feature2) == (raw.feature1, raw.feature2)
             };
             let arm = |index: usize| (self.points[index].point1 - raw.point1).norm_squared();
             let heirs = self.pieces[at].points.clone().filter(is_heir);
@@ -383,11 +384,7 @@ fn beside<N: Real, const D: usize>(members: &[Member<N, D>], corners: [usize; 3]
 
 /// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
 /// next to them.
-fn thin<N: Real, const D: usize>(
-    members: &[Member<N, D>],
-    outline: &mut Indices,
-    tolerance: N,
-) {
+fn thin<N: Real, const D: usize>(members: &[Member<N, D>], outline: &mut Indices, tolerance: N) {
     let mut at = 0;
     while outline.len() > 2 && at < outline.len() {
         let before = outline[if at == 0 { outline.len() - 1 } else { at - 1 }];

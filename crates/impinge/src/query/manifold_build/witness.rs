@@ -86,8 +86,9 @@ fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
 ) -> Option<FeatureId> {
-    let Pair { first: Kind::Triangle(triangle), second: Kind::Cuboid(_) | Kind::Polytope(_), .. } =
-        pair
+    let Pair {
+        first: Kind::Triangle(triangle), second: Kind::Cuboid(_) | Kind::Polytope(_), ..
+    } = pair
     else {
         return None;
     };

@@ -127,8 +127,7 @@ fn best_face<N: Real>(
     of_hull: Axis<N>,
 ) -> Axis<N> {
     let Some(front) = front else { return of_hull };
-    let height =
-        |toward: &Vector<N, 3>| front.dot(&hull.core_support(toward).coords) * fin.shrink;
+    let height = |toward: &Vector<N, 3>| front.dot(&hull.core_support(toward).coords) * fin.shrink;
     let (gap, is_above) = parted(fin.range(front), (height(&-front), height(front)));
     let normal = if is_above { -front } else { *front };
     let is_less = of_hull.gap > gap + noise();
@@ -152,9 +151,9 @@ fn best_edges<N: Real>(
         let along = (to - from) * fin.shrink;
         // The edge runs around the first face, so its product with a side that climbs over that face
         // leads out of the hull; and the triangle lies beyond the side if the edge runs forward.
-        let outer = edging.front.map_or(0b111, |front| {
-            if front.dot(&along) >= N::ZERO { first } else { !first }
-        });
+        let outer = edging
+            .front
+            .map_or(0b111, |front| if front.dot(&along) >= N::ZERO { first } else { !first });
         let mut sides = (first ^ second) & outer & 0b111;
         while sides != 0 {
             let side = sides.trailing_zeros() as usize;
@@ -175,9 +174,7 @@ fn best_edges<N: Real>(
             }
         }
     }
-    best.map(|(edge, side, normal)| {
-        Axis { kind: AxisKind::Edges(edge, side), normal, gap: bound }
-    })
+    best.map(|(edge, side, normal)| Axis { kind: AxisKind::Edges(edge, side), normal, gap: bound })
 }
 
 /// The gap along an axis is there, held against the farthest points of both.

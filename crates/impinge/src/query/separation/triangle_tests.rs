@@ -185,8 +185,7 @@ fn a_box_on_a_face_has_its_normal() {
     let cuboid = Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 1.0));
     for (height, distance) in [(0.75, 0.25), (0.5, 0.0), (0.375, -0.125), (-0.25, -0.25)] {
         let pose12 = Pose::from_translation(Vector::<f64, 3>::new(0.0, height, 0.0));
-        let pair =
-            Pair { first: triangle.geometry().0, second: cuboid.geometry().0, pose12 };
+        let pair = Pair { first: triangle.geometry().0, second: cuboid.geometry().0, pose12 };
         let found = separation(&pair, 1.0).expect("within the limit");
         assert_eq!((found.distance, found.normal.y), (distance, height.signum()), "at {height}");
         assert_eq!((found.point1.x, found.point1.z), (0.0, 0.0), "below its middle");

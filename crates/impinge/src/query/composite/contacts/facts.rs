@@ -4,7 +4,9 @@ use super::judge::{Case, Verdict, faces, judge};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, min};
-use crate::query::manifold_build::{Along, Piece, Points, build_along, build_between};
+use crate::query::manifold_build::{
+    Along, Piece, Points, build_along, build_between, build_on_face,
+};
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{FeatureId, Kind};
 
@@ -195,7 +197,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             let witness = Separation { normal: placed.inward(&normal), ..found };
             match over.filter(|over| is_certain(*over, &verdicts[1])) {
                 Some(over) => of_ball(&witness, over, raw),
-                None => build_between(&pair, &witness, request, raw),
+                None => build_on_face(&pair, &witness, request, raw),
             }
             Standing::Own
         }
