@@ -61,13 +61,17 @@ pub(crate) fn on_face3<N: Real>(
     let lean = part.normal.map(|own| pair.pose12.vector(&own));
     let Some(top) = Outline::of_part(&part, &base, tolerance) else { return false };
     let Some(lean) = lean else { return false };
-    let mut meeting = Meeting { asked, base, top, lean, tolerance, lowest: N::INFINITY };
+    let insides = [base.insides_of(&top), top.insides_of(&base)];
+    let mut meeting = Meeting { asked, base, top, insides, lean, tolerance, lowest: N::INFINITY };
     out.points.clear();
     out.normal = normal;
     meeting.corners(out);
     meeting.crossings(out);
     meeting.settle(out)
 }
+
+/// How far inside of the sides of one outline the corners of another are.
+type Insides<N> = [[N; MOST]; MOST];
 
 /// A convex polygon of the plane of contact.
 struct Outline<N: Real> {
@@ -173,12 +177,13 @@ impl<N: Real> Outline<N> {
         }
     }
 
-    /// How far inside of each side a place is.
-    #[inline]
-    fn insides(&self, place: &Vector<N, 2>) -> [N; MOST] {
-        let mut insides = [N::ZERO; MOST];
-        for at in 0..self.count {
-            insides[at] = self.inward[at].dot(&(place - self.flats[at]));
+    /// How far inside of each side the corners of another outline are: a row for each corner.
+    fn insides_of(&self, other: &Self) -> Insides<N> {
+        let mut insides = [[N::ZERO; MOST]; MOST];
+        for (row, place) in insides.iter_mut().zip(&other.flats[..other.count]) {
+            for at in 0..self.count {
+                row[at] = self.inward[at].dot(&(place - self.flats[at]));
+            }
         }
         insides
     }
@@ -222,6 +227,8 @@ struct Meeting<'a, N: Real> {
     asked: &'a OnFace<N, 3>,
     base: Outline<N>,
     top: Outline<N>,
+    /// Of the corners of the top in the base, and of those of the base in the top.
+    insides: [Insides<N>; 2],
     /// The outward normal of the solid's face.
     lean: Vector<N, 3>,
     tolerance: N,
@@ -236,14 +243,14 @@ impl<N: Real> Meeting<'_, N> {
         let slope = normal.dot(&self.lean);
         for at in 0..self.base.count {
             let (point, place) = (self.base.points[at], self.base.flats[at]);
-            if let Some(on) = self.top.locate(&place, &self.top.insides(&place), tolerance) {
+            if let Some(on) = self.top.locate(&place, &self.insides[1][at], tolerance) {
                 let height = (self.top.points[0] - point).dot(&self.lean) / slope;
                 self.push(point, height, [self.base.ids[at], on], out);
             }
         }
         for at in 0..self.top.count {
             let (point, place) = (self.top.points[at], self.top.flats[at]);
-            if let Some(on) = self.base.locate(&place, &self.base.insides(&place), tolerance) {
+            if let Some(on) = self.base.locate(&place, &self.insides[0][at], tolerance) {
                 let height = (point - self.base.points[0]).dot(&normal);
                 self.push(point - normal * height, height, [on, self.top.ids[at]], out);
             }
@@ -252,16 +259,12 @@ impl<N: Real> Meeting<'_, N> {
 
     /// Sides that cross well inside both.
     fn crossings(&mut self, out: &mut RawManifold<N, 3>) {
-        let mut of_top = [[N::ZERO; MOST]; MOST];
-        for at in 0..self.top.count {
-            of_top[at] = self.base.insides(&self.top.flats[at]);
-        }
         for side1 in 0..self.base.count {
             let next1 = self.base.next(side1);
-            let [from1, to1] = [side1, next1].map(|at| self.top.insides(&self.base.flats[at]));
+            let (from1, to1) = (self.insides[1][side1], self.insides[1][next1]);
             for side2 in 0..self.top.count {
                 let ends1 = [from1[side2], to1[side2]];
-                let ends2 = [of_top[side2][side1], of_top[self.top.next(side2)][side1]];
+                let ends2 = [side2, self.top.next(side2)].map(|at| self.insides[0][at][side1]);
                 if self.are_apart(ends1) && self.are_apart(ends2) {
                     let share = |[from, to]: [N; 2]| from / (from - to);
                     let core1 = self.base.along_side(side1, share(ends1));

@@ -22,6 +22,7 @@ mod view;
 
 use smallvec::SmallVec;
 
+use self::candidates::Around;
 use self::facts::{Finding, Notes, Reference, Standing};
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
@@ -55,9 +56,15 @@ pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     /// the side of the surface that it came from: a solid that was pushed halfway through a surface
     /// with two sides, or jumped there, is still on its old side.
     reference: Reference<N, D>,
+    around: Around<N, D>,
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
+    /// Forgets what was found of shapes that may be others now; the contacts and their names stay.
+    pub(crate) fn forget_shapes(&mut self) {
+        self.around = Around::default();
+    }
+
     /// How many contact points there are.
     pub(crate) fn len(&self) -> usize {
         self.patches.iter().map(|patch| patch.points.len()).sum()
@@ -66,6 +73,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
     /// The two shapes change places.
     pub(crate) fn flip_names(&mut self) {
         self.reference = None;
+        self.forget_shapes();
         for point in self.patches.iter_mut().flat_map(|patch| &mut patch.points) {
             point.parts.reverse();
             core::mem::swap(&mut point.raw.feature1, &mut point.raw.feature2);
@@ -75,7 +83,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
-    /// and features stay keep their numbers.
+    /// and features stay keep their numbers. Other shapes than before must be told of by
+    /// [`Self::forget_shapes`].
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
@@ -83,7 +92,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         let of_parts = of_parts(between, request);
-        let nearby = candidates::nearby(between, is_self, of_parts.prediction);
+        let around = Some(&mut self.around);
+        let nearby = candidates::nearby(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
         let way = Way { old: self.reference, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
@@ -236,7 +246,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
     let reference = middle_of_first(between);
     let query = Query { between, reference: &reference, request: &request };
-    let nearby = candidates::nearby(between, false, request.prediction);
+    let nearby = candidates::nearby(between, false, request.prediction, None);
     let mut notes = Notes::default();
     let findings = query.findings(&nearby.parts, &mut notes);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
