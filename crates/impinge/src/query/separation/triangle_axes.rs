@@ -30,7 +30,8 @@ pub(super) struct Fin<'a, N: Real> {
 
 /// The directions of a [`Fin`].
 pub(super) struct Edging<N: Real> {
-    /// Unit, from each corner to the next; zero between corners that coincide.
+    /// Unit, from each corner to the next; zero between corners that coincide, and on a triangle
+    /// without area on all but the longest, on which they lie.
     pub(super) sides: [Vector<N, 3>; 3],
     /// Unit, on the side that sees the corners counter-clockwise; `None` without area.
     pub(super) front: Option<Vector<N, 3>>,
@@ -95,8 +96,10 @@ impl<'a, N: Real> Fin<'a, N> {
         let turn = &self.pose12.rotation;
         let front = front_of(&ways, &squared).map(|front| turn.tr_mul(&front));
         let mut sides = ways;
-        for (side, squared) in sides.iter_mut().zip(squared) {
-            let has_length = squared > N::MIN_POSITIVE / N::EPSILON;
+        let longest = longest_of(&squared);
+        for (at, (side, squared)) in sides.iter_mut().zip(squared).enumerate() {
+            let is_border = front.is_some() || at == longest;
+            let has_length = is_border && squared > N::MIN_POSITIVE / N::EPSILON;
             let share = if has_length { N::ONE / squared.sqrt() } else { N::ZERO };
             *side = turn.tr_mul(&(*side * share));
         }
@@ -121,9 +124,8 @@ impl<'a, N: Real> Fin<'a, N> {
         gap * self.scale
     }
 
-    /// The answer along an axis, in the frame of the triangle; `None` if the axis only gives a bound,
-    /// since they are apart and the points do not lie across from each other, or if the face of the
-    /// solid is none.
+    /// The answer along an axis, in the frame of the triangle; `None` if the points do not lie across
+    /// from each other, so that the axis only gives a bound, or if the face of the solid is none.
     pub(super) fn answer(
         &self,
         solid: &dyn ConvexPolyhedron<N, 3>,
@@ -131,7 +133,10 @@ impl<'a, N: Real> Fin<'a, N> {
     ) -> Option<Separation<N, 3>> {
         let [point1, point2] = self.points(solid, axis)?;
         let aside = point2 - point1 - axis.normal * axis.gap;
-        if axis.gap > N::ZERO && aside.norm() > noise::<N>() {
+        // Of solids that overlap the points do lie across from each other, but where other sides or
+        // faces are as good but for rounding, they may be the wrong ones.
+        let room = if axis.gap > N::ZERO { noise::<N>() } else { N::lit(4.0) * noise::<N>() };
+        if !(aside.norm() <= room) {
             return None;
         }
         let placed = |point: Vector<N, 3>| self.pose12.point(&Point::from(point * self.scale));
@@ -198,14 +203,19 @@ type Polygon<N> = SmallVec<[Vector<N, 3>; 12]>;
 /// The unit normal of a triangle given by its sides and their squared lengths: from the two shorter
 /// ones, which lose least when multiplied.
 fn front_of<N: Real>(ways: &[Vector<N, 3>; 3], squared: &[N; 3]) -> Option<Vector<N, 3>> {
-    let longer = |a: usize, b: usize| if squared[b] > squared[a] { b } else { a };
-    let longest = longer(longer(0, 1), 2);
+    let longest = longest_of(squared);
     let across = cross(&ways[(longest + 1) % 3], &ways[(longest + 2) % 3]);
     let area = across.norm();
     // Written so that what is no number has no normal, nor what has lost digits by being small.
     let is_wide = area > N::lit(THIN) * N::EPSILON * squared[longest]
         && squared[longest] > N::MIN_POSITIVE.sqrt();
     is_wide.then(|| across / area)
+}
+
+/// The index of the greatest of three numbers, the first of equals.
+fn longest_of<N: Real>(squared: &[N; 3]) -> usize {
+    let longer = |a: usize, b: usize| if squared[b] > squared[a] { b } else { a };
+    longer(longer(0, 1), 2)
 }
 
 /// The sine below which two edges count as parallel.
