@@ -196,6 +196,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
                 let entry = self.lanes.composites.state_mut(place);
+                entry.state.forget_shapes();
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {

@@ -190,6 +190,13 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     }
 }
 
+impl<N: Real, const D: usize> CompositeState<N, D> {
+    /// One of the shapes may be another one now.
+    pub(crate) fn forget_shapes(&mut self) {
+        self.contacts.forget_shapes();
+    }
+}
+
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     /// As [`ContactState::view`], one for each patch.
     pub(crate) fn views<'a>(

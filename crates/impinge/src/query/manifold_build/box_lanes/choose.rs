@@ -67,11 +67,7 @@ impl Kept {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
             kept.is_still &= is_same;
-            let slot = if is_same {
-                Some(own)
-            } else {
-                naming.slot(point, valid & !kept.slots)
-            };
+            let slot = if is_same { Some(own) } else { naming.slot(point, valid & !kept.slots) };
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
                 kept.ids[slot] = point.id;
