@@ -4,10 +4,12 @@ use core::fmt::Debug;
 
 use super::error::or_panic;
 use super::handle::Handles;
+use super::proposal::{Proposal, Proposals, Proxies};
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
 use crate::math::{Point, Real, Space, Vector};
+use crate::memory::Recent;
 use crate::pairs::unpack;
 use crate::partitioning::Sweep;
 
@@ -50,14 +52,16 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// Volumes with a face beyond the range of `f32` are unbounded: ordinary, but each is tested
 /// against every object that changes, so there should be few.
 ///
-/// Costs O(changed · log n) with temporal coherence; about 60 bytes per object beside two copies of
-/// its box. [`PairFinder`] describes the layout.
+/// Costs O(changed · log n) with temporal coherence. Of an object that stays where it is and has no pairs,
+/// about 60 bytes are kept beside its volume, the loosened one and the data. [`PairFinder`] describes the
+/// layout.
 #[derive(Clone, Debug)]
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
-    proxies: Vec<Option<T>>,
+    proxies: Proxies<T>,
     finder: BV::Finder,
+    recent: Recent,
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
@@ -78,12 +82,13 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     /// If the margin is negative, infinite or NaN.
     pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
         let finder = BV::try_finder(margin)?;
-        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+        let (handles, proxies, recent) = (Handles::default(), Vec::new(), Recent::default());
+        Ok(Self { handles, proxies, finder, recent })
     }
 }
 
 /// The data of an object that is known to be there.
-fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
+pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
     let data = proxies[id as usize].as_ref();
     data.expect("the finder knows only objects that are there")
 }
@@ -101,7 +106,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// If the margin is negative, infinite or NaN.
     pub fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
         let finder = PairFinder::with_lanes(margin, lanes)?;
-        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+        Ok(Self { finder, ..Self::try_new(margin)? })
     }
 
     /// The margin by which volumes are loosened.
@@ -142,6 +147,10 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         sorted.sort_unstable();
         let twice = sorted.windows(2).find(|two| two[0] == two[1]);
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
+    }
+
+    fn proposals(&self, found: &[(u32, N)]) -> Proposals<'_, N, T> {
+        found.iter().map(|&(id, key)| Proposal::kept(&self.proxies, id, key)).collect()
     }
 
     fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
@@ -231,6 +240,10 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
             &mut |a, b| filter(data_of(proxies, a), data_of(proxies, b)),
             &mut |a, b, started| callback(data_of(proxies, a), data_of(proxies, b), started),
         );
+        if let Some(look) = self.recent.end_update(self.proxies.len()) {
+            look.fit(&mut self.proxies);
+            self.handles.fit(look);
+        }
     }
 
     fn interferences_with_bounding_volume<'a>(&'a self, bv: &Aabb<N, D>, out: &mut Vec<&'a T>) {
@@ -260,9 +273,14 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_ray(ray, max_time, &mut by_id);
     }
 
-    fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_ray_roughly(ray, max_time, &mut by_id);
+    fn visit_ray_roughly(
+        &self,
+        ray: &Ray<N, D>,
+        max_time: N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+    ) {
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
     }
 
     fn visit_nearest(&self, bv: &Aabb<N, D>, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
@@ -274,10 +292,10 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         bv: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
-        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_id);
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
     }
 
     fn visit_cast_roughly(
@@ -285,11 +303,11 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         bv: &Aabb<N, D>,
         velocity: &Vector<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        let mut by_id = |id: u32, _: N| visit(data_of(&self.proxies, id));
+        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         let sweep = Sweep { aabb: *bv, velocity: *velocity };
-        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_id);
+        self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }
 
     fn visit_cast(

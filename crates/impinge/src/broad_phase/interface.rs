@@ -1,7 +1,7 @@
 //! The interface of every broad phase.
 
 use super::error::or_panic;
-use super::{BroadPhaseError, ProxyHandle};
+use super::{BroadPhaseError, Proposal, ProxyHandle};
 use crate::bounding_volume::BoundingVolume;
 use crate::math::{Real, max};
 
@@ -146,10 +146,19 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&hits, max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no promised order, for those who sort what they find: near ones first is
-    /// better. The default is [`Self::visit_ray`].
-    fn visit_ray_roughly(&self, ray: &BV::Ray, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
-        self.visit_ray(ray, max_time, visit);
+    /// [`Self::visit_ray`] in no promised order, several objects at a time, for those who sort what they
+    /// find: near ones first is better. The default is [`Self::visit_ray`], one at a time, with
+    /// zero for all keys.
+    ///
+    /// A broad phase around another that gives handles of its own makes proposals of its own by
+    /// [`Proposal::of`]: those of the other know objects by its handles.
+    fn visit_ray_roughly(
+        &self,
+        ray: &BV::Ray,
+        max_time: N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+    ) {
+        self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
     /// Calls `visit` for the objects whose exact volumes, as of the last update, are at most
@@ -182,22 +191,25 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&met, max_time, visit);
     }
 
-    /// [`Self::visit_nearest`] in no promised order, for those who sort what they find: near ones first
-    /// is better. The default is [`Self::visit_nearest`].
-    fn visit_nearest_roughly(&self, bv: &BV, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
-        self.visit_nearest(bv, max_distance, visit);
+    /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
+    fn visit_nearest_roughly(
+        &self,
+        bv: &BV,
+        max_distance: N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+    ) {
+        self.visit_nearest(bv, max_distance, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
-    /// [`Self::visit_cast`] in no promised order, for those who sort what they find: near ones first is
-    /// better. The default is [`Self::visit_cast`].
+    /// [`Self::visit_cast`] as [`Self::visit_ray_roughly`].
     fn visit_cast_roughly(
         &self,
         bv: &BV,
         velocity: &BV::Vector,
         max_time: N,
-        visit: &mut dyn FnMut(&T) -> N,
+        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
     ) {
-        self.visit_cast(bv, velocity, max_time, visit);
+        self.visit_cast(bv, velocity, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 }
 

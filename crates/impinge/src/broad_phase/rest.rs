@@ -1,17 +1,18 @@
 //! Objects that have come to rest, and the order of the trees.
 
 use super::PairFinder;
-use super::finder::{Home, small};
+use super::finder::Home;
+use crate::bvh::NONE;
 use crate::math::Real;
 
 /// Updates without a change after which an object counts as still.
 const REST: u32 = 32;
-/// Each update looks at one object in so many.
+/// Each update looks at so many places as are one in so many of all objects.
 const WINDOW: usize = 32;
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Moves objects at rest to the tree of still ones and does this update's share of keeping both
-    /// trees in order. Looks at a window of objects that advances with each update, so that the
+    /// trees in order. Looks at a window of places that advances with each update, so that the
     /// outcome depends on the calls made alone.
     pub(super) fn keep_order(&mut self) {
         let mut resting = core::mem::take(&mut self.resting);
@@ -29,19 +30,20 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
+    /// Lists them in the order of the tree that they leave, which is one of space: in the order of
+    /// their numbers they would leave the other tree without one.
     fn list_resting(&mut self, resting: &mut Vec<u32>) {
-        let count = self.homes.len();
+        let slots = self.moving.slots_in_order();
         resting.clear();
-        if self.moving.is_empty() {
+        if slots.is_empty() {
             return;
         }
-        let window = (count / WINDOW + 1).min(count);
-        let start = self.cursor;
-        self.cursor = (start + window) % count;
-        let is_resting = |&id: &u32| {
-            let rest = self.clock.wrapping_sub(self.last_change[id as usize]);
-            self.homes[id as usize] == Home::Moving && rest >= REST
-        };
-        resting.extend((start..start + window).map(|at| small(at % count)).filter(is_resting));
+        let window = (self.homes.len() / WINDOW + 1).min(slots.len());
+        let start = self.cursor % slots.len();
+        self.cursor = start + window;
+        let is_resting =
+            |id: u32| id != NONE && self.clock.wrapping_sub(self.last_change[id as usize]) >= REST;
+        let looked_at = slots.iter().skip(start).take(window);
+        resting.extend(looked_at.copied().filter(|&id| is_resting(id)));
     }
 }

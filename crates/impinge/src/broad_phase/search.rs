@@ -34,14 +34,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no exact order, but near ones first.
+    /// [`Self::visit_ray`] in no exact order, but near ones first, and several at a time.
     pub fn visit_ray_roughly(
         &self,
         ray: &Ray<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
-        self.search().near_first(&Sweep::along(ray), max_time, visit);
+        self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
     }
 
     /// Calls `visit` with each object whose exact box is at most `max_distance` from `aabb` and the
@@ -56,14 +56,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_distance(aabb, max_distance, visit);
     }
 
-    /// [`Self::visit_nearest`] in no exact order, but near ones first.
+    /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
     pub fn visit_nearest_roughly(
         &self,
         aabb: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
-        self.search().nearest_first(aabb, max_distance, visit);
+        self.search().groups_by_distance(aabb, max_distance, visit);
     }
 
     /// Calls `visit` with each object whose exact box the moving one touches at or before `max_time`
@@ -78,14 +78,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(sweep, max_time, visit);
     }
 
-    /// [`Self::visit_cast`] in no exact order, but near ones first.
+    /// [`Self::visit_cast`] as [`Self::visit_ray_roughly`].
     pub(crate) fn visit_cast_roughly(
         &self,
         sweep: &Sweep<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(u32, N) -> N,
+        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
     ) {
-        self.search().near_first(sweep, max_time, visit);
+        self.search().groups_by_time(sweep, max_time, visit);
     }
 
     fn search(&self) -> Search<'_, N, D, 2> {

@@ -119,6 +119,10 @@ impl<S: Simd> Wide<S> {
     /// See [`Kernel::least`](super::kernel::Kernel::least).
     #[inline(always)]
     pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
+        let (first, last) = (mask.trailing_zeros() as usize, 31 - mask.leading_zeros() as usize);
+        if mask.count_ones() <= 2 {
+            return if keys[first] <= keys[last] { first } else { last };
+        }
         let simd = self.0;
         let wanted = mask32x16::from_bitmask(simd, u64::from(mask));
         let keys = f32x16::load_array_ref(simd, keys);

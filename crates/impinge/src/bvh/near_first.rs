@@ -1,142 +1,211 @@
-//! Searches along the way of a moving box or ray, near boxes before far ones, as deep as they go.
+//! Searches along the way of a moving box or ray and around a box at rest, near boxes before far ones, as
+//! deep as they go.
 //!
-//! Depth first, the children of a block by the time they are entered (as in all ray tracers), with the
-//! limit held against that time once more when a child's turn comes. What is found shortens the search;
-//! but unlike that of [`Frontier`](super::Frontier) the order is rough: objects of a block that is
-//! entered later may come earlier than some before it. That saves a queue, which costs more than the
-//! boxes it spares.
+//! Depth first, of each block the nearest child next (as in all ray tracers; Roussopoulos, Kelley and
+//! Vincent, "Nearest neighbor queries", 1995), as long as that is within the limit, which shrinks with
+//! what is found. As many blocks lie open as there are layers, each with the keys of its children; which
+//! of them comes next is looked for only when its turn comes, since most never have one. The order is
+//! rough: objects of a block that comes later may be nearer than some before it. That saves the queue of
+//! [`Frontier`](super::Frontier), which costs more than the boxes it spares.
 
+use super::gaps::Gaps;
 use super::kernel::{Kernel, with_kernel};
 use super::slabs::Slabs;
 use super::tree::small;
 use super::triangles::{ShearedLine, Triangles};
-use super::{LANES, Lanes, NONE, Tree};
+use super::{Block, LANES, Lanes, NONE, Tree};
 
-/// Entries that a search may have put off: each of at most eight layers leaves at most fifteen, the
-/// lowest expansion sixteen; and the other trees.
-const STACK: usize = 160;
+/// Layers that a tree may have: 2^32 objects make eight.
+const LAYERS: usize = 8;
 
-/// A block of a layer above 0, or what lies below: a slot, or the block of leaves.
+/// Objects are handed out by so many at most: what is known about them lies anywhere in memory, and is
+/// fetched together faster than one by one.
+pub(crate) const GROUP: usize = 4;
+
+/// What the lanes of a block are asked.
+pub(super) trait Probe<const D: usize> {
+    /// The lanes that may have a key of at most `limit`, and their keys, or a little less. Never without
+    /// a lane that has. Keys are zero or more.
+    fn ask<K: Kernel>(
+        &self,
+        kernel: K,
+        block: &Block<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32;
+}
+
+/// By when they are entered.
+impl<const D: usize> Probe<D> for Slabs<D> {
+    #[inline(always)]
+    fn ask<K: Kernel>(
+        &self,
+        kernel: K,
+        block: &Block<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        kernel.enter(block, self, limit, keys)
+    }
+}
+
+/// By the squares of their distances.
+impl<const D: usize> Probe<D> for Gaps<D> {
+    #[inline(always)]
+    fn ask<K: Kernel>(
+        &self,
+        kernel: K,
+        block: &Block<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        kernel.apart(block, self, limit, keys)
+    }
+}
+
+/// A block that lies open.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    /// When it is entered.
-    key: f32,
-    tree: u8,
-    layer: u8,
-    number: u32,
+struct Open {
+    /// Those of the children.
+    keys: [f32; LANES],
+    /// The children to be looked at.
+    mask: u32,
+    /// The number of the first child.
+    first: u32,
 }
 
-impl Entry {
-    #[inline(always)]
-    fn rank(self) -> u64 {
-        u64::from(self.key.to_bits()) << 32 | u64::from(self.number)
-    }
-}
+impl Open {
+    const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
-/// What a search has put off, the nearest on top of those of one block: arrays of the members of
-/// [`Entry`], which are emptied faster.
-struct Pending {
-    /// The keys, whose bits order as they do, and below them the numbers.
-    ranks: [u64; STACK],
-    /// The trees and layers.
-    places: [[u8; 2]; STACK],
-    len: usize,
-}
-
-impl Pending {
+    /// Takes out the child of least key, unless that is beyond the limit.
     #[inline(always)]
-    fn new() -> Self {
-        Self { ranks: [0; STACK], places: [[0; 2]; STACK], len: 0 }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, entry: Entry) {
-        (self.ranks[self.len], self.places[self.len]) = (entry.rank(), [entry.tree, entry.layer]);
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the two halves of the rank")]
-    fn pop(&mut self) -> Option<Entry> {
-        self.len = self.len.checked_sub(1)?;
-        let (rank, [tree, layer]) = (self.ranks[self.len], self.places[self.len]);
-        Some(Entry { key: f32::from_bits((rank >> 32) as u32), tree, layer, number: rank as u32 })
-    }
-
-    /// Adds the lanes of the mask, those with the least keys last; `first` is the entry of lane 0.
-    #[inline(always)]
-    fn push_lanes(&mut self, mut mask: u32, keys: &[f32; LANES], first: Entry) {
-        let start = self.len;
-        while mask != 0 {
-            let lane = mask.trailing_zeros();
-            mask &= mask - 1;
-            let entry = Entry { key: keys[lane as usize], number: first.number + lane, ..first };
-            let (rank, mut at) = (entry.rank(), self.len);
-            while at > start && self.ranks[at - 1] < rank {
-                self.ranks[at] = self.ranks[at - 1];
-                at -= 1;
-            }
-            self.ranks[at] = rank;
-            self.places[self.len] = [first.tree, first.layer];
-            self.len += 1;
+    fn next<K: Kernel>(&mut self, kernel: K, limit: f32) -> Option<u32> {
+        if self.mask == 0 {
+            return None;
         }
+        let lane = kernel.least(&self.keys, self.mask) % LANES;
+        let is_within = self.keys[lane] <= limit;
+        self.mask &= !(1 << lane);
+        is_within.then_some(self.first + small(lane))
     }
 }
 
 impl Lanes {
-    /// Calls `found` with each object of the trees that the moving box may touch by `limit` near
-    /// ones first but in no exact order; `found` returns the new limit, which
-    /// never grows. Both are in the units of the slabs. A negative limit ends the search.
-    pub(crate) fn visit_near_first<const D: usize>(
+    /// Calls `found` with the objects of the trees that the moving box may touch by `limit`, several at a
+    /// time, near ones first but in no exact order; `found` returns the new limit, which never grows.
+    /// Limits are in the units of the slabs. A negative limit ends the search.
+    pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
         slabs: &Slabs<D>,
         limit: f32,
-        mut found: impl FnMut(u32) -> f32,
+        found: impl FnMut(&[u32]) -> f32,
     ) {
-        with_kernel!(self, kernel => near_first(kernel, trees, slabs, limit, &mut found));
+        self.visit_near_first(trees, slabs, limit, found);
     }
-}
 
-#[inline(always)]
-fn near_first<K: Kernel, const D: usize>(
-    kernel: K,
-    trees: &[&Tree<D>],
-    slabs: &Slabs<D>,
-    mut limit: f32,
-    found: &mut impl FnMut(u32) -> f32,
-) {
-    let (mut pending, mut keys) = (Pending::new(), [0.0; LANES]);
-    for (tree, number) in trees.iter().zip(0..).filter(|(tree, _)| !tree.is_empty()) {
-        debug_assert!(!tree.is_stale, "searches need a refitted tree");
-        pending.push(Entry { key: 0.0, tree: number, layer: tree.top_layer() + 1, number: 0 });
+    /// [`Self::visit_along`] with the objects that may be as near as `limit`, a square in the units of the
+    /// gaps.
+    pub(crate) fn visit_around<const D: usize>(
+        self,
+        trees: &[&Tree<D>],
+        gaps: &Gaps<D>,
+        limit: f32,
+        found: impl FnMut(&[u32]) -> f32,
+    ) {
+        self.visit_near_first(trees, gaps, limit, found);
     }
-    while let Some(entry) = pending.pop() {
-        let is_within = entry.key <= limit;
-        if !is_within {
-            continue;
-        }
-        let tree = trees[usize::from(entry.tree)];
-        let Some(layer) = entry.layer.checked_sub(1) else {
-            if let Some(id) = tree.id_in(entry.number) {
-                limit = found(id);
+
+    #[inline(always)]
+    fn visit_near_first<const D: usize>(
+        self,
+        trees: &[&Tree<D>],
+        probe: &impl Probe<D>,
+        mut limit: f32,
+        mut found: impl FnMut(&[u32]) -> f32,
+    ) {
+        with_kernel!(self, kernel => {
+            for tree in trees.iter().filter(|tree| !tree.is_empty()) {
+                debug_assert!(!tree.is_stale, "searches need a refitted tree");
+                limit = tree.near_first(kernel, probe, limit, &mut found);
             }
-            continue;
-        };
-        let blocks = &tree.layers[usize::from(layer)].blocks;
-        let block = &blocks[entry.number as usize];
-        let mask = kernel.enter(block, slabs, limit, &mut keys);
-        let first = Entry { layer, number: entry.number * small(LANES), ..entry };
-        pending.push_lanes(tree.lanes_in_use(layer, first.number, mask), &keys, first);
+        });
     }
 }
 
 impl<const D: usize> Tree<D> {
+    /// See [`Lanes::visit_along`]; returns the last limit.
+    #[inline(always)]
+    fn near_first<K: Kernel>(
+        &self,
+        kernel: K,
+        probe: &impl Probe<D>,
+        limit: f32,
+        found: &mut impl FnMut(&[u32]) -> f32,
+    ) -> f32 {
+        self.descend(
+            kernel,
+            probe,
+            limit,
+            #[inline(always)]
+            |block, limit| {
+                // At once, so that memory has both ready at the same time.
+                let ids = self.leaves()[block as usize];
+                let mut open = self.opened(kernel, probe, (0, block), limit);
+                hand_out(kernel, &ids, &mut open, limit, found)
+            },
+        )
+    }
+
+    /// Calls `leaf` with leaf blocks in which a key may be at most the limit, which it returns anew.
+    /// Opens each block at most once.
+    #[inline(always)]
+    fn descend<K: Kernel>(
+        &self,
+        kernel: K,
+        probe: &impl Probe<D>,
+        mut limit: f32,
+        mut leaf: impl FnMut(u32, f32) -> f32,
+    ) -> f32 {
+        let top = self.layers.len() - 1;
+        if top == 0 {
+            return leaf(0, limit);
+        }
+        let (mut path, mut layer) = ([Open::NOTHING; LAYERS], top);
+        path[top] = self.opened(kernel, probe, (top, 0), limit);
+        loop {
+            match path[layer].next(kernel, limit) {
+                None if layer == top => return limit,
+                None => layer += 1,
+                Some(block) if layer == 1 => limit = leaf(block, limit),
+                Some(block) => {
+                    layer -= 1;
+                    path[layer] = self.opened(kernel, probe, (layer, block), limit);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn opened<K: Kernel>(
+        &self,
+        kernel: K,
+        probe: &impl Probe<D>,
+        (layer, number): (usize, u32),
+        limit: f32,
+    ) -> Open {
+        let block = &self.layers[layer].blocks[number as usize];
+        let mut keys = [0.0; LANES];
+        let first = number * small(LANES);
+        let mask = self.lanes_in_use(layer, first, probe.ask(kernel, block, limit, &mut keys));
+        Open { keys, mask, first }
+    }
+
     /// Without the lanes that have no block below them.
     #[inline(always)]
-    fn lanes_in_use(&self, layer: u8, first: u32, mask: u32) -> u32 {
+    fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };
-        let left = self.layers[usize::from(below)].blocks.len() - first as usize;
+        let left = self.layers[below].blocks.len() - first as usize;
         if left < LANES { mask & ((1 << left) - 1) } else { mask }
     }
 
@@ -154,6 +223,32 @@ impl<const D: usize> Tree<D> {
     }
 }
 
+/// Hands out the objects of a leaf block.
+#[inline(always)]
+fn hand_out<K: Kernel>(
+    kernel: K,
+    ids: &[u32; LANES],
+    open: &mut Open,
+    mut limit: f32,
+    found: &mut impl FnMut(&[u32]) -> f32,
+) -> f32 {
+    while open.mask != 0 {
+        let (mut group, mut count) = ([NONE; GROUP], 0);
+        while count < GROUP {
+            let Some(slot) = open.next(kernel, limit) else {
+                open.mask = 0;
+                break;
+            };
+            group[count] = ids[(slot - open.first) as usize % LANES];
+            count += usize::from(group[count] != NONE);
+        }
+        if count > 0 {
+            limit = found(&group[..count]);
+        }
+    }
+    limit
+}
+
 /// A ray among triangles: what [`Tree::visit_triangles`] asks the boxes and the triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayProbe {
@@ -163,7 +258,7 @@ pub(crate) struct RayProbe {
 
 impl Tree<3> {
     /// Calls `found` with each object whose triangle the ray may cross by `limit`, its id, block and
-    /// lane, as [`Lanes::visit_near_first`]. `triangles` are those of the leaf blocks.
+    /// lane, as [`Lanes::visit_along`]. `triangles` are those of the leaf blocks.
     pub(crate) fn visit_triangles(
         &self,
         triangles: &[Triangles],
@@ -184,34 +279,27 @@ impl Tree<3> {
         kernel: K,
         triangles: &[Triangles],
         probe: &RayProbe,
-        mut limit: f32,
+        limit: f32,
         found: &mut impl FnMut(u32, &Triangles, usize) -> f32,
     ) {
-        let (mut pending, mut keys) = (Pending::new(), [0.0; LANES]);
-        pending.push(Entry { key: 0.0, tree: 0, layer: self.top_layer(), number: 0 });
-        while let Some(entry) = pending.pop() {
-            let is_within = entry.key <= limit;
-            if !is_within {
-                continue;
-            }
-            if entry.layer > 0 {
-                let block = &self.layers[usize::from(entry.layer)].blocks[entry.number as usize];
-                let mask = kernel.enter(block, &probe.slabs, limit, &mut keys);
-                let number = entry.number * small(LANES);
-                let mask = self.lanes_in_use(entry.layer, number, mask);
-                pending.push_lanes(mask, &keys, Entry { layer: entry.layer - 1, number, ..entry });
-                continue;
-            }
-            let own = &triangles[entry.number as usize];
-            let mut mask = kernel.crossed(own, &probe.line, limit);
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let id = self.ids[entry.number as usize * LANES + lane];
-                if id != NONE {
-                    limit = found(id, own, lane);
+        self.descend(
+            kernel,
+            &probe.slabs,
+            limit,
+            #[inline(always)]
+            |block: u32, mut limit: f32| {
+                let own = &triangles[block as usize];
+                let mut mask = kernel.crossed(own, &probe.line, limit);
+                while mask != 0 {
+                    let lane = mask.trailing_zeros() as usize;
+                    mask &= mask - 1;
+                    let id = self.ids[block as usize * LANES + lane];
+                    if id != NONE {
+                        limit = found(id, own, lane);
+                    }
                 }
-            }
-        }
+                limit
+            },
+        );
     }
 }

@@ -46,7 +46,7 @@ pub mod bounding_volume {
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::broad_phase::{
-        BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle, TreeVolume,
+        BroadPhase, BroadPhaseError, DBVTBroadPhase, Proposal, ProxyHandle, TreeVolume,
     };
 }
 

@@ -1,7 +1,7 @@
 //! Searches of trees whose boxes stand for exact ones: the trees propose, the exact boxes decide.
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::{Block, Bounds, Frontier, Gaps, Keys, LANES, Lanes, Slabs, Tree};
+use crate::bvh::{Block, Bounds, Frontier, GROUP, Gaps, Keys, LANES, Lanes, Slabs, Tree};
 use crate::math::{Point, Real, Vector, min};
 
 /// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
@@ -114,28 +114,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 
     /// [`Self::by_time`] in no exact order, but near ones first.
-    pub(crate) fn near_first(
-        &self,
-        sweep: &Sweep<N, D>,
-        limit: N,
-        mut found: impl FnMut(u32, N) -> N,
-    ) {
-        let Sweep { aabb, velocity } = sweep;
-        if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
-            return;
-        }
-        let mut lowest = limit;
-        let mut decide = |id: u32| {
-            let enter = self.exact[id as usize].sweep_interval(aabb, velocity);
-            if let Some((enter, _)) = enter.filter(|&(enter, _)| enter <= lowest) {
-                lowest = min(lowest, found(id, enter));
-            }
-            lowest
-        };
-        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
-        let slabs = Slabs::new(aabb, velocity, self.size());
-        let first = slabs.limit(first);
-        self.lanes.visit_near_first(&self.trees, &slabs, first, |id| slabs.limit(decide(id)));
+    pub(crate) fn near_first(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
+        self.groups_by_time(sweep, limit, one_by_one(limit, found));
     }
 
     /// [`Self::by_distance`] in no exact order, but near ones first.
@@ -143,23 +123,72 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         &self,
         aabb: &Aabb<N, D>,
         limit: N,
-        mut found: impl FnMut(u32, N) -> N,
+        found: impl FnMut(u32, N) -> N,
+    ) {
+        self.groups_by_distance(aabb, limit, one_by_one(limit, found));
+    }
+
+    /// [`Self::near_first`] with several objects and their times at once, all of which were within the
+    /// limit before.
+    pub(crate) fn groups_by_time(
+        &self,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        found: impl FnMut(&[(u32, N)]) -> N,
+    ) {
+        let Sweep { aabb, velocity } = sweep;
+        let is_path = velocity.iter().all(|x| x.is_finite_number());
+        if !is_path || !aabb.holds_finite_point() {
+            return;
+        }
+        let enter = |own: &Aabb<N, D>| own.sweep_interval(aabb, velocity).map(|(enter, _)| enter);
+        let mut within = self.within(limit, enter, found);
+        let first = self.unbounded.chunks(GROUP).fold(limit, |_, ids| within(ids));
+        let slabs = Slabs::new(aabb, velocity, self.size());
+        let first = slabs.limit(first);
+        self.lanes.visit_along(&self.trees, &slabs, first, |ids| slabs.limit(within(ids)));
+    }
+
+    /// [`Self::nearest_first`] with several objects and their distances at once, all of which were within
+    /// the limit before.
+    pub(crate) fn groups_by_distance(
+        &self,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        found: impl FnMut(&[(u32, N)]) -> N,
     ) {
         if !aabb.holds_finite_point() {
             return;
         }
-        let mut lowest = limit;
-        let mut decide = |id: u32| {
-            let distance = self.exact[id as usize].distance_to_aabb(aabb);
-            if distance <= lowest {
-                lowest = min(lowest, found(id, distance));
-            }
-            lowest
-        };
-        let first = self.unbounded.iter().fold(limit, |_, &id| decide(id));
+        let distance = |own: &Aabb<N, D>| Some(own.distance_to_aabb(aabb));
+        let mut within = self.within(limit, distance, found);
+        let first = self.unbounded.chunks(GROUP).fold(limit, |_, ids| within(ids));
         let gaps = Gaps::new(aabb, self.size());
         let first = gaps.limit(first);
-        self.lanes.visit_nearest_first(&self.trees, &gaps, first, |id| gaps.limit(decide(id)));
+        self.lanes.visit_around(&self.trees, &gaps, first, |ids| gaps.limit(within(ids)));
+    }
+
+    /// Hands on those of a few objects whose keys are within the limit; returns the new limit.
+    fn within(
+        &self,
+        limit: N,
+        key: impl Fn(&Aabb<N, D>) -> Option<N>,
+        mut found: impl FnMut(&[(u32, N)]) -> N,
+    ) -> impl FnMut(&[u32]) -> N {
+        let mut lowest = limit;
+        move |ids| {
+            let (mut near, mut count) = ([(0, N::ZERO); GROUP], 0);
+            for &id in ids {
+                if let Some(key) = key(&self.exact[id as usize]).filter(|key| *key <= lowest) {
+                    near[count] = (id, key);
+                    count += 1;
+                }
+            }
+            if count > 0 {
+                lowest = min(lowest, found(&near[..count]));
+            }
+            lowest
+        }
     }
 
     /// The largest magnitude of a coordinate in the trees.
@@ -207,6 +236,22 @@ impl<N: Real> Best<N> {
             (self.of, self.limit) = (Some((index, key)), key);
         }
         self.limit
+    }
+}
+
+/// Hands on a few objects one after another, as long as their keys are within the limit.
+fn one_by_one<N: Real>(
+    limit: N,
+    mut found: impl FnMut(u32, N) -> N,
+) -> impl FnMut(&[(u32, N)]) -> N {
+    let mut lowest = limit;
+    move |group| {
+        for &(id, key) in group {
+            if key <= lowest {
+                lowest = min(lowest, found(id, key));
+            }
+        }
+        lowest
     }
 }
 

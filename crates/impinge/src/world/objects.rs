@@ -5,6 +5,7 @@ use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
+use crate::memory::Look;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
@@ -214,6 +215,18 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         if let Some(object) = slot.and_then(|slot| records.get(slot.place as usize)) {
             table.lend(index, || object.body.row());
         }
+    }
+
+    /// Gives memory back that has not been needed for some time.
+    pub(super) fn give_back(&mut self, look: Look) {
+        look.fit(&mut self.slots);
+        self.changes.give_back(look);
+        self.table.give_back(look);
+    }
+
+    /// How many indices have been in use.
+    pub(super) const fn reach(&self) -> usize {
+        self.slots.len()
     }
 
     pub(super) fn set_proxy(&mut self, handle: CollisionObjectHandle, proxy: ProxyHandle) {

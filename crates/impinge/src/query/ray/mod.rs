@@ -37,7 +37,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{
     AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max, max_component, min,
 };
-use crate::shape::{FeatureId, Kind, Shape};
+use crate::shape::{FeatureId, Kind, Shape, Triangle};
 
 /// Where and when a ray first meets a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -354,10 +354,26 @@ fn cast<N: Real, const D: usize>(
     toi.is_finite_number().then_some(RayIntersection { toi, ..hit })
 }
 
-/// False where a solid is certainly too far from a point to hold it: a quick look at triangles, which most
-/// rays that come near do not hit.
+/// False where a solid is certainly too far from a point to hold it: a quick look at the kinds of which
+/// there are most, since most rays that come near do not hit.
 fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
-    let Kind::Triangle(triangle) = kind else { return true };
+    match kind {
+        Kind::Triangle(triangle) => may_lie_on(triangle, point),
+        Kind::Cuboid(cuboid) => {
+            let is_beside = |axis: usize| point[axis].abs() > cuboid.half_extents()[axis];
+            !(0..D).any(is_beside)
+        }
+        Kind::Ball(ball) => {
+            let reach = ball.radius() * ball.radius();
+            let slack = N::lit(16.0) * N::EPSILON * reach + N::MIN_POSITIVE;
+            let is_beyond = point.coords.norm_squared() > reach + slack;
+            !is_beyond
+        }
+        _ => true,
+    }
+}
+
+fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
     let [a, b, c] = triangle.corners();
     let largest = |corner: &Point<N, D>| max_component(&corner.coords);
     let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));

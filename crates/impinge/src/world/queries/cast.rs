@@ -62,7 +62,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, Impact<N, D>)> {
         let cast = Cast::new(position, velocity, shape, options)?;
-        self.ranked_impacts(&cast, Ranking::new(1, options.max_time), filter).pop()
+        let found = self
+            .best(&cast.probe, options.max_time, filter, &|body, latest| cast.impact(body, latest));
+        found.map(|(object, _, impact)| (object, impact))
     }
 
     /// The objects that a moving solid would hit if none of them stopped it, and how it would first hit
@@ -88,11 +90,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         ranking: Option<Ranking<N, Impact<N, D>>>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let found = self.rank(&cast.probe, ranking, filter, &|body, latest| {
-            let options = cast.options.with_max_time(latest);
-            let found = impact(&cast.moving, &at_rest(body), &options)?;
-            Some((found.toi, found))
-        });
+        let found =
+            self.rank(&cast.probe, ranking, filter, &|body, latest| cast.impact(body, latest));
         found.into_iter().map(|(object, _, impact)| (object, impact)).collect()
     }
 }
@@ -121,6 +120,15 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
             moving: Moving { placed, velocity: *velocity },
             options: *options,
         })
+    }
+}
+
+impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
+    /// When the solid hits an object, and how; `None` if that is after `latest`.
+    fn impact(&self, body: &Body<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
+        let options = self.options.with_max_time(latest);
+        let found = impact(&self.moving, &at_rest(body), &options)?;
+        Some((found.toi, found))
     }
 }
 

@@ -18,7 +18,7 @@ pub use filter::QueryFilter;
 
 use super::bodies::{Body, grown};
 use super::{CollisionObject, CollisionWorld};
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::ClosestPoints;
@@ -69,6 +69,32 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(body, _)| body);
         let allowed = settled.chain(astray).filter(|body| self.allows(body, filter));
         let mut bodies: Vec<_> = allowed.collect();
+        bodies.sort_unstable_by_key(|body| body.handle);
+        bodies.into_iter()
+    }
+
+    /// The objects whose volumes meet `aabb`, and few others, allowed by the filter, in order, each once:
+    /// for the test of the question itself, as [`Self::candidates`].
+    fn meeting<'a>(
+        &'a self,
+        aabb: &Aabb<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
+        let mut bodies: Vec<&'a Body<N, D>> = Vec::new();
+        if aabb.holds_finite_point() {
+            self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
+                bodies.extend(proposals.iter().filter_map(|one| self.settled_proposal(one)));
+                N::ZERO
+            });
+        } else {
+            // No search goes to infinity, where none but unbounded volumes are met.
+            let mut found = Vec::new();
+            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
+            bodies.extend(found.into_iter().filter_map(|&handle| self.settled(handle)));
+        }
+        let astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
+        bodies.extend(astray.map(|(body, _)| body));
+        bodies.retain(|body| self.allows(body, filter));
         bodies.sort_unstable_by_key(|body| body.handle);
         bodies.into_iter()
     }

@@ -3,7 +3,7 @@
 use super::ranking::Ranking;
 use super::search::Probe;
 use super::{Neighbor, QueryFilter};
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
 use crate::query::point::project;
 use crate::query::{ClosestPoints, PointProjection, PointQuery};
@@ -28,10 +28,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         point: &Point<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        let (point, mut found) = (*point, Vec::new());
-        self.broad_phase.interferences_with_point(&point, &mut found);
-        let may = |volume: &Aabb<N, D>| BoundingVolume::contains_point(volume, &point);
-        self.candidates(found, &may, filter)
+        let point = *point;
+        let near = near(&point).map(|_| self.meeting(&Aabb::at(point), filter));
+        near.into_iter()
+            .flatten()
             .filter(move |body| holds(body, &point))
             .filter_map(move |body| self.record(body))
     }
@@ -74,8 +74,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, PointProjection<N, D>)> {
-        let ranking = Ranking::new(1, max_distance);
-        let found = self.ranked_projections(point, ranking, solid, filter).pop();
+        let probe = near(point)?;
+        let found = self.best(&probe, max_distance, filter, &|body, farthest| {
+            projection(body, point, solid, farthest)
+        });
         found.map(|(object, _, projection)| (object, projection))
     }
 
@@ -96,29 +98,34 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<Neighbor<'_, N, D, T>> {
         let ranking = Ranking::new(count, max_distance);
-        let found = self.ranked_projections(point, ranking, true, filter).into_iter();
+        let Some(probe) = near(point) else { return Vec::new() };
+        let found = self.rank(&probe, ranking, filter, &|body, farthest| {
+            projection(body, point, true, farthest)
+        });
         let neighbor = |(object, distance, nearest): (_, _, PointProjection<N, D>)| {
             let apart = ClosestPoints::WithinMargin(*point, nearest.point);
             let points = if nearest.is_inside { ClosestPoints::Intersecting } else { apart };
             Neighbor { object, distance, points }
         };
-        found.map(neighbor).collect()
+        found.into_iter().map(neighbor).collect()
     }
+}
 
-    fn ranked_projections(
-        &self,
-        point: &Point<N, D>,
-        ranking: Option<Ranking<N, PointProjection<N, D>>>,
-        solid: bool,
-        filter: &QueryFilter<'_, N, D, T>,
-    ) -> Vec<(&CollisionObject<N, D, T>, N, PointProjection<N, D>)> {
-        let usable = point.iter().all(|x| x.is_finite_number());
-        let ranking = ranking.filter(|_| usable);
-        self.rank(&Probe::Near(Aabb::at(*point)), ranking, filter, &|body, farthest| {
-            let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid)?;
-            (distance <= farthest).then_some((distance, found))
-        })
-    }
+/// What boxes are asked about a point; `None` if it is not finite.
+fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<Probe<N, D>> {
+    let usable = point.iter().all(|x| x.is_finite_number());
+    usable.then(|| Probe::Near(Aabb::at(*point)))
+}
+
+/// How far an object is from a point, and its nearest point; `None` beyond `farthest`.
+fn projection<N: Space<D>, const D: usize>(
+    body: &Body<N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+    farthest: N,
+) -> Option<(N, PointProjection<N, D>)> {
+    let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid)?;
+    (distance <= farthest).then_some((distance, found))
 }
 
 /// An object holds a point.

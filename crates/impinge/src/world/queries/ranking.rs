@@ -23,6 +23,25 @@ pub(super) struct Ranked<N: Real, A> {
     pub(super) answer: A,
 }
 
+/// What keeps answers and knows how good others must be.
+pub(super) trait Rank<N: Real, A> {
+    /// The largest key that still counts.
+    fn limit(&self) -> N;
+
+    /// Keeps the answer if it is among the best. A key that is NaN never is.
+    fn offer(&mut self, ranked: Ranked<N, A>);
+
+    /// The largest key that a box may have whose object has a key that still counts.
+    ///
+    /// Keys are quotients and square roots of sums, wrong by a few units in the last place; by more
+    /// where squares are hardly numbers of the type any more.
+    fn limit_of_boxes(&self) -> N {
+        let limit = self.limit();
+        let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
+        max(limit + limit * N::lit(8.0) * N::EPSILON, least)
+    }
+}
+
 impl<N: Real, A> Ranking<N, A> {
     /// Room for `count` answers with keys up to `limit`; `None` if that is no room at all.
     pub(super) fn new(count: usize, limit: N) -> Option<Self> {
@@ -30,24 +49,19 @@ impl<N: Real, A> Ranking<N, A> {
         has_room.then(|| Self { count, limit, heap: BinaryHeap::new() })
     }
 
-    /// The largest key that still counts.
-    pub(super) fn limit(&self) -> N {
+    /// The answers, the best first.
+    pub(super) fn into_sorted(self) -> Vec<Ranked<N, A>> {
+        self.heap.into_sorted_vec()
+    }
+}
+
+impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
+    fn limit(&self) -> N {
         let last = self.heap.peek().filter(|_| self.heap.len() >= self.count);
         last.map_or(self.limit, |last| last.key)
     }
 
-    /// The largest key that a box may have whose object has a key that still counts.
-    ///
-    /// Keys are quotients and square roots of sums, wrong by a few units in the last place; by more
-    /// where squares are hardly numbers of the type any more.
-    pub(super) fn limit_of_boxes(&self) -> N {
-        let limit = self.limit();
-        let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
-        max(limit + limit * N::lit(8.0) * N::EPSILON, least)
-    }
-
-    /// Keeps the answer if it is among the best. A key that is NaN never is.
-    pub(super) fn offer(&mut self, ranked: Ranked<N, A>) {
+    fn offer(&mut self, ranked: Ranked<N, A>) {
         if self.heap.len() < self.count {
             if ranked.key <= self.limit {
                 self.heap.push(ranked);
@@ -60,10 +74,37 @@ impl<N: Real, A> Ranking<N, A> {
             *last = ranked;
         }
     }
+}
 
-    /// The answers, the best first.
-    pub(super) fn into_sorted(self) -> Vec<Ranked<N, A>> {
-        self.heap.into_sorted_vec()
+/// A ranking of one answer, which needs no memory.
+#[derive(Debug)]
+pub(super) struct Best<N: Real, A> {
+    limit: N,
+    best: Option<Ranked<N, A>>,
+}
+
+impl<N: Real, A> Best<N, A> {
+    /// Room for an answer with a key up to `limit`; `None` if that is no room.
+    pub(super) fn new(limit: N) -> Option<Self> {
+        (limit >= N::ZERO).then_some(Self { limit, best: None })
+    }
+
+    /// The answer.
+    pub(super) fn found(self) -> Option<Ranked<N, A>> {
+        self.best
+    }
+}
+
+impl<N: Real, A> Rank<N, A> for Best<N, A> {
+    fn limit(&self) -> N {
+        self.best.as_ref().map_or(self.limit, |best| best.key)
+    }
+
+    fn offer(&mut self, ranked: Ranked<N, A>) {
+        let is_best = self.best.as_ref().map_or(ranked.key <= self.limit, |best| ranked < *best);
+        if is_best {
+            self.best = Some(ranked);
+        }
     }
 }
 
@@ -115,6 +156,21 @@ mod tests {
         );
         let all = filled(9, f32::INFINITY);
         assert_eq!(all.len(), 5, "all but NaN: {all:?}");
+    }
+
+    #[test]
+    fn one_answer_is_that_of_a_ranking_of_one() {
+        for limit in [0.5, 1.0, 2.0, f32::INFINITY] {
+            let mut best = Best::new(limit).expect("room");
+            for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
+                let handle = CollisionObjectHandle::new(index, 0);
+                best.offer(Ranked { key, handle, answer: index });
+            }
+            let found: Vec<_> =
+                best.found().map(|best| (best.key, best.answer)).into_iter().collect();
+            assert_eq!(found, filled(1, limit), "up to {limit}");
+        }
+        assert!(Best::<f32, ()>::new(f32::NAN).is_none(), "no room");
     }
 
     #[test]

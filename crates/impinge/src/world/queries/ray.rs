@@ -91,7 +91,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        self.ranked_hits(ray, Ranking::new(1, max_time), solid, filter).pop()
+        let found = self.best(&Probe::Ray(*ray), max_time, filter, &|body, latest| {
+            let hit = cast(body, ray, latest, solid)?;
+            Some((hit.toi, hit))
+        });
+        found.map(|(object, _, hit)| (object, hit))
     }
 
     /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that

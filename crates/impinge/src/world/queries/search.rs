@@ -1,8 +1,12 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
+use smallvec::SmallVec;
+
 use super::QueryFilter;
-use super::ranking::{Ranked, Ranking};
+use super::ranking::{Best, Rank, Ranked, Ranking};
 use crate::bounding_volume::{Aabb, Ray};
+use crate::broad_phase::Proposal;
+use crate::bvh::GROUP;
 use crate::math::{Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::world::bodies::Body;
@@ -35,12 +39,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
     }
 
     /// The boxes of the broad phase, those of least keys about first.
-    fn visit(
-        &self,
-        broad_phase: &WorldBroadPhase<N, D>,
-        limit: N,
-        visit: &mut dyn FnMut(&CollisionObjectHandle) -> N,
-    ) {
+    fn visit(&self, broad_phase: &WorldBroadPhase<N, D>, limit: N, visit: &mut Visit<'_, N>) {
         match self {
             Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
             Self::Near(own) => broad_phase.visit_nearest_roughly(own, limit, visit),
@@ -50,6 +49,9 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
         }
     }
 }
+
+/// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
+type Visit<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
 /// An object and what was found about it, with the key that it was ranked by.
 pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
@@ -68,30 +70,77 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         measure: &Measure<'_, N, D, A>,
     ) -> Vec<Answer<'_, N, D, T, A>> {
         let Some(mut ranking) = ranking else { return Vec::new() };
+        self.rank_into(&mut ranking, probe, filter, measure);
+        ranking.into_sorted().into_iter().filter_map(|found| self.answer(found)).collect()
+    }
+
+    /// The best of the answers with keys up to `limit`.
+    pub(super) fn best<A>(
+        &self,
+        probe: &Probe<N, D>,
+        limit: N,
+        filter: &QueryFilter<'_, N, D, T>,
+        measure: &Measure<'_, N, D, A>,
+    ) -> Option<Answer<'_, N, D, T, A>> {
+        let mut best = Best::new(limit)?;
+        self.rank_into(&mut best, probe, filter, measure);
+        self.answer(best.found()?)
+    }
+
+    fn rank_into<A>(
+        &self,
+        ranking: &mut impl Rank<N, A>,
+        probe: &Probe<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+        measure: &Measure<'_, N, D, A>,
+    ) {
         let mut limit = ranking.limit_of_boxes();
-        let mut consider = |body: &Body<N, D>| {
-            if self.allows(body, filter)
+        let mut consider = |body: &Body<N, D>, key: N, limit: N| {
+            if key <= limit
+                && self.allows(body, filter)
                 && let Some((key, answer)) = measure(body, ranking.limit())
             {
                 ranking.offer(Ranked { key, handle: body.handle, answer });
+                return ranking.limit_of_boxes();
             }
-            ranking.limit_of_boxes()
+            limit
         };
         for (body, volume) in self.astray() {
-            if probe.key(&volume).is_some_and(|key| key <= limit) {
-                limit = consider(body);
+            if let Some(key) = probe.key(&volume) {
+                limit = consider(body, key, limit);
             }
         }
-        probe.visit(&*self.broad_phase, limit, &mut |&handle| {
-            if let Some(body) = self.settled(handle) {
-                limit = consider(body);
+        probe.visit(&*self.broad_phase, limit, &mut |proposals| {
+            // Gathered first: the bodies lie apart from each other, and memory is slow one by one.
+            let mut bodies: SmallVec<[_; GROUP]> = SmallVec::new();
+            bodies.extend(proposals.iter().map(|one| (self.settled_proposal(one), one.key())));
+            for (body, key) in bodies {
+                limit = body.map_or(limit, |body| consider(body, key, limit));
             }
             limit
         });
-        let found = ranking.into_sorted().into_iter();
-        found
-            .filter_map(|found| Some((self.objects.get(found.handle)?, found.key, found.answer)))
-            .collect()
+    }
+
+    /// The object of a proposal, if it is where it was at the last update.
+    ///
+    /// As a rule its proxy has its number, which saves the way through the broad phase's record. A proxy
+    /// with the number of that of a living object is that object's.
+    pub(super) fn settled_proposal(
+        &self,
+        proposal: &Proposal<'_, N, CollisionObjectHandle>,
+    ) -> Option<&Body<N, D>> {
+        let uid = proposal.uid();
+        let guess = uid.and_then(|uid| self.objects.body(u32::try_from(uid).ok()?));
+        match guess {
+            Some(body) if Some(body.proxy.uid()) == uid => {
+                (!self.objects.changes.is_astray(body)).then_some(body)
+            }
+            _ => self.settled(*proposal.data()),
+        }
+    }
+
+    fn answer<A>(&self, found: Ranked<N, A>) -> Option<Answer<'_, N, D, T, A>> {
+        Some((self.objects.get(found.handle)?, found.key, found.answer))
     }
 
     /// The filter allows a living object. Only a predicate is worth the way to the user's record, which

@@ -36,9 +36,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         aabb: &Aabb<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        let (aabb, mut found) = (*aabb, Vec::new());
-        self.broad_phase.interferences_with_bounding_volume(&aabb, &mut found);
-        self.candidates(found, &|_| true, filter)
+        let aabb = *aabb;
+        self.meeting(&aabb, filter)
             .filter(move |body| body.aabb().intersects(&aabb))
             .filter_map(move |body| self.record(body))
     }
@@ -75,12 +74,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
         let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
-        let (aabb, mut found) = (around(position, shape), Vec::new());
-        if let Some(aabb) = &aabb {
-            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
-        }
-        let may = |volume: &Aabb<N, D>| aabb.is_some_and(|aabb| volume.intersects(&aabb));
-        self.candidates(found, &may, filter)
+        let near = around(position, shape).map(|aabb| self.meeting(&aabb, filter));
+        near.into_iter()
+            .flatten()
             .filter(move |body| separation(&placed, body, N::ZERO).is_some())
             .filter_map(move |body| self.record(body))
     }

@@ -116,13 +116,13 @@ pub(super) struct Boxes<V, const D: usize> {
 
 /// The same number in all lanes.
 #[inline(always)]
-pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
+pub(in super::super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
     V::all(simd, N::lit(value))
 }
 
 /// What there is for each axis.
 #[inline(always)]
-pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
+pub(in super::super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
     let mut all = [of(0); D];
     for (axis, one) in all.iter_mut().enumerate().skip(1) {
         *one = of(axis);
@@ -132,7 +132,7 @@ pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D
 
 /// The sum of the products, in the order of the axes.
 #[inline(always)]
-pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
+pub(in super::super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
     let mut sum = a[0] * b[0];
     for axis in 1..D {
         sum += a[axis] * b[axis];
@@ -142,13 +142,13 @@ pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -
 
 /// The length.
 #[inline(always)]
-pub(super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+pub(in super::super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     dot(v, v).sqrt()
 }
 
 /// A vector in the frame with these axes.
 #[inline(always)]
-pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
+pub(in super::super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
     vector: &[V; D],
 ) -> [V; D] {
@@ -160,7 +160,7 @@ pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
 
 /// Of two vectors the one that each lane wants.
 #[inline(always)]
-pub(super) fn either<S: Simd, V: Wide<S>, const D: usize>(
+pub(in super::super) fn either<S: Simd, V: Wide<S>, const D: usize>(
     is: V::Mask,
     one: &[V; D],
     other: &[V; D],

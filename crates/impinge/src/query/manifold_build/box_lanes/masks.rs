@@ -4,7 +4,7 @@ use fearless_simd::{Simd, SimdMask};
 
 /// A bit for each lane.
 #[inline(always)]
-pub(super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+pub(in super::super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     mask.to_bitmask().to_le_bytes()[0]
 }
 
