@@ -66,6 +66,7 @@ pub mod dim3;
 #[cfg(doctest)]
 mod guide;
 pub mod math;
+pub(crate) mod memory;
 pub mod narrow_phase;
 pub mod pairs;
 pub mod partitioning;

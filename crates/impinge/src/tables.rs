@@ -12,22 +12,24 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, Events,
-    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of,
+    CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
+    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
+    update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, certainly_overlap, distance_in_world, in_world, separation_in_plane,
-    separation_in_space, touching_in_world,
+    Algorithm, PartedFn, certainly_overlap, distance_in_world, in_world, parted_in_plane,
+    parted_in_space, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
-    BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, Pair, Placed,
-    Proximity, RawManifold, RayIntersection, Witness, contact_in_world, contacts2, contacts3,
-    impact_of_flight, impact_of_pair, tangents2, tangents3, update_box_pairs2, update_box_pairs3,
-    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
+    BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
+    Placed, Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
+    contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3, tangents2, tangents3,
+    update_box_pairs2, update_box_pairs3, witness_feature2, witness_feature3, witness_features2,
+    witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -37,6 +39,10 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
+    /// Contacts along the normal of a triangle; answers false where it makes none.
+    pub(crate) on_face: OnFaceFn<N, D>,
+    /// Whether two convex solids are farther apart than a limit of less than zero.
+    pub(crate) parted: PartedFn<N, D>,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -63,6 +69,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
+    /// Those of the pairs of a group that are due, several at a time, if that can be done.
+    pub(crate) update_lanes: UpdateLanesFn<N, D>,
     /// Those of many pairs of boxes.
     pub(crate) box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     /// Two directions across a normal; the second is zero in the plane.
@@ -90,6 +98,8 @@ type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
+type OnFaceFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
 type NearestPartFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
@@ -109,6 +119,8 @@ type CompositeManifoldsFn<N, const D: usize> = fn(
 ) -> Vec<ContactManifold<N, D>>;
 type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
+type UpdateLanesFn<N, const D: usize> =
+    fn([&Solid<N, D>; 2], &mut DueContacts<'_, '_, N, D>) -> bool;
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
@@ -192,11 +204,14 @@ struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
+    update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
     witness_feature: FeatureFn<N, D>,
     over: OverFn<N, D>,
+    parted: PartedFn<N, D>,
+    on_face: OnFaceFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
@@ -208,11 +223,14 @@ impl<N: Real> Particular<N, 2> {
         separation: separation_in_plane,
         certainly_overlap,
         contacts: contacts2,
+        update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
         witness_feature: witness_feature2,
         over: over2,
+        parted: parted_in_plane,
+        on_face: on_face2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
@@ -225,11 +243,14 @@ impl<N: Real> Particular<N, 3> {
         separation: separation_in_space,
         certainly_overlap,
         contacts: contacts3,
+        update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
         witness_feature: witness_feature3,
         over: over3,
+        parted: parted_in_space,
+        on_face: on_face3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
@@ -251,6 +272,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_features: particular.witness_features,
             witness_feature: particular.witness_feature,
             over: particular.over,
+            parted: particular.parted,
+            on_face: particular.on_face,
             impact: impact_of_pair,
             nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
@@ -258,6 +281,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             nearest_part,
             each_hit,
             contacts: particular.contacts,
+            update_lanes: particular.update_lanes,
             box_contacts: particular.box_contacts,
             tangents: particular.tangents,
             update_contacts: ContactState::update,

@@ -9,6 +9,7 @@ use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
 use crate::math::{Point, Real, Space, Vector};
+use crate::memory::Recent;
 use crate::pairs::unpack;
 use crate::partitioning::Sweep;
 
@@ -51,14 +52,16 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// Volumes with a face beyond the range of `f32` are unbounded: ordinary, but each is tested
 /// against every object that changes, so there should be few.
 ///
-/// Costs O(changed · log n) with temporal coherence; about 60 bytes per object beside two copies of
-/// its box. [`PairFinder`] describes the layout.
+/// Costs O(changed · log n) with temporal coherence. Of an object that stays where it is and has no pairs,
+/// about 60 bytes are kept beside its volume, the loosened one and the data. [`PairFinder`] describes the
+/// layout.
 #[derive(Clone, Debug)]
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
     proxies: Proxies<T>,
     finder: BV::Finder,
+    recent: Recent,
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
@@ -79,7 +82,8 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     /// If the margin is negative, infinite or NaN.
     pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
         let finder = BV::try_finder(margin)?;
-        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+        let (handles, proxies, recent) = (Handles::default(), Vec::new(), Recent::default());
+        Ok(Self { handles, proxies, finder, recent })
     }
 }
 
@@ -102,7 +106,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// If the margin is negative, infinite or NaN.
     pub fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
         let finder = PairFinder::with_lanes(margin, lanes)?;
-        Ok(Self { handles: Handles::default(), proxies: Vec::new(), finder })
+        Ok(Self { finder, ..Self::try_new(margin)? })
     }
 
     /// The margin by which volumes are loosened.
@@ -236,6 +240,10 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
             &mut |a, b| filter(data_of(proxies, a), data_of(proxies, b)),
             &mut |a, b, started| callback(data_of(proxies, a), data_of(proxies, b), started),
         );
+        if let Some(look) = self.recent.end_update(self.proxies.len()) {
+            look.fit(&mut self.proxies);
+            self.handles.fit(look);
+        }
     }
 
     fn interferences_with_bounding_volume<'a>(&'a self, bv: &Aabb<N, D>, out: &mut Vec<&'a T>) {

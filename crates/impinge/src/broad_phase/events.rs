@@ -4,6 +4,7 @@ use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
 use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
+use crate::memory::Look;
 use crate::pairs::{PairTable, pack, unpack};
 
 /// Pairs whose ends are brought into the cache together.
@@ -29,9 +30,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         callback: &mut dyn FnMut(u32, u32, bool),
     ) {
         self.clock = self.clock.wrapping_add(1);
+        if let Some(look) = self.recent.end_update(self.homes.len()) {
+            self.give_back(look);
+        }
         if self.is_idle() {
             return self.keep_order();
         }
+        self.recent.note(self.waiting());
         self.apply_waiting();
         self.apply_again();
         self.moving.refit_from(&self.loose);
@@ -41,6 +46,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.judge(&mut found, filter);
         // From here on no foreign code runs until everything is consistent.
         self.commit_and_settle(&found.ended);
+        self.recent.note(found.began.len().max(found.ended.len()));
         self.found = found;
         let events = core::mem::take(&mut self.verdict.events);
         for &(key, started) in &events {
@@ -169,6 +175,13 @@ fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
 }
 
 impl Verdict {
+    /// Gives back the memory of lists that have been short for some time.
+    pub(super) fn give_back(&mut self, look: Look) {
+        look.trim(&mut self.starting);
+        look.trim(&mut self.stopped);
+        look.trim(&mut self.events);
+    }
+
     /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
     /// place of one that stops, so that no third one moves.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {

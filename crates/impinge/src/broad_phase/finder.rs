@@ -6,6 +6,7 @@ use super::sieve::{Kept, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::math::Real;
+use crate::memory::{Look, Recent};
 use crate::pairs::PairTable;
 
 /// Where an object is kept.
@@ -82,6 +83,7 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) clock: u32,
     /// Where the search for objects at rest goes on.
     pub(super) cursor: usize,
+    pub(super) recent: Recent,
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
@@ -114,7 +116,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             again: Vec::new(),
             is_all_again: false,
             moving: Tree::new(lanes),
-            still: Tree::new(lanes),
+            still: Tree::sparing(lanes),
             unbounded: Vec::new(),
             pairs: PairTable::new(),
             joiner: Joiner::default(),
@@ -125,6 +127,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             lanes,
             clock: 0,
             cursor: 0,
+            recent: Recent::default(),
         })
     }
 
@@ -234,6 +237,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.leave_loose(*id, aabb);
         }
         waiting.clear();
+        leavers.clear();
         (self.waiting, self.leavers) = (waiting, leavers);
     }
 
@@ -340,6 +344,33 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.again = again;
     }
 
+    /// How many boxes wait to be applied.
+    pub(super) fn waiting(&self) -> usize {
+        self.waiting.len()
+    }
+
+    /// Gives back the memory of lists that have been short for some time, and what arrays by id have too
+    /// much. The tree of moving objects is left alone: it gives back by itself when it is empty.
+    pub(super) fn give_back(&mut self, look: Look) {
+        look.trim(&mut self.waiting);
+        for list in [&mut self.leavers, &mut self.changes, &mut self.again] {
+            look.trim(list);
+        }
+        look.trim(&mut self.searched);
+        look.trim(&mut self.resting);
+        look.trim(&mut self.found.began);
+        look.trim(&mut self.found.ended);
+        self.verdict.give_back(look);
+        look.fit(&mut self.exact);
+        look.fit(&mut self.loose);
+        look.fit(&mut self.homes);
+        look.fit(&mut self.marks);
+        look.fit(&mut self.last_change);
+        look.fit(&mut self.waiting_at);
+        self.still.fit(look);
+        self.pairs.fit(look);
+    }
+
     /// Nothing waits to be applied.
     pub(super) fn is_idle(&self) -> bool {
         let asked = self.is_all_again || !self.again.is_empty();
@@ -358,7 +389,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             let index = id as usize;
             let places = (self.moving.bounds(id), self.still.bounds(id));
             let listed = self.unbounded.iter().filter(|&&other| other == id).count();
-            let loose = Some(&self.loose[index]);
+            let loose = Some(self.loose[index]);
             let is_at_home = match home {
                 Home::Nowhere => places == (None, None) && listed == 0,
                 Home::Moving => places == (loose, None) && listed == 0,

@@ -1,5 +1,7 @@
 //! Names of objects that stay distinguishable after the object is gone.
 
+use crate::memory::Look;
+
 /// The name of an object in a broad phase.
 ///
 /// A handle is never given out twice: that of a removed object stays distinct from those of all
@@ -58,6 +60,12 @@ impl Handles {
     /// The handle of the present or the next object at an index.
     pub(super) fn at(&self, index: u32) -> ProxyHandle {
         ProxyHandle { index, generation: self.generations[index as usize] }
+    }
+
+    /// Gives memory back that handles which are not becoming more do not need.
+    pub(super) fn fit(&mut self, look: Look) {
+        look.fit(&mut self.generations);
+        look.fit(&mut self.is_present);
     }
 
     pub(super) fn is_alive(&self, handle: ProxyHandle) -> bool {

@@ -32,17 +32,6 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Puts sixteen boxes into the lanes.
-    #[inline]
-    pub fn set_all(&mut self, boxes: &[Bounds<D>; LANES]) {
-        for axis in 0..D {
-            for (lane, bounds) in boxes.iter().enumerate() {
-                self.lo[axis][lane] = bounds.lo[axis];
-                self.hi[axis][lane] = bounds.hi[axis];
-            }
-        }
-    }
-
     /// Puts a box into a lane.
     #[inline]
     pub fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {

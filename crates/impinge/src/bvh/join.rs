@@ -23,6 +23,9 @@ const LEAF_CHUNK: usize = 512;
 /// Up to one object in so many changed, queries beat the join.
 const QUERIES_BELOW: usize = 4;
 
+/// Beside the slot of the first of two boxes: they ended to overlap.
+const ENDED: u32 = 1 << 31;
+
 /// The trees of a join: `first` with `second`, or one tree with itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides<'a, const D: usize> {
@@ -118,9 +121,8 @@ impl<const D: usize> Joiner<D> {
     fn report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
         let (first, second) = self.found.parts();
         for (&a, &b) in first.iter().zip(second) {
-            let (a, b) = (a as usize, b as usize);
-            let key = pack(sides.first.ids[a], sides.second.ids[b]);
-            if sides.first.boxes[a].overlaps(&sides.second.boxes[b]) {
+            let key = pack(sides.first.ids[(a & !ENDED) as usize], sides.second.ids[b as usize]);
+            if a & ENDED == 0 {
                 changes.began.push(key);
             } else {
                 changes.ended.push(key);
@@ -152,6 +154,7 @@ impl<const D: usize> Joiner<D> {
             return;
         }
         debug_assert!(!sides.first.is_stale && !sides.second.is_stale, "joins need refitted trees");
+        assert!(sides.first.ids.len() < ENDED as usize, "a slot has a bit to spare");
         let top = sides.first.layers.len().min(sides.second.layers.len()) - 1;
         self.seed(sides, top);
         for layer in (1..=top).rev() {
@@ -280,7 +283,7 @@ fn join_leaves<K: Kernel, const D: usize>(
 ) {
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
-    let (before_a, changed_b) = (&sides.first.before[..], &leaves_b.changed[..]);
+    let (before_a, changed_b) = (sides.first.was(), &leaves_b.changed[..]);
     let (reach_b, boxes) = (&leaves_b.reach[..], Boxes::of(sides));
     let lanes = &mut scratch.tasks;
     lanes.clear();
@@ -301,40 +304,67 @@ fn join_leaves<K: Kernel, const D: usize>(
         // Arithmetic in place of a branch: how it goes, no processor foresees.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
-        let mask = boxes.differing(kernel, slot, b) & upper;
-        if mask != 0 {
-            kernel.push(out, slot, b * small(LANES), mask);
-        }
+        let masks = boxes.differing(kernel, slot, b);
+        masks.push(kernel, upper, (slot, b), out);
     }
 }
 
 /// The boxes of both sides, now and before.
 #[derive(Clone, Copy)]
 pub(super) struct Boxes<'a, const D: usize> {
-    now_a: &'a [Bounds<D>],
+    now_a: &'a [Block<D>],
     before_a: &'a [Block<D>],
     now_b: &'a [Block<D>],
     before_b: &'a [Block<D>],
+}
+
+/// The lanes of a block that a box overlaps.
+#[derive(Clone, Copy)]
+pub(super) struct Overlaps {
+    now: u32,
+    before: u32,
+}
+
+impl Overlaps {
+    /// Appends those of some lanes of block `b` that began or ended to overlap the box in the slot.
+    #[inline(always)]
+    pub(super) fn push<K: Kernel>(
+        self,
+        kernel: K,
+        lanes: u32,
+        (slot, b): (u32, u32),
+        out: &mut TaskList,
+    ) {
+        let differing = (self.now ^ self.before) & lanes;
+        if differing != 0 {
+            kernel.push(out, slot, b * small(LANES), differing & self.now);
+            kernel.push(out, slot | ENDED, b * small(LANES), differing & self.before);
+        }
+    }
 }
 
 impl<'a, const D: usize> Boxes<'a, D> {
     #[inline(always)]
     pub(super) fn of(sides: Sides<'a, D>) -> Self {
         let (first, second) = (sides.first, sides.second);
-        let (now_b, before_b) = (&second.layers[0].blocks[..], &second.before[..]);
+        let (now_a, before_a) = (&first.layers[0].blocks[..], first.was());
+        let (now_b, before_b) = (&second.layers[0].blocks[..], second.was());
         // Of equal length: told once rather than asked for each pair.
-        let now_b = &now_b[..before_b.len()];
-        Self { now_a: &first.boxes, before_a: &first.before, now_b, before_b }
+        let (now_a, now_b) = (&now_a[..before_a.len()], &now_b[..before_b.len()]);
+        Self { now_a, before_a, now_b, before_b }
     }
 
-    /// The lanes of block `b` of the second tree whose overlap with the first tree's slot is not
-    /// what it was before. None where neither changed.
+    /// The lanes of block `b` of the second tree that overlap the first tree's slot, now and before. The
+    /// same where neither changed.
     #[inline(always)]
-    pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> u32 {
-        let (slot, b) = (slot as usize, b as usize);
-        let before = self.before_a[slot / LANES].lane(slot % LANES);
-        kernel.overlaps(&self.now_b[b], &self.now_a[slot])
-            ^ kernel.overlaps(&self.before_b[b], &before)
+    pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> Overlaps {
+        let (block, lane, b) = (slot as usize / LANES, slot as usize % LANES, b as usize);
+        let now = self.now_a[block].lane(lane);
+        let before = self.before_a[block].lane(lane);
+        Overlaps {
+            now: kernel.overlaps(&self.now_b[b], &now),
+            before: kernel.overlaps(&self.before_b[b], &before),
+        }
     }
 }
 
@@ -343,8 +373,8 @@ impl<const D: usize> Tree<D> {
     #[inline]
     pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-        let (now, before) = (&self.boxes[slot as usize], self.before[block].lane(lane));
+        let (now, before) = (self.lane(slot as usize), self.was()[block].lane(lane));
         let is_near = self.layers[0].reach[block].contains(&before);
-        if is_near { now.merged(&before) } else { *now }
+        if is_near { now.merged(&before) } else { now }
     }
 }

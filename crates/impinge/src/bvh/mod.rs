@@ -6,8 +6,8 @@
 //!   arithmetic, so nothing is fixed up when objects change places;
 //! * beside each layer stand the bounds of its blocks one by one (the query side of a test of one
 //!   box against a block) and a mask of the lanes that changed since the last [`Tree::settle`];
-//! * beside layer 0 stand the same boxes one by one, the boxes *before* the changes, again in
-//!   blocks, and the maps between slots (positions) and ids (the caller's numbers).
+//! * beside layer 0 stand the boxes *before* the changes, again in blocks (not in a tree of objects that
+//!   stay, as long as they do), and the maps between slots (positions) and ids (the caller's numbers).
 //!
 //! Slots are in a balanced k-d order, so that a block holds neighbours; which lane an object has
 //! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set`],

@@ -83,10 +83,10 @@ pub(super) struct Load<const D: usize> {
 impl<const D: usize> Tree<D> {
     /// Lists the live objects in the slots from `start` on, in slot order.
     pub(super) fn list_items(&self, start: usize, items: &mut Vec<Item<D>>) {
-        let slots = self.ids[start..self.end].iter().zip(&self.boxes[start..self.end]);
-        let live = slots.filter(|&(&id, _)| id != NONE);
+        let live = (start..self.end).filter(|&slot| self.ids[slot] != NONE);
+        let item = |slot| Item { center: self.lane(slot).center(), id: self.ids[slot] };
         items.clear();
-        items.extend(live.map(|(&id, bounds)| Item { center: bounds.center(), id }));
+        items.extend(live.map(item));
     }
 
     /// Gives the slots from `start` (a block boundary) on to the listed ids, in that order, and
@@ -99,10 +99,12 @@ impl<const D: usize> Tree<D> {
         for (offset, load) in loads.iter().enumerate() {
             self.unload(start + offset, load);
         }
-        self.loads = loads;
+        if !self.is_sparing {
+            self.loads = loads;
+        }
         self.end = start + ids.len();
         self.drop_blocks_after_end();
-        for block in start / LANES..self.before.len() {
+        for block in start / LANES..self.leaf_count() {
             self.touch(block);
         }
         self.is_stale = true;
@@ -112,8 +114,8 @@ impl<const D: usize> Tree<D> {
         let slot = self.slots[id as usize] as usize;
         let (block, lane) = (slot / LANES, slot % LANES);
         Load {
-            bounds: self.boxes[slot],
-            before: self.before[block].lane(lane),
+            bounds: self.lane(slot),
+            before: self.was()[block].lane(lane),
             id,
             is_changed: self.layers[0].changed[block] >> lane & 1 == 1,
         }
@@ -123,8 +125,10 @@ impl<const D: usize> Tree<D> {
         let (block, lane) = (slot / LANES, slot % LANES);
         self.slots[load.id as usize] = small(slot);
         self.ids[slot] = load.id;
-        self.boxes[slot] = load.bounds;
-        self.before[block].set_lane(lane, &load.before);
+        self.layers[0].blocks[block].set_lane(lane, &load.bounds);
+        if self.remembers {
+            self.before[block].set_lane(lane, &load.before);
+        }
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
     }
 
@@ -133,10 +137,13 @@ impl<const D: usize> Tree<D> {
         let blocks = self.end.div_ceil(LANES);
         for slot in self.end..blocks * LANES {
             self.ids[slot] = NONE;
-            self.boxes[slot] = Bounds::EMPTY;
-            self.before[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
+            let (block, lane) = (slot / LANES, slot % LANES);
+            self.layers[0].blocks[block].set_lane(lane, &Bounds::EMPTY);
+            if self.remembers {
+                self.before[block].set_lane(lane, &Bounds::EMPTY);
+            }
         }
-        if blocks != self.before.len() {
+        if blocks != self.leaf_count() {
             self.resize_leaves(blocks);
             self.touched.retain(|&block| (block as usize) < blocks);
         }

@@ -40,13 +40,11 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     let (queries, blocks) = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
-        let mut mask = boxes.differing(kernel, slot, block);
+        let mut lanes = 0xffff;
         if sides.is_self {
-            mask &= !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
+            lanes = !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
         }
-        if mask != 0 {
-            kernel.push(out, slot, block * small(LANES), mask);
-        }
+        boxes.differing(kernel, slot, block).push(kernel, lanes, (slot, block), out);
     }
 }
 

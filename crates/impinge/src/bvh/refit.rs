@@ -39,7 +39,7 @@ impl<const D: usize> Tree<D> {
             dirty.clear();
             if self.is_restructured {
                 self.shape_layers();
-                dirty.extend(0..small(self.before.len()));
+                dirty.extend(0..small(self.leaf_count()));
             } else {
                 dirty.extend_from_slice(&self.touched);
             }
@@ -57,7 +57,7 @@ impl<const D: usize> Tree<D> {
         if self.touched.is_sorted() {
             return;
         }
-        let are_many = self.touched.len() * 4 > self.before.len();
+        let are_many = self.touched.len() * 4 > self.leaf_count();
         if are_many {
             self.touched.clear();
             let flagged = (0..).zip(&self.is_touched).filter(|&(_, &is_touched)| is_touched);
@@ -71,16 +71,16 @@ impl<const D: usize> Tree<D> {
         if by_id.is_empty() || !self.is_stale {
             return;
         }
+        let Layer { blocks, changed, .. } = &mut self.layers[0];
         for &block in &self.touched {
-            let first = block as usize * LANES;
-            let changed = self.layers[0].changed[block as usize];
-            fetch(changed, &self.ids[first..], &mut self.boxes[first..first + LANES], by_id);
+            let block = block as usize;
+            fetch(changed[block], &self.ids[block * LANES..], &mut blocks[block], by_id);
         }
     }
 
     /// Lays the upper layers out for the number of leaf blocks, every lane empty.
     pub(super) fn shape_layers(&mut self) {
-        let (mut layer, mut blocks) = (0, self.before.len());
+        let (mut layer, mut blocks) = (0, self.leaf_count());
         while blocks > 1 {
             (layer, blocks) = (layer + 1, blocks.div_ceil(LANES));
             if self.layers.len() <= layer {
@@ -91,14 +91,13 @@ impl<const D: usize> Tree<D> {
         self.layers.truncate(layer + 1);
     }
 
-    /// Fills the listed leaf blocks from the boxes one by one, and takes their bounds.
+    /// Fetches the changed boxes of the listed leaf blocks, and takes their bounds.
     fn refit_leaves(&mut self, blocks: &[u32], by_id: &[Bounds<D>]) {
         let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut self.layers[0];
         let (before, ids) = (&self.before[..], &self.ids[..]);
         let is_stale = self.is_stale;
         let source = Source { before, ids, changed, by_id, is_stale, lanes: self.lanes };
-        let boxes = &mut self.boxes[..];
-        let leaves = Leaves { first: 0, blocks: leaves, bounds, reach, boxes };
+        let leaves = Leaves { first: 0, blocks: leaves, bounds, reach };
         leaves.refit(&source, blocks, &mut self.strayed);
     }
 
@@ -131,9 +130,12 @@ impl<const D: usize> Tree<D> {
         }
         self.note_use();
         self.order_touched();
+        let remembers = self.remembers && !self.is_sparing;
         for &block in &self.touched {
             let block = block as usize;
-            self.before[block] = self.layers[0].blocks[block];
+            if remembers {
+                self.before[block] = self.layers[0].blocks[block];
+            }
             self.is_touched[block] = false;
         }
         if self.changed > 0 {
@@ -147,6 +149,9 @@ impl<const D: usize> Tree<D> {
         self.touched.clear();
         self.strayed.clear();
         self.changed = 0;
+        if !remembers {
+            (self.before, self.remembers) = (Vec::new(), false);
+        }
     }
 }
 
@@ -157,7 +162,6 @@ struct Leaves<'a, const D: usize> {
     blocks: &'a mut [Block<D>],
     bounds: &'a mut [Bounds<D>],
     reach: &'a mut [Bounds<D>],
-    boxes: &'a mut [Bounds<D>],
 }
 
 /// What all leaf blocks are computed from.
@@ -201,13 +205,8 @@ impl<const D: usize> Leaves<'_, D> {
     ) {
         let (at, block) = (block as usize - self.first, block as usize);
         let changed = source.changed[block];
-        if source.is_stale {
-            let boxes = self.boxes[at * LANES..].first_chunk_mut();
-            let boxes: &mut [_; LANES] = boxes.expect("every block has sixteen slots");
-            if !source.by_id.is_empty() {
-                fetch(changed, &source.ids[block * LANES..], boxes, source.by_id);
-            }
-            self.blocks[at].set_all(boxes);
+        if source.is_stale && !source.by_id.is_empty() {
+            fetch(changed, &source.ids[block * LANES..], &mut self.blocks[at], source.by_id);
         }
         let now = kernel.bounds(&self.blocks[at]);
         self.bounds[at] = now;
@@ -229,25 +228,19 @@ impl<const D: usize> Leaves<'_, D> {
         let (blocks1, blocks2) = self.blocks.split_at_mut(count);
         let (bounds1, bounds2) = self.bounds.split_at_mut(count);
         let (reach1, reach2) = self.reach.split_at_mut(count);
-        let (boxes1, boxes2) = self.boxes.split_at_mut(count * LANES);
-        let left = Leaves { first, blocks: blocks1, bounds: bounds1, reach: reach1, boxes: boxes1 };
-        let first = block;
-        (left, Leaves { first, blocks: blocks2, bounds: bounds2, reach: reach2, boxes: boxes2 })
+        let left = Leaves { first, blocks: blocks1, bounds: bounds1, reach: reach1 };
+        (left, Leaves { first: block, blocks: blocks2, bounds: bounds2, reach: reach2 })
     }
 }
 
 /// Copies the boxes of changed lanes of a block from a list by id.
 #[inline(always)]
-fn fetch<const D: usize>(
-    mut changed: u16,
-    ids: &[u32],
-    boxes: &mut [Bounds<D>],
-    by_id: &[Bounds<D>],
-) {
+fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by_id: &[Bounds<D>]) {
+    let ids = &ids[..LANES];
     while changed != 0 {
-        let lane = changed.trailing_zeros() as usize;
+        let lane = changed.trailing_zeros() as usize % LANES;
         changed &= changed - 1;
-        boxes[lane] = by_id[ids[lane] as usize];
+        block.set_lane(lane, &by_id[ids[lane] as usize]);
     }
 }
 

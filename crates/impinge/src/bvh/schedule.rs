@@ -101,6 +101,7 @@ impl<const D: usize> Tree<D> {
         self.rearrange(0, &ids);
         (self.schedule.snapshot, self.schedule.order) = (items, ids);
         self.schedule.begin(self.end, self.end);
+        self.give_back();
     }
 
     /// Notes that an object is not where a snapshot may have it.
@@ -196,8 +197,20 @@ impl<const D: usize> Tree<D> {
         self.schedule.snapshot = sorted;
         (self.schedule.order, self.schedule.is_placed) = (ids, is_placed);
         self.schedule.begin(ordered, self.end);
+        self.give_back();
         self.refit_layers(&[]);
         self.settle();
+    }
+}
+
+impl<const D: usize> Tree<D> {
+    /// Gives back memory that a tree in which little happens would keep for nothing.
+    fn give_back(&mut self) {
+        if self.is_sparing {
+            let Schedule { base, ordered, fresh, calls, is_used, .. } = self.schedule;
+            let kept = Schedule { base, ordered, fresh, calls, is_used, ..Schedule::default() };
+            self.schedule = kept;
+        }
     }
 }
 

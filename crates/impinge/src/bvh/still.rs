@@ -43,17 +43,17 @@ impl<const D: usize> Tree<D> {
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| Item { bounds, id }).collect();
         arrange(&mut items);
-        let mut tree = Self::new(lanes);
+        let mut tree = Self::sparing(lanes);
         tree.resize_leaves(items.len().div_ceil(LANES));
         tree.slots.resize(items.iter().map(|item| item.id as usize + 1).max().unwrap_or(0), NONE);
         for (slot, item) in items.iter().enumerate() {
-            tree.boxes[slot] = item.bounds;
+            tree.layers[0].blocks[slot / LANES].set_lane(slot % LANES, &item.bounds);
             tree.ids[slot] = item.id;
             tree.slots[item.id as usize] = small(slot);
         }
         (tree.end, tree.live) = (items.len(), items.len());
         tree.is_stale = true;
-        for block in 0..tree.before.len() {
+        for block in 0..tree.leaf_count() {
             tree.touch(block);
         }
         tree.declare_ordered();
@@ -191,7 +191,7 @@ mod tests {
             let tree = Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().copied()));
             assert_eq!(tree.validate(), Ok(()), "{count}");
             assert_eq!(tree.len(), boxes.len(), "{count}");
-            assert!((0..).zip(&boxes).all(|(id, own)| tree.bounds(id) == Some(own)), "{count}");
+            assert!((0..).zip(&boxes).all(|(id, own)| tree.bounds(id) == Some(*own)), "{count}");
         }
     }
 

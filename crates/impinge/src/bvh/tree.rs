@@ -3,9 +3,12 @@
 use super::order::Load;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
+use crate::memory::Look;
 
 /// No id, or no slot.
 pub const NONE: u32 = u32::MAX;
+/// A tree of more leaf blocks than this gives its memory back when it is empty.
+const KEPT_LEAVES: usize = 256;
 
 /// One layer: blocks, and beside each its bounds and which of its lanes changed.
 ///
@@ -58,10 +61,13 @@ pub struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
-    /// By slot.
-    pub(super) boxes: Vec<Bounds<D>>,
-    /// By leaf block: the boxes at the last [`Self::settle`].
+    /// By leaf block: the boxes at the last [`Self::settle`]; see [`Self::was`].
     pub(super) before: Vec<Block<D>>,
+    /// The boxes at the last settling are those of now unless something is said to have changed: so
+    /// that a tree in which this seldom happens has no memory for them.
+    pub(super) is_sparing: bool,
+    /// [`Self::before`] is in use. Always, unless the tree is sparing.
+    pub(super) remembers: bool,
     /// Slot to id.
     pub(super) ids: Vec<u32>,
     /// Id to slot.
@@ -107,8 +113,9 @@ impl<const D: usize> Tree<D> {
         Self {
             lanes,
             layers: vec![Layer::new()],
-            boxes: Vec::new(),
             before: Vec::new(),
+            is_sparing: false,
+            remembers: true,
             ids: Vec::new(),
             slots: Vec::new(),
             end: 0,
@@ -123,6 +130,11 @@ impl<const D: usize> Tree<D> {
             is_stale: false,
             schedule: Schedule::default(),
         }
+    }
+
+    /// A tree without objects, for objects that seldom change: it spares memory.
+    pub(crate) fn sparing(lanes: Lanes) -> Self {
+        Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
     /// The number of objects.
@@ -151,13 +163,39 @@ impl<const D: usize> Tree<D> {
 
     /// The box of the object, if it is in the tree.
     #[must_use]
-    pub fn bounds(&self, id: u32) -> Option<&Bounds<D>> {
-        self.slot(id).map(|slot| &self.boxes[slot])
+    pub fn bounds(&self, id: u32) -> Option<Bounds<D>> {
+        self.slot(id).map(|slot| self.lane(slot))
+    }
+
+    /// The box in a slot.
+    #[inline]
+    pub(super) fn lane(&self, slot: usize) -> Bounds<D> {
+        self.layers[0].blocks[slot / LANES].lane(slot % LANES)
+    }
+
+    /// The number of leaf blocks.
+    pub(super) fn leaf_count(&self) -> usize {
+        self.layers[0].blocks.len()
+    }
+
+    /// By leaf block: the boxes at the last [`Self::settle`].
+    #[inline]
+    pub(super) fn was(&self) -> &[Block<D>] {
+        if self.remembers { &self.before } else { &self.layers[0].blocks }
+    }
+
+    /// From here on the boxes may differ from those at the last settling.
+    #[inline]
+    fn remember(&mut self) {
+        if !self.remembers {
+            self.before.clone_from(&self.layers[0].blocks);
+            self.remembers = true;
+        }
     }
 
     /// The box of the object at the last [`Self::settle`]: empty for one that is new.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
-        self.slot(id).map(|slot| self.before[slot / LANES].lane(slot % LANES))
+        self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
 
     fn slot(&self, id: u32) -> Option<usize> {
@@ -175,6 +213,7 @@ impl<const D: usize> Tree<D> {
     /// # Panics
     /// If the object is in the tree already.
     pub fn insert(&mut self, id: u32, bounds: &Bounds<D>, before: &Bounds<D>) {
+        self.remember();
         let slot = self.insert_still(id, bounds);
         self.before[slot / LANES].set_lane(slot % LANES, &before.clamped());
         self.mark_changed(slot);
@@ -195,7 +234,9 @@ impl<const D: usize> Tree<D> {
         self.live += 1;
         self.note_late(id);
         self.write(slot, bounds);
-        self.before[slot / LANES].set_lane(slot % LANES, bounds);
+        if self.remembers {
+            self.before[slot / LANES].set_lane(slot % LANES, bounds);
+        }
         slot
     }
 
@@ -207,13 +248,22 @@ impl<const D: usize> Tree<D> {
     pub fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
         let slot = self.expect_slot(id);
-        self.boxes[slot] = *bounds;
-        self.is_stale = true;
-        // A block with changed lanes is listed already.
-        if self.layers[0].changed[slot / LANES] == 0 {
-            self.touch(slot / LANES);
-        }
+        self.remember();
+        self.write(slot, bounds);
         self.mark_changed(slot);
+    }
+
+    /// Gives the object another box as if it had always had it: it begins no pairs.
+    ///
+    /// # Panics
+    /// If the object is not in the tree.
+    pub(crate) fn set_still(&mut self, id: u32, bounds: &Bounds<D>) {
+        debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
+        let slot = self.expect_slot(id);
+        self.write(slot, bounds);
+        if self.remembers {
+            self.before[slot / LANES].set_lane(slot % LANES, bounds);
+        }
     }
 
     /// Announces that the object has another box, which the next [`Self::refit_from`] fetches.
@@ -222,6 +272,7 @@ impl<const D: usize> Tree<D> {
     /// If the object is not in the tree.
     #[inline]
     pub(crate) fn set_later(&mut self, id: u32) {
+        self.remember();
         let slot = self.slots[id as usize] as usize;
         let (block, bit) = (slot / LANES, 1 << (slot % LANES));
         let mask = &mut self.layers[0].changed[block];
@@ -241,6 +292,7 @@ impl<const D: usize> Tree<D> {
     /// If the object is not in the tree.
     pub fn forget_before(&mut self, id: u32) {
         let slot = self.expect_slot(id);
+        self.remember();
         self.before[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
         self.touch(slot / LANES);
         self.mark_changed(slot);
@@ -265,20 +317,20 @@ impl<const D: usize> Tree<D> {
         self.slots[id as usize] = NONE;
         self.ids[slot] = NONE;
         self.live -= 1;
-        self.boxes[slot] = Bounds::EMPTY;
         self.layers[0].blocks[block].set_lane(lane, &Bounds::EMPTY);
-        self.before[block].set_lane(lane, &Bounds::EMPTY);
+        if self.remembers {
+            self.before[block].set_lane(lane, &Bounds::EMPTY);
+        }
         let bit = self.layers[0].changed[block] & 1 << lane;
         self.changed -= usize::from(bit != 0);
         self.layers[0].changed[block] &= !bit;
         self.touch(block);
     }
 
-    /// Writes one copy of the box; the blocks follow in the next refit. A box one by one is a cache
-    /// line, a lane of a block six, and objects come in no spatial order.
+    /// Writes the box; what is above follows in the next refit.
     #[inline]
     fn write(&mut self, slot: usize, bounds: &Bounds<D>) {
-        self.boxes[slot] = *bounds;
+        self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, bounds);
         self.touch(slot / LANES);
         self.is_stale = true;
     }
@@ -333,7 +385,7 @@ impl<const D: usize> Tree<D> {
     /// The slot after the last one in use, in a new block if need be.
     fn append_slot(&mut self) -> usize {
         if self.end == self.ids.len() {
-            self.resize_leaves(self.before.len() + 1);
+            self.resize_leaves(self.leaf_count() + 1);
         }
         self.end
     }
@@ -341,15 +393,21 @@ impl<const D: usize> Tree<D> {
     /// Sets the number of leaf blocks; new ones are empty.
     pub(super) fn resize_leaves(&mut self, blocks: usize) {
         self.layers[0].resize(blocks);
-        self.before.resize(blocks, Block::EMPTY);
+        if self.remembers {
+            self.before.resize(blocks, Block::EMPTY);
+        }
         self.is_touched.resize(blocks, false);
-        self.boxes.resize(blocks * LANES, Bounds::EMPTY);
         self.ids.resize(blocks * LANES, NONE);
         self.is_restructured = true;
     }
 
-    /// Forgets every object and keeps the memory.
+    /// Forgets every object. Keeps the memory if it is little.
     pub fn clear(&mut self) {
+        if self.leaf_count() > KEPT_LEAVES {
+            let empty = if self.is_sparing { Self::sparing } else { Self::new };
+            *self = empty(self.lanes);
+            return;
+        }
         self.resize_leaves(0);
         self.shape_layers();
         self.slots.clear();
@@ -358,6 +416,21 @@ impl<const D: usize> Tree<D> {
         self.schedule = Schedule::default();
         (self.end, self.live, self.changed) = (0, 0, 0);
         (self.is_restructured, self.is_stale) = (false, false);
+    }
+
+    /// Gives back memory that a tree that has stopped to grow does not need.
+    pub(crate) fn fit(&mut self, look: Look) {
+        let Layer { blocks, bounds, reach, changed, .. } = &mut self.layers[0];
+        look.fit(blocks);
+        look.fit(bounds);
+        look.fit(reach);
+        look.fit(changed);
+        look.fit(&mut self.before);
+        look.fit(&mut self.ids);
+        look.fit(&mut self.slots);
+        look.fit(&mut self.is_touched);
+        look.trim(&mut self.touched);
+        look.trim(&mut self.dirty);
     }
 
     /// The half surfaces of all leaf blocks, summed in their order: what a search pays.

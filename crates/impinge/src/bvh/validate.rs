@@ -30,24 +30,19 @@ impl<const D: usize> Tree<D> {
                 return Err(format!("slot {slot} holds {id}, which stands elsewhere"));
             }
         }
-        let blocks = self.before.len();
+        let blocks = self.leaf_count();
         let is_long = self.end > blocks * LANES;
-        if is_long || self.ids.len() != blocks * LANES || self.boxes.len() != self.ids.len() {
+        if is_long || self.ids.len() != blocks * LANES || self.was().len() != blocks {
             return Err(format!("{} slots in {blocks} blocks", self.end));
         }
         Ok(())
     }
 
-    /// The two copies of each box agree; free lanes are empty, before and after.
+    /// Boxes are bounded; free lanes are empty, before and after.
     fn validate_leaves(&self) -> Result<(), String> {
         for (slot, &id) in self.ids.iter().enumerate() {
             let (block, lane) = (slot / LANES, slot % LANES);
-            let stored = self.layers[0].blocks[block].lane(lane);
-            let before = self.before[block].lane(lane);
-            if stored != self.boxes[slot] && !self.is_stale {
-                return Err(format!("the copies of the box in slot {slot} differ"));
-            }
-            let stored = self.boxes[slot];
+            let (stored, before) = (self.lane(slot), self.was()[block].lane(lane));
             let is_free = id == NONE;
             let empty = Bounds::EMPTY;
             if is_free && (stored != empty || before != empty) {
@@ -109,7 +104,7 @@ impl<const D: usize> Tree<D> {
         for (block, reach) in self.layers[0].reach.iter().enumerate() {
             let has_strayed = self.strayed.iter().any(|&other| other as usize == block);
             let now = bounds_of(&self.layers[0].blocks[block]);
-            let before = bounds_of(&self.before[block]);
+            let before = bounds_of(&self.was()[block]);
             let holds = |inner: &Bounds<D>| *inner == Bounds::EMPTY || reach.contains(inner);
             if !(holds(&now) && (has_strayed || holds(&before))) {
                 return Err(format!("the reach {reach:?} of block {block} leaves boxes out"));

@@ -9,12 +9,15 @@ use super::entry::{
 };
 use super::generator::DefaultContactDispatcher;
 use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
+use super::state::ContactState;
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::Changes;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::math::Space;
+use crate::memory::Recent;
 use crate::pairs::PairTable;
 use crate::query::ManifoldRequest;
+use crate::shape::Shape;
 
 /// Contacts and proximities of the pairs of a world, kept from update to update.
 ///
@@ -37,6 +40,8 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) indices: Vec<usize>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
+    /// How long the lists of an update have been lately.
+    recent: Recent,
     /// Those of the pairs that touch; made when first needed after a change of either.
     pub(super) touching: OnceLock<Vec<u32>>,
 }
@@ -81,8 +86,23 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             due: Vec::new(),
             changes: Changes::new(),
             indices: Vec::new(),
+            recent: Recent::default(),
             order: OnceLock::new(),
             touching: OnceLock::new(),
+        }
+    }
+
+    /// Brings all pairs up to date, and now and then gives memory back.
+    pub(crate) fn step(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
+        self.recent.note(self.due.len());
+        self.update_pairs(table, events);
+        if let Some(look) = self.recent.end_update(self.pairs.len()) {
+            look.trim(&mut self.due);
+            look.trim(&mut self.changes);
+            look.trim(&mut self.indices);
+            look.fit(&mut self.locations);
+            self.pairs.fit(look);
+            self.lanes.fit(look);
         }
     }
 
@@ -170,11 +190,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let (mut entry, moved) = self.lanes.contacts[usize::from(old)].swap_remove(place);
                 self.note_move(moved, place);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
+                entry.state.set_solids(shapes(table, key));
                 let place = self.lanes.contacts[usize::from(new)].push(key, entry);
                 self.locations[index] = Location { lane: new_lane, place, is_touching };
             }
             (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
                 let entry = self.lanes.composites.state_mut(place);
+                entry.state.forget_shapes();
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
@@ -221,8 +243,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let number = self.ids.allocate();
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
-                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)]
-                    .push(key, ContactEntry::new(request, number, touch)),
+                Lane::Contacts(group) => {
+                    let mut entry =
+                        ContactEntry::<N, ContactState<N, D>>::new(request, number, touch);
+                    entry.state.set_solids(shapes(table, key));
+                    self.lanes.contacts[usize::from(group)].push(key, entry)
+                }
                 Lane::Composites => {
                     self.lanes.composites.push(key, ContactEntry::new(request, number, touch))
                 }
@@ -280,6 +306,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
         self.locations[index].place = place;
     }
+}
+
+/// The shapes of a pair.
+fn shapes<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+) -> [&dyn Shape<N, D>; 2] {
+    [table.shape(first).as_ref(), table.shape(second).as_ref()]
 }
 
 /// Where pairs without an algorithm are.

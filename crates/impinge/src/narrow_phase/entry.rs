@@ -8,7 +8,7 @@ use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
 };
 use super::{IdAllocator, ObjectTable};
-use crate::math::{Real, Space};
+use crate::math::{Pose, Real, Space};
 use crate::query::{BoxJob, ContactManifold, ManifoldRequest, Proximity};
 
 /// What an update, or the end, of a pair means to the outside.
@@ -41,10 +41,13 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
+    #[inline]
     fn set(&mut self, touching: bool) -> Option<Change> {
-        let changed = touching != self.touching;
+        if touching == self.touching {
+            return None;
+        }
         self.touching = touching;
-        changed.then_some(Change::Contact { touching })
+        Some(Change::Contact { touching })
     }
 
     /// What the end of the pair means.
@@ -138,7 +141,9 @@ impl<N: Real, S> ContactEntry<N, S> {
         self.note()
     }
 
-    fn begin<M: Default>(&mut self, view: Option<&mut ContactView<M>>) {
+    /// Begins an update, which ends with [`Self::note`].
+    #[inline]
+    pub(crate) fn begin<M: Default>(&mut self, view: Option<&mut ContactView<M>>) {
         self.due = false;
         if let Some(view) = view {
             view.expire();
@@ -146,6 +151,7 @@ impl<N: Real, S> ContactEntry<N, S> {
     }
 
     /// What the contacts, as they are now, mean to the outside.
+    #[inline]
     pub(crate) fn note<const D: usize>(&mut self) -> Option<Change>
     where
         S: KeptContacts<N, D>,
@@ -156,13 +162,14 @@ impl<N: Real, S> ContactEntry<N, S> {
 
 impl<N: Space<D>, const D: usize> ContactEntry<N, ContactState<N, D>> {
     /// Begins an update of a pair of boxes, which ends with [`Self::note`].
+    #[inline]
     pub(crate) fn begin_boxes<'a>(
         &'a mut self,
         view: Option<&mut ContactView<ContactManifold<N, D>>>,
-        posed: &Posed<'a, N, D>,
+        poses: [&'a Pose<N, D>; 2],
     ) -> Option<BoxJob<'a, N, D>> {
         self.begin(view);
-        self.state.box_job(posed, &self.request)
+        self.state.box_job(poses, &self.request)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What changed between two updates.
 
 use super::CollisionObjectHandle;
+use crate::memory::Look;
 use crate::query::Proximity;
 
 /// A pair came to have contact points, or lost its last.
@@ -68,6 +69,17 @@ impl Events {
         let begins = |event: &ProximityEvent| event.prev_status == Proximity::Disjoint;
         self.proximities[self.removed.1..]
             .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
+    }
+
+    /// How many events there are.
+    pub(crate) fn len(&self) -> usize {
+        self.contacts.len() + self.proximities.len()
+    }
+
+    /// Gives back the memory of lists that have been short for some time.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        look.trim(&mut self.contacts);
+        look.trim(&mut self.proximities);
     }
 
     /// Adds a contact event.

@@ -71,6 +71,8 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);
         if posed.has_composite() {
+            // The shapes are given anew at each call.
+            self.composite.forget_shapes();
             (tables.update_composites)(&mut self.composite, &posed, &request);
             self.manifolds = (tables.composite_manifolds)(&self.composite, &posed, number, old);
         } else {

@@ -2,6 +2,8 @@
 
 use std::sync::OnceLock;
 
+use crate::memory::Look;
+
 /// The states of some pairs in no particular order, without gaps.
 ///
 /// A pair's place changes when another pair of the group is removed; whoever keeps places is told.
@@ -48,6 +50,12 @@ impl<S, V: Default> Group<S, V> {
             views.swap_remove(place);
         }
         (self.states.swap_remove(place), self.keys.get(place).copied())
+    }
+
+    /// Gives back memory that a group which has stopped to grow does not need.
+    pub(crate) fn fit(&mut self, look: Look) {
+        look.fit(&mut self.keys);
+        look.fit(&mut self.states);
     }
 
     /// The state of the pair at a place.

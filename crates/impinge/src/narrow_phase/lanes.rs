@@ -8,6 +8,7 @@ use super::entry::{
 use super::group::Group;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
+use crate::memory::Look;
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
@@ -120,11 +121,6 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
     u8::try_from(number).expect("there are fewer than 16 kinds")
 }
 
-/// The number of the pair of two boxes.
-#[expect(clippy::cast_possible_truncation, reason = "there are fewer than 16 kinds")]
-pub(crate) const BOX_PAIRS: u8 =
-    (ShapeKind::Cuboid as usize * ShapeKind::COUNT + ShapeKind::Cuboid as usize) as u8;
-
 /// The library's lane for the contacts of two shapes.
 pub(crate) fn contact_lane<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
@@ -163,6 +159,13 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
             }
             Lane::Nothing => (Carried::Nothing, None),
         }
+    }
+
+    /// Gives back memory that lanes which have stopped to grow do not need.
+    pub(crate) fn fit(&mut self, look: Look) {
+        self.contacts.iter_mut().for_each(|group| group.fit(look));
+        self.composites.fit(look);
+        self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
     /// Asks for a pair to be updated even if both objects stand still.

@@ -6,6 +6,7 @@
 
 mod default_narrow_phase;
 mod detector;
+mod due;
 mod entry;
 mod events;
 mod generator;
@@ -22,6 +23,7 @@ mod view;
 
 pub use default_narrow_phase::DefaultNarrowPhase;
 pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
+pub(crate) use due::{DueContacts, update_lanes2, update_lanes3};
 pub use events::{ContactEvent, Events, ProximityEvent};
 pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
 pub use handle::CollisionObjectHandle;

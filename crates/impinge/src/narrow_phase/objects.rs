@@ -2,7 +2,8 @@
 //! data.
 
 use super::{CollisionObjectHandle, GeometricQueryType};
-use crate::math::{Pose, Space};
+use crate::math::{Pose, Real, Space};
+use crate::memory::Look;
 use crate::shape::ShapeHandle;
 
 /// The row of an object that has none.
@@ -23,8 +24,7 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     rows: Vec<u32>,
     /// By row, as all below.
     handles: Vec<CollisionObjectHandle>,
-    poses: Vec<Pose<N, D>>,
-    shapes: Vec<ShapeHandle<N, D>>,
+    solids: Vec<Solid<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
     /// The poses as the user gave them, for algorithms of the user's own.
     isometries: Vec<N::Isometry>,
@@ -35,6 +35,16 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// The objects whose rows were written in the update under way, in order of writing. One that lost its
     /// row since has none or stands here again.
     changed: Vec<u32>,
+    /// How many rows were lent since they were in order.
+    lent: usize,
+}
+
+/// What every query of a pair reads of an object: of `f32` in space one cache line.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Solid<N: Real, const D: usize> {
+    pose: Pose<N, D>,
+    shape: ShapeHandle<N, D>,
 }
 
 /// One row of the table.
@@ -52,13 +62,13 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         Self {
             rows: Vec::new(),
             handles: Vec::new(),
-            poses: Vec::new(),
-            shapes: Vec::new(),
+            solids: Vec::new(),
             queries: Vec::new(),
             isometries: Vec::new(),
             is_written: Vec::new(),
             free: Vec::new(),
             changed: Vec::new(),
+            lent: 0,
         }
     }
 
@@ -84,6 +94,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if self.rows.len() <= index as usize {
             self.rows.resize(index as usize + 1, NONE);
         }
+        self.lent += 1;
         match self.free.pop() {
             Some(place) => {
                 self.rows[index as usize] = place;
@@ -107,7 +118,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if self.has_row(index) {
             let (place, row) = (self.row(index), row());
             self.handles[place] = row.handle;
-            self.shapes[place] = row.shape;
+            self.solids[place].shape = row.shape;
             self.queries[place] = row.query;
             self.set_position(index, &row.isometry);
         }
@@ -119,9 +130,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.changed.push(index);
         self.is_written.push(true);
         self.handles.push(row.handle);
-        self.poses.push(N::pose(&row.isometry));
+        self.solids.push(Solid { pose: N::pose(&row.isometry), shape: row.shape });
         self.isometries.push(row.isometry);
-        self.shapes.push(row.shape);
         self.queries.push(row.query);
     }
 
@@ -131,7 +141,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             return;
         }
         let row = self.row(index);
-        self.poses[row] = N::pose(isometry);
+        self.solids[row].pose = N::pose(isometry);
         self.isometries[row] = *isometry;
         if !self.is_written[row] {
             self.is_written[row] = true;
@@ -144,16 +154,65 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         &self.changed
     }
 
-    /// The row was written since the last update began.
+    /// The row was written since the last update began; `false` for an object without one.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
-        self.is_written[self.row(index)]
+        self.is_written.get(self.row(index)).is_some_and(|&is_written| is_written)
     }
 
     /// Where the row of an object stands, which has one.
     #[inline]
     fn row(&self, index: u32) -> usize {
         self.rows[index as usize] as usize
+    }
+
+    /// Brings the rows into the order of the objects if many have been lent since they were: who goes
+    /// through the objects then goes through memory.
+    pub(crate) fn tidy(&mut self) {
+        if self.lent * 4 <= self.handles.len() {
+            return;
+        }
+        self.lent = 0;
+        let mut next = 0;
+        for index in 0..self.rows.len() {
+            if self.rows[index] != NONE {
+                self.exchange(self.rows[index] as usize, next);
+                next += 1;
+            }
+        }
+        self.handles.truncate(next);
+        self.solids.truncate(next);
+        self.queries.truncate(next);
+        self.isometries.truncate(next);
+        self.is_written.truncate(next);
+        self.free.clear();
+    }
+
+    /// Exchanges a row in use with another, which may be free.
+    fn exchange(&mut self, row: usize, other: usize) {
+        let (owner, other_owner) = (self.handles[row].uid(), self.handles[other].uid());
+        if self.rows[other_owner] as usize == other {
+            self.rows[other_owner] = self.rows[owner];
+        }
+        self.rows[owner] = u32::try_from(other).expect("no more rows than objects");
+        self.handles.swap(row, other);
+        self.solids.swap(row, other);
+        self.queries.swap(row, other);
+        self.isometries.swap(row, other);
+        self.is_written.swap(row, other);
+    }
+
+    /// Gives memory back that has not been needed for some time.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        self.lent += self.free.len();
+        self.tidy();
+        look.fit(&mut self.rows);
+        look.fit(&mut self.handles);
+        look.fit(&mut self.solids);
+        look.fit(&mut self.queries);
+        look.fit(&mut self.isometries);
+        look.fit(&mut self.is_written);
+        look.trim(&mut self.changed);
     }
 
     /// What is wrong with the rows, if anything.
@@ -175,7 +234,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// The pose at the last update.
     #[inline]
     pub(crate) fn pose(&self, index: u32) -> &Pose<N, D> {
-        &self.poses[self.row(index)]
+        &self.solids[self.row(index)].pose
     }
 
     /// The pose at the last update, as the user gave it.
@@ -186,7 +245,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// The shape at the last update.
     #[inline]
     pub(crate) fn shape(&self, index: u32) -> &ShapeHandle<N, D> {
-        &self.shapes[self.row(index)]
+        &self.solids[self.row(index)].shape
     }
 
     /// The query type at the last update.

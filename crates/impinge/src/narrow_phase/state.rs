@@ -4,10 +4,10 @@ use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
 use crate::query::pair::is_swapped;
 use crate::query::{
-    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, Placed,
-    Placement, Proximity, RawManifold, canonical, materialise, own_distance,
+    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
+    Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
 };
-use crate::shape::{Kind, Shape};
+use crate::shape::{Geometry, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -82,7 +82,12 @@ pub(crate) struct InOrder<C> {
 }
 
 /// The contacts of two convex solids.
-pub(crate) type ContactState<N, const D: usize> = InOrder<RawManifold<N, D>>;
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactState<N: Real, const D: usize> {
+    kept: InOrder<RawManifold<N, D>>,
+    /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
+    solids: Option<[Solid<N, D>; 2]>,
+}
 
 /// The contacts of a pair of which one solid at least is a composite.
 pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
@@ -101,13 +106,13 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
     type Manifolds = ContactManifold<N, D>;
 
     fn len(&self) -> usize {
-        self.contacts.points.len()
+        self.kept.contacts.points.len()
     }
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
-        self.turn(swapped, RawManifold::flip_names);
-        (N::tables().contacts)(&pair, request, &mut self.contacts);
+        self.kept.turn(swapped, RawManifold::flip_names);
+        (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
     }
 
     fn manifolds(
@@ -116,34 +121,61 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         pair_number: u64,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> {
-        if self.contacts.points.is_empty() {
+        let raw = &self.kept.contacts;
+        if raw.points.is_empty() {
             return ContactManifold::default();
         }
         let (pair, is_swapped) = posed.canonical();
         let placement = Placement::new(posed.poses(), pair_number, is_swapped);
-        materialise(&pair, &self.contacts, &placement, old)
+        materialise(&pair, raw, &placement, old)
     }
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
+    /// The solids are these from now on.
+    pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
+        let [solid1, solid2] = shapes.map(|shape| Solid::of(shape.geometry()));
+        self.solids = solid1.zip(solid2).map(<[_; 2]>::from);
+    }
+
+    /// The copies of the solids, if both are such that a copy is worth it.
+    pub(super) const fn solids(&self) -> Option<&[Solid<N, D>; 2]> {
+        self.solids.as_ref()
+    }
+
+    /// The manifold, in canonical order.
+    #[inline]
+    pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
+        &mut self.kept.contacts
+    }
+
+    /// The solids in canonical order, and the manifold of the last update in that order; `None` if there
+    /// are no copies of the solids.
+    #[inline(always)]
+    pub(super) fn turned<'a>(
+        &'a mut self,
+        poses: [&'a Pose<N, D>; 2],
+        request: &'a ManifoldRequest<N>,
+    ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
+        let solids = self.solids.as_ref()?;
+        let [kind1, kind2] = solids.each_ref().map(|solid| Geometry(solid.kind()));
+        let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
+        self.kept.turn(swapped, RawManifold::flip_names);
+        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
+        Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
+    }
+
     /// What it takes to bring the contacts of two boxes up to date; `None` for other solids.
+    #[inline]
     pub(super) fn box_job<'a>(
         &'a mut self,
-        posed: &Posed<'a, N, D>,
+        poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
-        let (shape1, shape2) = (posed.shape1.geometry(), posed.shape2.geometry());
-        let swapped = is_swapped(posed.pose1, shape1, posed.pose2, shape2);
-        self.turn(swapped, RawManifold::flip_names);
-        let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (shape1.0, shape2.0) else {
-            return None;
-        };
-        let (mut poses, mut cuboids) = (posed.poses(), [cuboid1, cuboid2]);
-        if swapped {
-            poses.reverse();
-            cuboids.reverse();
-        }
-        Some(BoxJob { poses, cuboids, request, raw: &mut self.contacts })
+        let (PairQuestion { poses, solids, request }, raw) = self.turned(poses, request)?;
+        let [Solid::Cuboid(cuboid1), Solid::Cuboid(cuboid2)] = solids else { return None };
+        Some(BoxJob { poses, cuboids: [cuboid1, cuboid2], request, raw })
     }
 
     /// The contacts, which are not none, read in place; the poses are those of the last update.
@@ -153,8 +185,15 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         pair_number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let placement = Placement::new(poses, pair_number, self.swapped);
-        ManifoldView::of_convex(&self.contacts, placement)
+        let placement = Placement::new(poses, pair_number, self.kept.swapped);
+        ManifoldView::of_convex(&self.kept.contacts, placement)
+    }
+}
+
+impl<N: Real, const D: usize> CompositeState<N, D> {
+    /// One of the shapes may be another one now.
+    pub(crate) fn forget_shapes(&mut self) {
+        self.contacts.forget_shapes();
     }
 }
 

@@ -3,13 +3,14 @@
 use smallvec::SmallVec;
 
 use super::default_narrow_phase::push_change;
+use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{Group, Rows};
-use super::lanes::{BOX_PAIRS, Lane, Location, needs_update};
-use super::state::{ContactState, KeptContacts};
+use super::lanes::{Lane, Location, needs_update};
+use super::state::{KeptContacts, Posed};
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
-use crate::query::{BoxJob, ContactManifold};
+use crate::query::{BoxJob, Solid};
 
 /// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
 /// constant, so that the order of results never depends on the number of threads.
@@ -32,8 +33,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(crate) fn update_pairs_here(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         let due = core::mem::take(&mut self.due);
         let mut changes = core::mem::take(&mut self.changes);
-        let affected: usize = table.changed().iter().map(|&row| self.pairs.count(row)).sum();
-        if (affected + due.len()) * SPARSE < self.pairs.len() {
+        if self.is_sparse(table, due.len()) {
             self.update_some(table, &due, &mut changes);
         } else {
             self.update_all(table, &mut changes);
@@ -45,6 +45,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
         self.due = due;
         self.due.clear();
+    }
+
+    /// Few of the pairs are to be updated: those of objects that changed and some more.
+    fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
+        let mut affected = more;
+        table.changed().iter().all(|&row| {
+            affected += self.pairs.count(row);
+            affected * SPARSE < self.pairs.len()
+        }) && affected * SPARSE < self.pairs.len()
     }
 
     /// Keeps what readers go by in step with the states.
@@ -59,13 +68,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
         // Of the hundreds of groups most are empty.
-        for (number, group) in self.lanes.contacts.iter_mut().enumerate() {
-            if group.is_empty() {
-                continue;
-            }
-            let are_boxes = number == usize::from(BOX_PAIRS);
-            let update = if are_boxes { update_boxes } else { update_contacts };
-            update_group(group, changes, |rows, changes| update(rows, table, changes));
+        for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
+            let solids = group.state(0).state.solids().copied();
+            update_group(group, changes, |rows, changes| {
+                update_convex(rows, table, changes, solids.as_ref());
+            });
         }
         update_group(&mut self.lanes.composites, changes, |rows, changes| {
             update_contacts(rows, table, changes);
@@ -152,9 +159,25 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
-/// The contacts of some pairs of convex solids.
-type ContactRows<'a, N, const D: usize> =
-    Rows<'a, ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+/// Brings the contacts of some pairs of convex solids up to date, several at a time where that can be
+/// done for their kinds. `solids` are those of one of them: all have copies if one has.
+fn update_convex<N: Space<D>, const D: usize>(
+    mut rows: ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+    solids: Option<&[Solid<N, D>; 2]>,
+) {
+    if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
+        return update_boxes(rows, table, changes);
+    }
+    let is_done = solids.is_some_and(|[solid1, solid2]| {
+        let mut due = DueContacts { rows: rows.reborrow(), table, changes: &mut *changes };
+        (N::tables().update_lanes)([solid1, solid2], &mut due)
+    });
+    if !is_done {
+        update_contacts(rows, table, changes);
+    }
+}
 
 /// Brings the contacts of some pairs of boxes up to date, several at a time.
 fn update_boxes<N: Space<D>, const D: usize>(
@@ -165,13 +188,19 @@ fn update_boxes<N: Space<D>, const D: usize>(
     let mut jobs = SmallVec::<[BoxJob<'_, N, D>; CHUNK]>::new();
     for (key, entry, view) in rows.reborrow().each() {
         if needs_update(entry.due, table, key) {
-            jobs.extend(entry.begin_boxes(view, &posed(table, key)));
+            let poses = [table.pose(key.0), table.pose(key.1)];
+            if let Some(job) = entry.begin_boxes(view, poses) {
+                jobs.push(job);
+            }
         }
     }
     (N::tables().box_contacts)(&mut jobs);
     drop(jobs);
-    let noted = rows.each().map(|(key, entry, _)| (key, entry.note()));
-    changes.extend(noted.filter_map(|(key, change)| Some((key, change?))));
+    for (&key, entry) in rows.keys.iter().zip(rows.states) {
+        if let Some(change) = entry.note() {
+            changes.push((key, change));
+        }
+    }
 }
 
 /// Brings the contacts of some pairs up to date.
@@ -180,9 +209,8 @@ fn update_contacts<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     table: &ObjectTable<N, D>,
     changes: &mut Changes,
 ) {
-    update_each(rows, changes, |key, entry, view| {
-        let needed = needs_update(entry.due, table, key);
-        if needed { entry.update(view, &posed(table, key)) } else { None }
+    update_each(rows, changes, (table, |entry| entry.due), |entry, view, posed| {
+        entry.update(view, posed)
     });
 }
 
@@ -192,10 +220,7 @@ fn update_proximity<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     changes: &mut Changes,
 ) {
-    update_each(rows, changes, |key, entry, _| {
-        let needed = needs_update(entry.due, table, key);
-        if needed { entry.update(&posed(table, key)) } else { None }
-    });
+    update_each(rows, changes, (table, |entry| entry.due), |entry, _, posed| entry.update(posed));
 }
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
@@ -225,11 +250,16 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
 }
 
 /// Updates the pairs of a chunk that need it, one by one.
-fn update_each<S, V>(
+fn update_each<N: Space<D>, S, V, const D: usize>(
     rows: Rows<'_, S, V>,
     changes: &mut Changes,
-    update: impl Fn((u32, u32), &mut S, Option<&mut V>) -> Option<Change>,
+    (table, is_due): (&ObjectTable<N, D>, fn(&S) -> bool),
+    update: impl Fn(&mut S, Option<&mut V>, &Posed<'_, N, D>) -> Option<Change>,
 ) {
-    let one = |(key, state, view)| update(key, state, view).map(|change| (key, change));
-    changes.extend(rows.each().filter_map(one));
+    for (key, state, view) in rows.each() {
+        if needs_update(is_due(state), table, key) {
+            let change = update(state, view, &posed(table, key));
+            changes.extend(change.map(|change| (key, change)));
+        }
+    }
 }

@@ -2,6 +2,7 @@
 //! many.
 
 use super::places::Places;
+use crate::memory::Look;
 
 /// Links in one line.
 const PER_LINE: usize = 8;
@@ -338,6 +339,13 @@ impl Lines {
         self.pool.clear();
         self.free.clear();
         self.places.clear();
+    }
+
+    /// Gives memory back.
+    pub(super) fn fit(&mut self, look: Look) {
+        look.fit(&mut self.owned);
+        look.fit(&mut self.heads);
+        look.fit(&mut self.pool);
     }
 
     /// Checks that no two objects share a head, no two runs a line, no run leaves the pool, and none is

@@ -1,6 +1,7 @@
 //! The table of pairs.
 
 use super::lines::{Lines, Link, small};
+use crate::memory::Look;
 
 /// A set of unordered pairs; see the module's page for its layout.
 ///
@@ -191,6 +192,12 @@ impl PairTable {
     pub fn clear(&mut self) {
         self.pairs.clear();
         self.lines.clear();
+    }
+
+    /// Gives back memory that a table that has stopped to grow does not need.
+    pub(crate) fn fit(&mut self, look: Look) {
+        look.fit(&mut self.pairs);
+        self.lines.fit(look);
     }
 
     /// Checks every invariant of the layout; for tests.

@@ -157,6 +157,7 @@ pub(crate) fn materialise<N: Real, const D: usize>(
 }
 
 /// A point in the world; `own` is the manifold's normal, `normal` that in the world.
+#[inline]
 pub(super) fn placed<N: Real, const D: usize>(
     own: &Vector<N, D>,
     point: &RawPoint<N, D>,

@@ -87,7 +87,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
 
     /// The contacts, in the order in which they began.
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
-        (0..self.len()).map(move |index| self.contact(index))
+        let normal = self.own_normal();
+        (0..self.len()).map(move |index| self.contact(index, &normal))
     }
 
     /// The contact of the largest depth, the first of equals.
@@ -99,17 +100,29 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
             Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
         let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
-        self.contact((1..self.len()).fold(0, deeper))
+        self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
     }
 
-    fn contact(&self, index: usize) -> ContactPoint<N, D> {
+    /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
+    /// nothing of use for manifolds that are made.
+    #[inline]
+    fn own_normal(&self) -> [Vector<N, D>; 2] {
+        let (own, pose1) = match self.0 {
+            Kept::Convex(raw, placement) => (raw.normal, placement.pose1),
+            Kept::Patch(patch, placement) => (patch.normal, placement.pose1),
+            Kept::Made(_) => return [Vector::<N, D>::zeros(); 2],
+        };
+        [own, pose1.vector(&own)]
+    }
+
+    /// The contact at an index; `normal` is [`Self::own_normal`].
+    #[inline]
+    fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
-            Kept::Convex(raw, placement) => {
-                point(&raw.normal, &raw.points[index], [0; 2], &placement)
-            }
+            Kept::Convex(raw, placement) => point(normal, &raw.points[index], [0; 2], &placement),
             Kept::Patch(patch, placement) => {
                 let found = &patch.points[index];
-                point(&patch.normal, &found.raw, found.parts, &placement)
+                point(normal, &found.raw, found.parts, &placement)
             }
             Kept::Made(manifold) => {
                 let made = &manifold.contacts()[index];
@@ -126,14 +139,15 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     }
 }
 
-/// A point in the world, as the user's order of the solids has it.
+/// A point in the world, by the normal as it is kept and in the world, as the user's order of the solids has it.
+#[inline]
 fn point<N: Real, const D: usize>(
-    normal: &Vector<N, D>,
+    [own, normal]: &[Vector<N, D>; 2],
     raw: &RawPoint<N, D>,
     [part1, part2]: [u32; 2],
     placement: &Placement<'_, N, D>,
 ) -> ContactPoint<N, D> {
-    let contact = placed(normal, raw, placement.pose1, placement.pose1.vector(normal));
+    let contact = placed(own, raw, placement.pose1, *normal);
     let id = ContactId { pair: placement.pair, number: raw.id };
     let (feature1, feature2) = (raw.feature1, raw.feature2);
     if placement.is_swapped {

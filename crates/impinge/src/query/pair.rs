@@ -85,6 +85,9 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
 }
 
 /// The order of [`canonical`] is the opposite of that of the arguments.
+///
+/// Solids of one kind stand either way round: the answer is a number here, not a way through the
+/// program, so that a processor that guesses ways does not wait for places far off in memory.
 #[inline]
 pub(crate) fn is_swapped<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -92,7 +95,13 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     pose2: &Pose<N, D>,
     shape2: Geometry<'_, N, D>,
 ) -> bool {
-    compare(pose1, shape1, pose2, shape2) == Ordering::Greater
+    let (kind1, kind2) = (shape1.kind(), shape2.kind());
+    let (x1, x2) = (pose1.translation[0], pose2.translation[0]);
+    let is_beyond = x1 > x2;
+    if kind1 == kind2 && !(is_beyond | (x1 < x2)) {
+        return compare_at_length((pose1, shape1), (pose2, shape2)) == Ordering::Greater;
+    }
+    if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
 
 /// The solids are the same at the same place, as far as [`canonical`] can tell.

@@ -1,7 +1,7 @@
 //! Cones, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, axial, radial_of};
+use super::round::{Disk, axial_on, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -88,11 +88,7 @@ impl<N: Real> Cone<N> {
         point: &Point<N, D>,
         noise: N,
     ) -> Option<FeatureId> {
-        let least = N::lit(4.0) * noise;
-        if self.half_height <= least || self.radius <= least {
-            return None;
-        }
-        let (y, aside) = axial(point);
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
         Some(if y <= noise - self.half_height {
             if aside >= self.radius - noise { FeatureId::Edge(0) } else { FeatureId::Face(0) }
         } else if y >= self.half_height - N::TWO * noise && aside <= N::TWO * noise {

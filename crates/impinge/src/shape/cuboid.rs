@@ -89,6 +89,13 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         let part = Part::<D> { free, corner: signs(&point.coords) };
         (free != Part::<D>::ALL).then(|| part.name())
     }
+
+    /// The name of a part of the surface by `D` bits that say along which axes it ranges and `D` more
+    /// that say along which of the others it is on the positive side.
+    #[inline]
+    pub(crate) const fn part_named(bits: u8) -> FeatureId {
+        Part::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
+    }
 }
 
 /// A vertex, edge or face: the points of the box whose coordinates on the `free` axes range, while
@@ -139,6 +146,20 @@ const fn has(set: u32, axis: usize) -> bool {
 
 impl<const D: usize> Part<D> {
     const ALL: u32 = (1 << D) - 1;
+
+    /// The names of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three dimensions.
+    const NAMES: [FeatureId; 64] = {
+        let mut names = [FeatureId::Vertex(0); 64];
+        let mut bits = 0;
+        while bits < 1 << (2 * D) {
+            let free = bits & Self::ALL;
+            if free != Self::ALL {
+                names[bits as usize] = Self { free, corner: bits >> D }.name();
+            }
+            bits += 1;
+        }
+        names
+    };
 
     /// The part that faces a unit vector: as many axes as the tilt admits are free, the weakest
     /// first, which is the rule for the flattest edge and the most aligned face beside it.

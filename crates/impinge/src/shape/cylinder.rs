@@ -1,7 +1,7 @@
 //! Cylinders, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, axial, radial_of};
+use super::round::{Disk, axial_on, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -75,11 +75,7 @@ impl<N: Real> Cylinder<N> {
         point: &Point<N, D>,
         noise: N,
     ) -> Option<FeatureId> {
-        let least = N::lit(4.0) * noise;
-        if self.half_height <= least || self.radius <= least {
-            return None;
-        }
-        let (y, aside) = axial(point);
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
         let side = u32::from(y < N::ZERO);
         let is_at_end = y.abs() >= self.half_height - noise;
         Some(if is_at_end && aside >= self.radius - noise {

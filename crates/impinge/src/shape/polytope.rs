@@ -41,6 +41,8 @@ pub struct Polytope<N: Real, const D: usize> {
 
 /// How many vertices or faces are looked at side by side.
 const LANES: usize = 8;
+/// How many vertices code without vectors looks at: they fit in one register everywhere.
+const QUARTET: usize = 4;
 
 /// The planes of some faces side by side, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,17 +152,18 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     ///
     /// Written for the compiler to keep each array in one register.
     pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
-        let (mut heights, mut places) = (heights(&self.blocks[0], direction), [0_u32; LANES]);
-        for (place, block) in (1_u32..).zip(&self.blocks[1..]) {
-            let candidates = self::heights(block, direction);
-            for lane in 0..LANES {
+        let (mut heights, mut places) = (heights(&self.blocks[0], 0, direction), [0_u32; QUARTET]);
+        let quartets = self.blocks.iter().flat_map(|block| [(block, 0), (block, QUARTET)]);
+        for (place, (block, first)) in (1_u32..).zip(quartets.skip(1)) {
+            let candidates = self::heights(block, first, direction);
+            for lane in 0..QUARTET {
                 let is_higher = candidates[lane] > heights[lane];
                 heights[lane] = if is_higher { candidates[lane] } else { heights[lane] };
                 places[lane] = if is_higher { place } else { places[lane] };
             }
         }
-        let index = |lane: usize| places[lane] as usize * LANES + lane;
-        (1..LANES)
+        let index = |lane: usize| places[lane] as usize * QUARTET + lane;
+        (1..QUARTET)
             .fold((heights[0], index(0)), |best, lane| {
                 let is_tie = heights[lane] == best.0 && index(lane) < best.1;
                 if heights[lane] > best.0 || is_tie { (heights[lane], index(lane)) } else { best }
@@ -213,16 +216,17 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// How far the vertices of a block reach along a direction.
+/// How far four vertices of a block, from lane `first` on, reach along a direction.
 #[inline]
 fn heights<N: Real, const D: usize>(
     block: &[[N; LANES]; D],
+    first: usize,
     direction: &Vector<N, D>,
-) -> [N; LANES] {
-    let mut sums = from_fn(|lane| block[0][lane] * direction[0]);
+) -> [N; QUARTET] {
+    let mut sums = from_fn(|lane| block[0][first + lane] * direction[0]);
     for axis in 1..D {
-        for lane in 0..LANES {
-            sums[lane] += block[axis][lane] * direction[axis];
+        for lane in 0..QUARTET {
+            sums[lane] += block[axis][first + lane] * direction[axis];
         }
     }
     sums

@@ -4,9 +4,21 @@ use super::{CurvedSupport, Feature, FeatureId};
 use crate::math::{Point, Real, Vector, max, unit};
 
 /// How far a point lies along the y axis and from it.
-pub(super) fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
+fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
     let squares = (0..D).filter(|&axis| axis != 1).map(|axis| point[axis] * point[axis]);
     (point[1], squares.fold(N::ZERO, |sum, square| sum + square).sqrt())
+}
+
+/// Where a point of the surface of a solid about the y axis lies, as [`axial`] has it; `None` for a solid
+/// of this half height and radius that is hardly thicker than the noise, on which a point would lie on
+/// several parts at once.
+pub(super) fn axial_on<N: Real, const D: usize>(
+    point: &Point<N, D>,
+    [half_height, radius]: [N; 2],
+    noise: N,
+) -> Option<(N, N)> {
+    let least = N::lit(4.0) * noise;
+    (half_height > least && radius > least).then(|| axial(point))
 }
 
 /// The points within `radius` of the y axis at height `y`.

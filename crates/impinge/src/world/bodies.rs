@@ -5,6 +5,7 @@ use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
 use crate::math::{Pose, Real, Space, max};
+use crate::memory::Look;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::{Shape, ShapeHandle};
 
@@ -261,6 +262,17 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     /// The objects whose pairs with themselves begin or end, as of the last flush; forgotten hereby.
     pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
         core::mem::take(&mut self.self_changed)
+    }
+
+    /// How many objects changed.
+    pub(crate) const fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Gives the memory of lists that have been short for some time back.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        look.trim(&mut self.entries);
+        look.trim(&mut self.order);
     }
 
     fn note_volume(&mut self, body: &mut Body<N, D>, aabb: Aabb<N, D>) {

@@ -11,6 +11,7 @@ use super::{
     WorldBroadPhase, WorldError,
 };
 use crate::math::Space;
+use crate::memory::Recent;
 use crate::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType};
 use crate::shape::ShapeHandle;
 
@@ -39,6 +40,8 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) algorithms: Vec<u32>,
     /// Scratch: the pairs that started or stopped.
     pub(super) interactions: Vec<(HandlePair, bool)>,
+    /// How long the lists of the world have been lately.
+    pub(super) recent: Recent,
 }
 
 impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionWorld<N, D, T> {
@@ -86,6 +89,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             queued: Events::default(),
             algorithms: Vec::new(),
             interactions: Vec::new(),
+            recent: Recent::default(),
         })
     }
 

@@ -133,7 +133,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
 
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase<N, D> {
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events) {
-        self.update_pairs(objects.table(), events);
+        self.step(objects.table(), events);
     }
 
     fn handle_interaction(

@@ -5,6 +5,7 @@ use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
+use crate::memory::Look;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
@@ -17,22 +18,27 @@ const MOST: u32 = (1 << 31) - 1;
 /// generations are used up is never used again.
 #[derive(Debug)]
 pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
-    slots: Vec<Slot<N, D, T>>,
+    slots: Vec<Slot>,
+    /// The objects in no particular order, without gaps: that a handle is fresh shows in its slot,
+    /// so who only hands objects on does not wait for their memory.
+    records: Vec<CollisionObject<N, D, T>>,
     /// Indices without an object, the next one to be used at the end.
     free: Vec<u32>,
-    count: usize,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
 }
 
-/// An object, or the generation of the next one. No larger than the object: an absent one shows by a
-/// pointer that no shape has.
-#[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "nearly all are objects")]
-enum Slot<N: Space<D>, const D: usize, T> {
-    Free(u32),
-    Taken(CollisionObject<N, D, T>),
+/// What an index of a handle stands for.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    /// That of the object here, or of the next one.
+    generation: u32,
+    /// Where the object is, or [`NOWHERE`].
+    place: u32,
 }
+
+/// The place of an object that there is not.
+const NOWHERE: u32 = u32::MAX;
 
 /// What the user says about a new object.
 pub(super) struct Description<N: Space<D>, const D: usize, T> {
@@ -43,28 +49,12 @@ pub(super) struct Description<N: Space<D>, const D: usize, T> {
     pub(super) data: T,
 }
 
-impl<N: Space<D>, const D: usize, T> Slot<N, D, T> {
-    const fn object(&self) -> Option<&CollisionObject<N, D, T>> {
-        match self {
-            Self::Taken(object) => Some(object),
-            Self::Free(_) => None,
-        }
-    }
-
-    const fn object_mut(&mut self) -> Option<&mut CollisionObject<N, D, T>> {
-        match self {
-            Self::Taken(object) => Some(object),
-            Self::Free(_) => None,
-        }
-    }
-}
-
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     pub(super) const fn new() -> Self {
         Self {
             slots: Vec::new(),
+            records: Vec::new(),
             free: Vec::new(),
-            count: 0,
             changes: ChangeList::new(),
             table: ObjectTable::new(),
         }
@@ -73,19 +63,32 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// The object of a handle; `None` for a stale one.
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
-        self.slots.get(handle.uid())?.object().filter(|object| object.body.handle == handle)
+        self.records.get(self.place(handle)?)
     }
 
     pub(super) fn get_mut(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Option<&mut CollisionObject<N, D, T>> {
-        self.slots.get_mut(handle.uid())?.object_mut().filter(|object| object.body.handle == handle)
+        let place = self.place(handle)?;
+        self.records.get_mut(place)
+    }
+
+    /// Where the object of a handle is, if it is fresh and not forged.
+    #[inline]
+    fn place(&self, handle: CollisionObjectHandle) -> Option<usize> {
+        let slot = self.slots.get(handle.uid())?;
+        (slot.generation == handle.generation()).then_some(slot.place as usize)
+    }
+
+    /// The object at an index, if there is one.
+    fn at(&self, index: u32) -> Option<&CollisionObject<N, D, T>> {
+        self.records.get(self.slots.get(index as usize)?.place as usize)
     }
 
     /// What is kept of the object at an index, if there is one.
     pub(super) fn body(&self, index: u32) -> Option<&Body<N, D>> {
-        self.slots.get(index as usize)?.object().map(|object| &object.body)
+        self.at(index).map(|object| &object.body)
     }
 
     /// What is kept of all objects, in order.
@@ -108,19 +111,19 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// The objects, in order of their handles.
     pub fn iter(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
-        self.slots.iter().filter_map(Slot::object)
+        self.slots.iter().filter_map(|slot| self.records.get(slot.place as usize))
     }
 
     /// How many objects there are.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.count
+        self.records.len()
     }
 
     /// There is no object.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.count == 0
+        self.records.is_empty()
     }
 
     /// The poses, shapes and query types as of the last update (within an update: of this one).
@@ -134,8 +137,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Result<(&mut Body<N, D>, &mut ChangeList<N, D>), WorldError> {
-        let slot = self.slots.get_mut(handle.uid());
-        let object = slot.and_then(Slot::object_mut).filter(|object| object.body.handle == handle);
+        let object = self.place(handle).and_then(|place| self.records.get_mut(place));
         let object = object.ok_or(WorldError::StaleHandle(handle))?;
         Ok((&mut object.body, &mut self.changes))
     }
@@ -143,10 +145,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// The handle that the next object will have.
     pub(super) fn next_handle(&self) -> Result<CollisionObjectHandle, WorldError> {
         if let Some(&index) = self.free.last() {
-            let Slot::Free(generation) = self.slots[index as usize] else {
-                unreachable!("the list names slots without objects")
-            };
-            return Ok(CollisionObjectHandle::new(index, generation));
+            return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
         }
         let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MOST);
         Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, 0))
@@ -162,8 +161,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let Description { position, shape, groups, query_type, data } = new;
         let row = ObjectRow { handle, isometry: position, shape, query: query_type };
         let body = self.changes.admit(row, groups, proxy);
-        let slot = Slot::Taken(CollisionObject { body, data });
-        self.count += 1;
+        let place = u32::try_from(self.records.len()).expect("no more objects than handles");
+        let slot = Slot { generation: handle.generation(), place };
+        self.records.push(CollisionObject { body, data });
         if self.free.pop().is_some() {
             self.slots[handle.uid()] = slot;
         } else {
@@ -174,13 +174,15 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// Forgets an object.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) {
         let next = handle.generation().checked_add(1);
-        let free = Slot::Free(next.unwrap_or(u32::MAX));
-        let slot = core::mem::replace(&mut self.slots[handle.uid()], free);
-        if let Some(object) = slot.object() {
-            self.changes.forget(&object.body);
+        let slot = &mut self.slots[handle.uid()];
+        let place = core::mem::replace(&mut slot.place, NOWHERE);
+        slot.generation = next.unwrap_or(u32::MAX);
+        let object = self.records.swap_remove(place as usize);
+        if let Some(moved) = self.records.get(place as usize) {
+            self.slots[moved.body.handle.uid()].place = place;
         }
+        self.changes.forget(&object.body);
         self.table.release(handle.index());
-        self.count -= 1;
         if next.is_some() {
             self.free.push(handle.index());
         }
@@ -193,13 +195,13 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         broad_phase: &mut WorldBroadPhase<N, D>,
         algorithms: &mut Vec<u32>,
     ) {
-        let Self { slots, changes, table, .. } = self;
+        let Self { slots, records, changes, table, .. } = self;
         table.begin_update();
         algorithms.clear();
         let mut readers = Readers { table, broad_phase, algorithms };
         let order = changes.take_order();
         for &index in &order {
-            if let Slot::Taken(object) = &mut slots[index as usize] {
+            if let Some(object) = records.get_mut(slots[index as usize].place as usize) {
                 (N::tables().world.flush)(&mut object.body, changes, &mut readers);
             }
         }
@@ -208,10 +210,23 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// Gives the narrow phase what it reads of an object, if it has not got it yet.
     pub(super) fn lend(&mut self, index: u32) {
-        let object = self.slots.get(index as usize).and_then(Slot::object);
-        if let Some(object) = object {
-            self.table.lend(index, || object.body.row());
+        let Self { slots, records, table, .. } = self;
+        let slot = slots.get(index as usize);
+        if let Some(object) = slot.and_then(|slot| records.get(slot.place as usize)) {
+            table.lend(index, || object.body.row());
         }
+    }
+
+    /// Gives memory back that has not been needed for some time.
+    pub(super) fn give_back(&mut self, look: Look) {
+        look.fit(&mut self.slots);
+        self.changes.give_back(look);
+        self.table.give_back(look);
+    }
+
+    /// How many indices have been in use.
+    pub(super) const fn reach(&self) -> usize {
+        self.slots.len()
     }
 
     pub(super) fn set_proxy(&mut self, handle: CollisionObjectHandle, proxy: ProxyHandle) {
@@ -222,11 +237,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// What is wrong with the bookkeeping, if anything.
     pub(super) fn validate(&self) -> Result<(), String> {
-        if self.iter().count() != self.count {
-            return Err(format!("the count of objects, {}, is wrong", self.count));
+        if self.iter().count() != self.records.len() {
+            return Err(format!("{} objects do not all have slots", self.records.len()));
         }
         for (index, slot) in (0..).zip(&self.slots) {
-            let Slot::Taken(CollisionObject { body, .. }) = slot else { continue };
+            let Some(CollisionObject { body, .. }) = self.at(index) else { continue };
+            if body.handle.generation() != slot.generation {
+                return Err(format!("slot {index} has another generation than {:?}", body.handle));
+            }
             self.changes.validate(body)?;
             if body.index() != index {
                 return Err(format!("{:?} stands in slot {index}", body.handle));

@@ -13,6 +13,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// The events of the last update are forgotten; those that removals have queued since come first.
     pub fn update(&mut self) {
+        self.recent.note(self.objects.changes.len());
         self.events.begin_batch(&mut self.queued);
         if self.next_broad_phase.is_some() || self.next_narrow_phase.is_some() {
             self.update_with_other_phases();
@@ -22,6 +23,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
         self.events.sort();
+        self.recent.note(self.interactions.len().max(self.events.len()));
+        if let Some(look) = self.recent.end_update(self.objects.reach()) {
+            self.objects.give_back(look);
+            self.events.give_back(look);
+            look.trim(&mut self.interactions);
+            look.trim(&mut self.algorithms);
+        }
     }
 
     /// Brings what the phases read of the objects up to date.
@@ -61,6 +69,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.tell(pair, has_started);
         }
         self.interactions = interactions;
+        self.objects.table.tidy();
     }
 
     /// Tells the narrow phase that a pair started or stopped. It has the rows of its pairs' objects and no

@@ -8,6 +8,7 @@
 use super::facet::{Facet, Which};
 use super::frame::Frame;
 use super::overlap::{Candidates, Overlap};
+use super::triangle_face::OnFace;
 use super::{build, choose, face};
 use crate::convex::Separation;
 use crate::math::{Space, Vector, min};
@@ -30,6 +31,21 @@ where
 /// Builds the manifold of two convex solids along a normal; empty if no points face each other along
 /// it, or if one of the solids is a half-space.
 pub(in crate::query) fn build_along<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    along: &Along<N, D>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, D>,
+) {
+    let Along { normal, least } = *along;
+    let on_face = OnFace { normal, least, nearest: None, prediction: request.prediction };
+    if request.sine <= N::ZERO && (N::tables().on_face)(pair, &on_face, out) {
+        return;
+    }
+    build_in_general(pair, along, request, out);
+}
+
+/// [`build_along`] by facets and their overlap, for all solids.
+pub(super) fn build_in_general<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
     request: &ManifoldRequest<N>,
@@ -77,6 +93,23 @@ fn extremes<N: Space<D>, const D: usize>(
     Some(Separation { distance, normal: *normal, point1, point2: point1 + normal * distance })
 }
 
+/// The manifold of a pair whose separation is known along the normal of a face of a surface that is the
+/// first solid, or nearly so; as [`build_between`].
+pub(in crate::query) fn build_on_face<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, D>,
+) {
+    let (normal, prediction) = (separation.normal, request.prediction);
+    let (least, nearest) = (-N::INFINITY, Some(separation.distance));
+    let on_face = OnFace { normal, least, nearest, prediction };
+    let is_asked = request.sine <= N::ZERO && separation.distance <= prediction;
+    if !(is_asked && (N::tables().on_face)(pair, &on_face, out)) {
+        build_between(pair, separation, request, out);
+    }
+}
+
 /// The manifold of a pair whose separation is known, with as many points as are asked for.
 pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -87,7 +120,7 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     build(pair, &frame(pair, separation, request), (request, request.max_points), out);
 }
 
-fn frame<N: Space<D>, const D: usize>(
+pub(super) fn frame<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     witness: &Separation<N, D>,
     request: &ManifoldRequest<N>,
@@ -96,7 +129,7 @@ fn frame<N: Space<D>, const D: usize>(
 }
 
 /// What the two solids show of themselves along the normal of a frame.
-fn facets<N: Space<D>, const D: usize>(
+pub(super) fn facets<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
 ) -> (Facet<N, D>, Facet<N, D>) {

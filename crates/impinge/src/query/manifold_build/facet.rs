@@ -9,6 +9,15 @@ use crate::shape::{Feature, FeatureId, SupportMap};
 /// Parts that lean more than 60° out of the plane of contact count as their nearest point.
 const LEAST_COSINE: f64 = 0.5;
 
+/// How many sides are looked at side by side.
+pub(super) const LANES: usize = 8;
+
+/// The lines of up to eight sides: a corner on each, and its inward normal.
+pub(super) struct Lines<N: Real> {
+    pub(super) from: [[N; LANES]; 2],
+    pub(super) inward: [[N; LANES]; 2],
+}
+
 /// Which of the two solids of a pair.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Which {
@@ -92,9 +101,11 @@ impl<N: Real, const D: usize> Facet<N, D> {
         pose: Option<&Pose<N, D>>,
         frame: &Frame<N, D>,
     ) {
-        for (index, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
+        let (vertices, ids) = (feature.vertices.as_slice(), feature.vertex_ids.as_slice());
+        let sides = feature.side_ids.as_slice();
+        for (index, (vertex, &id)) in vertices.iter().zip(ids).enumerate() {
             let point = pose.map_or(*vertex, |pose| pose.point(vertex));
-            let side = feature.side_ids.get(index).copied().unwrap_or(feature.id);
+            let side = sides.get(index).copied().unwrap_or(feature.id);
             self.corners.push(Corner { point, flat: frame.flat(&point), id, side });
         }
     }
@@ -135,11 +146,11 @@ impl<N: Real, const D: usize> Facet<N, D> {
             return self.keep_farthest(outward);
         }
         let turn = if area < N::ZERO { -N::ONE } else { N::ONE };
-        self.inward = SmallVec::from_elem(Vector::<N, 2>::zeros(), self.corners.len());
-        for ((from, to), inward) in sides(&self.corners).zip(&mut self.inward) {
+        let inward = &mut self.inward;
+        each_side(&self.corners, |_, from, to| {
             let side = to.flat - from.flat;
-            *inward = Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm());
-        }
+            inward.push(Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm()));
+        });
     }
 
     /// A segment that leans too much is its nearest end. The cosine is that of the angle between the
@@ -154,7 +165,8 @@ impl<N: Real, const D: usize> Facet<N, D> {
             return self.keep_farthest(outward);
         }
         let inward = Vector::<N, 2>::new(-flat.y, flat.x) / flat.norm();
-        self.inward = SmallVec::from_slice(&[inward]);
+        self.inward.clear();
+        self.inward.push(inward);
     }
 
     /// Leaves the two ends of a polygon without width, named as its longest side.
@@ -186,14 +198,14 @@ impl<N: Real, const D: usize> Facet<N, D> {
     fn area_and_longest_side(&self) -> (N, usize) {
         let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.corners[0].flat;
-        for (index, (from, to)) in sides(&self.corners).enumerate() {
+        each_side(&self.corners, |index, from, to| {
             let (arm, side) = (from.flat - origin, to.flat - from.flat);
             area += cross2(&arm, &side);
             let squared = side.norm_squared();
             if squared > most {
                 (longest, most) = (index, squared);
             }
-        }
+        });
         (area, longest)
     }
 
@@ -264,6 +276,41 @@ impl<N: Real, const D: usize> Facet<N, D> {
             }
         }
         if self.is_segment() { touched } else { Some(touched.unwrap_or(self.id)) }
+    }
+
+    /// [`Self::locate`] of a place inside, but for the tolerance, that is on the lines of some sides,
+    /// given as bits.
+    #[inline]
+    pub(super) fn locate_on_sides(
+        &self,
+        mut on_lines: u8,
+        flat: &Vector<N, 2>,
+        tolerance: N,
+    ) -> Option<FeatureId> {
+        let mut touched = None;
+        while on_lines != 0 {
+            let side = on_lines.trailing_zeros() as usize;
+            touched = self.on_side(side, flat, tolerance).or(touched);
+            on_lines &= on_lines - 1;
+        }
+        if self.is_segment() { touched } else { Some(touched.unwrap_or(self.id)) }
+    }
+
+    /// The sides, one after the other in lanes; the last one fills the rest.
+    #[inline]
+    pub(super) fn lines(&self) -> Lines<N> {
+        let zero = [N::ZERO; LANES];
+        let mut lines = Lines { from: [zero; 2], inward: [zero; 2] };
+        let (inward, corners) = (self.inward.as_slice(), self.corners.as_slice());
+        let last = inward.len() - 1;
+        for lane in 0..LANES {
+            let side = if lane < last { lane } else { last };
+            for axis in 0..2 {
+                lines.from[axis][lane] = corners[side].flat[axis];
+                lines.inward[axis][lane] = inward[side][axis];
+            }
+        }
+        lines
     }
 
     /// The part of a side that contains a place on its line: one of its corners or itself.
@@ -345,13 +392,17 @@ impl Which {
     }
 }
 
-/// Each corner and the one after it.
-#[inline]
-fn sides<N: Real, const D: usize>(
+/// Visits each corner, by its number, and the one after it.
+#[inline(always)]
+fn each_side<N: Real, const D: usize>(
     corners: &[Corner<N, D>],
-) -> impl Iterator<Item = (&Corner<N, D>, &Corner<N, D>)> {
-    let last = corners.last().zip(corners.first());
-    corners.windows(2).map(|pair| (&pair[0], &pair[1])).chain(last)
+    mut visit: impl FnMut(usize, &Corner<N, D>, &Corner<N, D>),
+) {
+    let (Some(last), Some(first)) = (corners.last(), corners.first()) else { return };
+    for (index, pair) in corners.windows(2).enumerate() {
+        visit(index, &pair[0], &pair[1]);
+    }
+    visit(corners.len() - 1, last, first);
 }
 
 /// Merges each corner with those that follow it at the same place; the last one's side leads on.
@@ -360,7 +411,9 @@ fn merge_coincident<N: Real, const D: usize>(
     tolerance: N,
 ) {
     let apart = |a: &Corner<N, D>, b: &Corner<N, D>| max_component(&(a.flat - b.flat)) > tolerance;
-    if sides(corners.as_slice()).all(|(a, b)| apart(a, b)) {
+    let mut are_apart = true;
+    each_side(corners, |_, a, b| are_apart &= apart(a, b));
+    if are_apart {
         return;
     }
     let mut kept = 0;

@@ -16,6 +16,7 @@ mod ball;
 mod box_faces;
 mod box_lanes;
 mod box_sides;
+mod closed_lanes;
 mod facet;
 mod frame;
 mod half_space;
@@ -26,14 +27,19 @@ mod reduce;
 mod segments;
 #[cfg(test)]
 pub(super) mod tests;
+mod triangle_face;
+#[cfg(test)]
+mod triangle_face_tests;
 mod witness;
 
-pub(super) use self::along::{Along, build_along, build_between};
+pub(super) use self::along::{Along, build_along, build_between, build_on_face};
 pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
+pub(crate) use self::closed_lanes::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
-pub(super) use self::patch::{Merging, Patch, PatchPoint, merge};
+pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
+pub(crate) use self::triangle_face::{OnFace, on_face2, on_face3};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,

@@ -6,11 +6,12 @@
 //! solid is first. A place within rounding of a side lies on it, which keeps the names still when
 //! sides or corners coincide.
 
+use fearless_simd::{Level, Simd, SimdMask};
 use smallvec::SmallVec;
 
-use super::facet::{Corner, Facet};
+use super::facet::{Corner, Facet, LANES};
 use super::frame::{Candidate, Frame};
-use crate::math::{Point, Real, cross2, max};
+use crate::math::{Point, Real, Wide, cross2, max, max_component};
 use crate::shape::FeatureId;
 
 /// What a manifold is chosen from.
@@ -32,9 +33,66 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         if self.are_parallel_segments() {
             return self.common_stretch(out);
         }
+        let most = max_len(self.first.corners.len(), self.second.corners.len());
+        if most <= LANES {
+            return self.candidates_in_lanes(out);
+        }
+        self.candidates_one_by_one(out);
+    }
+
+    /// [`Self::candidates`] of facets with any number of corners.
+    pub(super) fn candidates_one_by_one(&self, out: &mut Candidates<N, D>) {
         let insides = [Insides::of(self.first, self.second), Insides::of(self.second, self.first)];
         self.corners_inside(&insides, out);
         self.crossings(&insides, out);
+    }
+
+    /// [`Self::candidates`] of facets with eight corners at most: the same, eight lines at a time.
+    pub(super) fn candidates_in_lanes(&self, out: &mut Candidates<N, D>) {
+        let rows = Rows::of_both(self);
+        let tolerance = self.frame.tolerance;
+        for (index, corner) in self.first.corners.iter().enumerate() {
+            if let Some(on_lines) = rows[0].inside(index, self.second)
+                && let Some(id) = self.second.locate_on_sides(on_lines, &corner.flat, tolerance)
+            {
+                self.push_corner_of_first(corner, id, out);
+            }
+        }
+        for (index, corner) in self.second.corners.iter().enumerate() {
+            if let Some(on_lines) = rows[1].inside(index, self.first)
+                && let Some(id) = self.first.locate_on_sides(on_lines, &corner.flat, tolerance)
+            {
+                self.push_corner_of_second(corner, id, out);
+            }
+        }
+        for side1 in 0..self.first.side_count() {
+            let mut crossed = rows[0].crossed(side1, self.first.next(side1), self.second);
+            while crossed != 0 {
+                let side2 = crossed.trailing_zeros() as usize;
+                let next2 = self.second.next(side2);
+                if rows[1].crossed(side2, next2, self.first) >> side1 & 1 == 1 {
+                    let ends1 = [side1, self.first.next(side1)].map(|c| rows[0].insides[c][side2]);
+                    let ends2 = [side2, next2].map(|corner| rows[1].insides[corner][side1]);
+                    self.push_crossing([side1, side2], [ends1, ends2], out);
+                }
+                crossed &= crossed - 1;
+            }
+        }
+    }
+
+    /// Adds the place where a side of each facet cross, which are told how far inside of the other's
+    /// line their ends are.
+    fn push_crossing(
+        &self,
+        [side1, side2]: [usize; 2],
+        [ends1, ends2]: [[N; 2]; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let at = |[from, to]: [N; 2]| from / (from - to);
+        let core1 = self.first.along_side(side1, at(ends1));
+        let core2 = self.second.along_side(side2, at(ends2));
+        let names = [self.first.corners[side1].side, self.second.corners[side2].side];
+        self.push(&core1, &core2, names, out);
     }
 
     /// Adds what [`Self::candidates`] leaves to the witness: of a facet that is a point, the point, if
@@ -110,11 +168,7 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
                 }
                 let ends2 = insides[1].at_ends(self.second, side2).map(|row| row[side1]);
                 if self.are_apart(ends2) {
-                    let at = |[from, to]: [N; 2]| from / (from - to);
-                    let core1 = self.first.along_side(side1, at(ends1));
-                    let core2 = self.second.along_side(side2, at(ends2));
-                    let names = [self.first.corners[side1].side, self.second.corners[side2].side];
-                    self.push(&core1, &core2, names, out);
+                    self.push_crossing([side1, side2], [ends1, ends2], out);
                 }
             }
         }
@@ -200,7 +254,8 @@ impl<N: Real, const D: usize> Overlap<'_, N, D> {
         let Some(found) = found else { return };
         let near = N::lit(4.0) * self.frame.tolerance;
         let is_new = |old: &Candidate<N, D>| {
-            old.features != found.features || (old.flat - found.flat).norm() > near
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
         };
         if out.iter().all(is_new) {
             out.push(found);
@@ -236,4 +291,103 @@ impl<N: Real> Insides<N> {
         let row = |corner: usize| &self.numbers[corner * self.side_count..][..self.side_count];
         [row(side), row(facet.next(side))]
     }
+}
+
+/// The larger of two numbers of corners.
+fn max_len(a: usize, b: usize) -> usize {
+    if a > b { a } else { b }
+}
+
+/// How far inside the sides of one facet the corners of the other are, of which there are eight each at
+/// most: a row for each corner, and what the numbers say as bits.
+struct Rows<N: Real> {
+    insides: [[N; LANES]; LANES],
+    /// By more than the tolerance; outside by more; inside by no more.
+    within: [u8; LANES],
+    beyond: [u8; LANES],
+    on_line: [u8; LANES],
+}
+
+impl<N: Real> Rows<N> {
+    /// The corners of the first facet in the second, and the other way round.
+    fn of_both<const D: usize>(overlap: &Overlap<'_, N, D>) -> [Self; 2] {
+        let mut rows = [Self::empty(), Self::empty()];
+        Self::fill_at(Level::new(), overlap, &mut rows);
+        rows
+    }
+
+    fn empty() -> Self {
+        let bits = [0; LANES];
+        let insides = [[N::ZERO; LANES]; LANES];
+        Self { insides, within: bits, beyond: bits, on_line: bits }
+    }
+
+    /// Fills both with the vectors of an instruction set; the numbers do not depend on it.
+    fn fill_at<const D: usize>(level: Level, overlap: &Overlap<'_, N, D>, rows: &mut [Self; 2]) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = level.as_avx2() {
+            return simd.vectorize(
+                #[inline(always)]
+                || Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows),
+            );
+        }
+        fearless_simd::dispatch!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows));
+    }
+
+    #[inline(always)]
+    fn fill_both<S: Simd, V: Wide<S, Scalar = N>, const D: usize>(
+        simd: S,
+        overlap: &Overlap<'_, N, D>,
+        [rows1, rows2]: &mut [Self; 2],
+    ) {
+        let tolerance = overlap.frame.tolerance;
+        rows1.fill::<S, V, D>(simd, overlap.first, overlap.second, tolerance);
+        rows2.fill::<S, V, D>(simd, overlap.second, overlap.first, tolerance);
+    }
+
+    #[inline(always)]
+    fn fill<S: Simd, V: Wide<S, Scalar = N>, const D: usize>(
+        &mut self,
+        simd: S,
+        corners: &Facet<N, D>,
+        sides: &Facet<N, D>,
+        tolerance: N,
+    ) {
+        let lines = sides.lines();
+        let (from_x, from_y) = (V::load(simd, &lines.from[0]), V::load(simd, &lines.from[1]));
+        let (x, y) = (V::load(simd, &lines.inward[0]), V::load(simd, &lines.inward[1]));
+        let (most, least) = (V::all(simd, tolerance), V::all(simd, -tolerance));
+        for (index, corner) in corners.corners.iter().enumerate() {
+            let (flat_x, flat_y) = (V::all(simd, corner.flat.x), V::all(simd, corner.flat.y));
+            let inside = x * (flat_x - from_x) + y * (flat_y - from_y);
+            inside.store(&mut self.insides[index]);
+            self.within[index] = bits(inside.simd_gt(most));
+            self.beyond[index] = bits(inside.simd_lt(least));
+            self.on_line[index] = bits(inside.simd_le(most));
+        }
+    }
+
+    /// Whether a corner is inside the facet, but for the tolerance; and then the sides on whose lines it
+    /// is, or from which it is seen within the tolerance.
+    fn inside<const D: usize>(&self, corner: usize, facet: &Facet<N, D>) -> Option<u8> {
+        let sides = all(facet.side_count());
+        let is_segment = facet.is_segment();
+        let outside = self.beyond[corner] | if is_segment { self.within[corner] } else { 0 };
+        (outside & sides == 0).then_some(self.on_line[corner] & sides)
+    }
+
+    /// The sides of the facet whose lines lie between two corners, neither of which is on it.
+    fn crossed<const D: usize>(&self, from: usize, to: usize, facet: &Facet<N, D>) -> u8 {
+        let apart = self.within[from] & self.beyond[to] | self.beyond[from] & self.within[to];
+        apart & all(facet.side_count())
+    }
+}
+
+/// As many bits as there are sides, eight at most.
+fn all(sides: usize) -> u8 {
+    u8::MAX >> (LANES - sides)
+}
+
+fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+    mask.to_bitmask().to_le_bytes()[0]
 }

@@ -3,6 +3,8 @@
 //! The manifolds of the parts of a composite lie side by side. Those with one normal in one plane
 //! are pieces of one area of contact; of all their points those on its outline delimit it.
 
+use core::ops::Range;
+
 use smallvec::SmallVec;
 
 use super::super::{ManifoldRequest, PairIds, RawPoint};
@@ -29,138 +31,185 @@ pub(in crate::query) struct PatchPoint<N: Real, const D: usize> {
     pub(in crate::query) parts: [u32; 2],
 }
 
-impl<N: Real, const D: usize> PatchPoint<N, D> {
-    /// What a contact is known by from one update to the next.
-    fn name(&self) -> Name {
-        (self.parts, [self.raw.feature1, self.raw.feature2])
-    }
-}
+/// The points of many pieces, one after the other.
+pub(in crate::query) type Points<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
-type Name = ([u32; 2], [crate::shape::FeatureId; 2]);
+/// What two parts contribute, in the frame of the first shape: some of the [`Points`].
+#[derive(Clone, Debug)]
+pub(in crate::query) struct Piece<N: Real, const D: usize> {
+    /// Unit, from the first shape to the second.
+    pub(in crate::query) normal: Vector<N, D>,
+    pub(in crate::query) parts: [u32; 2],
+    pub(in crate::query) points: Range<usize>,
+}
 
 /// What a merged manifold is made of and how.
 pub(in crate::query) struct Merging<'a, N: Real, const D: usize> {
     pub(in crate::query) request: &'a ManifoldRequest<N>,
     /// Lengths below this are rounding errors.
     pub(in crate::query) tolerance: N,
-    /// The patches of the update before, whose points hand on their numbers.
-    pub(in crate::query) old: &'a [Patch<N, D>],
+    /// In the order of their parts, of which no two are the same.
+    pub(in crate::query) pieces: &'a [Piece<N, D>],
+    pub(in crate::query) points: &'a [RawPoint<N, D>],
 }
 
-/// Merges the manifolds of parts into patches, which come in the order of their first parts; points
-/// on features that were touched before keep their numbers.
+/// The numbers that points inherit.
+type Kept = SmallVec<[Option<u32>; 32]>;
+
+/// Merges the manifolds of parts into patches, which come in the order of their first parts, and
+/// replaces those of the update before, whose points on features that are still touched hand on their
+/// numbers.
 ///
 /// The manifolds of parts may hold points beyond the prediction, of which those stay that turning
 /// about the patch's nearest point brings near enough.
 pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
-    mut pieces: Vec<Patch<N, D>>,
     merging: &Merging<'_, N, D>,
-    ids: &mut PairIds,
-) -> Vec<Patch<N, D>> {
-    if let [Patch { points, .. }] = pieces.as_mut_slice()
-        && let [point] = points.as_mut_slice()
-    {
-        keep_alone(point, merging, ids);
-        pieces.retain(|piece| piece.points[0].raw.distance <= merging.request.prediction);
-        return pieces;
-    }
-    for piece in &mut pieces {
-        piece.points.sort_by(|a, b| by_depth(a, b));
-    }
-    pieces.retain(|piece| !piece.points.is_empty());
-    pieces.sort_by(|a, b| by_depth(&a.points[0], &b.points[0]));
-    let mut patches: Vec<Patch<N, D>> = Vec::new();
-    for piece in pieces {
-        match patches.iter_mut().find(|patch| are_level(patch, &piece, merging.tolerance)) {
-            Some(patch) => patch.points.extend(piece.points),
-            None => patches.push(piece),
-        }
-    }
-    patches.retain(|patch| patch.points[0].raw.distance <= merging.request.prediction);
-    let first = |patch: &Patch<N, D>| patch.points.iter().map(|point| point.parts).min();
-    patches.sort_by_key(first);
-    let mut heirs = Heirs::of(merging.old, &patches);
-    for (index, patch) in patches.iter_mut().enumerate() {
-        reduce_patch(patch, heirs.of_patch(index), merging, ids);
-    }
-    patches
-}
-
-/// Numbers the only point of all, if it is near enough.
-fn keep_alone<N: Real, const D: usize>(
-    point: &mut PatchPoint<N, D>,
-    merging: &Merging<'_, N, D>,
+    patches: &mut Vec<Patch<N, D>>,
     ids: &mut PairIds,
 ) {
-    if point.raw.distance <= merging.request.prediction {
-        let mut old = merging.old.iter().flat_map(|patch| &patch.points);
-        let same = old.find(|old| old.name() == point.name());
-        point.raw.id = same.map_or_else(|| ids.next(), |old| old.raw.id);
+    let kept = merging.kept(patches);
+    patches.clear();
+    if let [piece] = merging.pieces
+        && piece.points.len() == 1
+    {
+        return merging.push_alone(piece, (&kept, patches), ids);
+    }
+    let layout = Layout::of(merging);
+    for group in &layout.groups {
+        let members = merging.members(group, &layout, &kept);
+        let lead = &merging.pieces[group.lead];
+        patches.push(reduced(lead.normal, members, merging, ids));
     }
 }
 
-/// Deepest first, then in the order of the parts.
+impl<N: Real, const D: usize> Merging<'_, N, D> {
+    /// Which points have the numbers of old ones: each old number goes to one point on its features,
+    /// the nearest, the first of equals.
+    fn kept(&self, old: &[Patch<N, D>]) -> Kept {
+        let mut kept = Kept::from_elem(None, self.points.len());
+        for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
+            let Ok(at) = self.pieces.binary_search_by(|piece| piece.parts.cmp(parts)) else {
+                continue;
+            };
+            let is_heir = |&index: &usize| {
+                let new = &self.points[index];
+                kept[index].is_none()
+                    && (new.feature1, new.feature2) == (raw.feature1, raw.feature2)
+            };
+            let arm = |index: usize| (self.points[index].point1 - raw.point1).norm_squared();
+            let heirs = self.pieces[at].points.clone().filter(is_heir);
+            let heir = heirs.reduce(|best, next| if arm(next) < arm(best) { next } else { best });
+            if let Some(heir) = heir {
+                kept[heir] = Some(raw.id);
+            }
+        }
+        kept
+    }
+
+    /// The only point of all is a patch, if it is near enough.
+    fn push_alone(
+        &self,
+        piece: &Piece<N, D>,
+        (kept, patches): (&Kept, &mut Vec<Patch<N, D>>),
+        ids: &mut PairIds,
+    ) {
+        let only = piece.points.start;
+        let mut raw = self.points[only];
+        if raw.distance <= self.request.prediction {
+            raw.id = kept[only].unwrap_or_else(|| ids.next());
+            let mut points = SmallVec::new();
+            points.push(PatchPoint { raw, parts: piece.parts });
+            patches.push(Patch { normal: piece.normal, points });
+        }
+    }
+
+    /// The index of the deepest point of a piece, by the order of [`by_depth`].
+    fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
+        let deeper = |best: usize, next: usize| {
+            if by_depth(&self.points[next], &self.points[best]).is_lt() { next } else { best }
+        };
+        piece.points.clone().reduce(deeper)
+    }
+}
+
+/// The pieces of one patch.
+struct Group {
+    /// The piece whose point is the deepest, and that point.
+    lead: usize,
+    deepest: usize,
+    /// The first of the parts.
+    first: [u32; 2],
+}
+
+/// Which pieces make which patches.
+struct Layout {
+    /// In the order of their first parts.
+    groups: SmallVec<[Group; 8]>,
+    /// Pieces and the leads of their groups, the deepest first.
+    order: SmallVec<[(usize, usize); 16]>,
+}
+
+impl Layout {
+    fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
+        let pieces = merging.pieces;
+        let mut order: SmallVec<[(usize, usize); 16]> = SmallVec::new();
+        for (index, piece) in pieces.iter().enumerate() {
+            order.extend(merging.deepest_of(piece).map(|deepest| (index, deepest)));
+        }
+        order.sort_by(|a, b| {
+            let by_value = by_depth(&merging.points[a.1], &merging.points[b.1]);
+            by_value.then_with(|| pieces[a.0].parts.cmp(&pieces[b.0].parts))
+        });
+        let mut groups: SmallVec<[Group; 8]> = SmallVec::new();
+        for (index, found) in &mut order {
+            let (piece, deepest) = (&pieces[*index], *found);
+            let is_level = |group: &&mut Group| {
+                let leads = [group.deepest, deepest].map(|point| &merging.points[point]);
+                let normals = [&pieces[group.lead].normal, &piece.normal];
+                are_level(normals, leads, merging.tolerance)
+            };
+            *found = match groups.iter_mut().find(is_level) {
+                Some(group) => {
+                    group.first = group.first.min(piece.parts);
+                    group.lead
+                }
+                None => {
+                    groups.push(Group { lead: *index, deepest, first: piece.parts });
+                    *index
+                }
+            };
+        }
+        groups.retain(|group| merging.points[group.deepest].distance <= merging.request.prediction);
+        groups.sort_by_key(|group| group.first);
+        Self { groups, order }
+    }
+}
+
+/// Deepest first, then in the order of the features.
 fn by_depth<N: Real, const D: usize>(
-    a: &PatchPoint<N, D>,
-    b: &PatchPoint<N, D>,
+    a: &RawPoint<N, D>,
+    b: &RawPoint<N, D>,
 ) -> core::cmp::Ordering {
-    let by_value = a.raw.distance.as_f64().total_cmp(&b.raw.distance.as_f64());
-    by_value.then_with(|| a.name().cmp(&b.name()))
+    let by_value = a.distance.as_f64().total_cmp(&b.distance.as_f64());
+    by_value.then_with(|| (a.feature1, a.feature2).cmp(&(b.feature1, b.feature2)))
 }
 
 /// Two manifolds, of which the first is the deeper, have one normal and lie in one plane: that of
 /// the points of the first shape or that of those of the second.
-fn are_level<N: Real, const D: usize>(a: &Patch<N, D>, b: &Patch<N, D>, tolerance: N) -> bool {
+fn are_level<N: Real, const D: usize>(
+    normals: [&Vector<N, D>; 2],
+    [lead1, lead2]: [&RawPoint<N, D>; 2],
+    tolerance: N,
+) -> bool {
     let same = N::lit(SAME);
-    if (a.normal - b.normal).norm() > same {
+    if (normals[0] - normals[1]).norm_squared() > same * same {
         return false;
     }
-    let (lead1, lead2) = (&a.points[0].raw, &b.points[0].raw);
     let arm = lead2.point1 - lead1.point1;
     let room = same * arm.norm() + N::TWO * tolerance;
-    let rise1 = a.normal.dot(&arm);
+    let rise1 = normals[0].dot(&arm);
     let rise2 = rise1 + lead2.distance - lead1.distance;
     min(rise1.abs(), rise2.abs()) <= room
-}
-
-/// Which points have the numbers of old ones.
-struct Heirs {
-    kept: Vec<Vec<Option<u32>>>,
-}
-
-impl Heirs {
-    /// Each old number goes to one point on its features: the nearest, the first of equals.
-    fn of<N: Real, const D: usize>(old: &[Patch<N, D>], new: &[Patch<N, D>]) -> Self {
-        let mut kept: Vec<Vec<Option<u32>>> =
-            new.iter().map(|patch| vec![None; patch.points.len()]).collect();
-        if old.iter().all(|patch| patch.points.is_empty()) {
-            return Self { kept };
-        }
-        let count = new.iter().map(|patch| patch.points.len()).sum();
-        let mut names: Vec<(Name, usize, usize)> = Vec::with_capacity(count);
-        for (at, patch) in new.iter().enumerate() {
-            names.extend(patch.points.iter().enumerate().map(|(i, point)| (point.name(), at, i)));
-        }
-        names.sort_unstable();
-        for point in old.iter().flat_map(|patch| &patch.points) {
-            let name = point.name();
-            let start = names.partition_point(|(other, ..)| *other < name);
-            let same = names[start..].iter().take_while(|(other, ..)| *other == name);
-            let free = same.filter(|&&(_, at, i)| kept[at][i].is_none());
-            let arm = |&(_, at, i): &(Name, usize, usize)| {
-                (new[at].points[i].raw.point1 - point.raw.point1).norm_squared()
-            };
-            let heir = free.reduce(|best, next| if arm(next) < arm(best) { next } else { best });
-            if let Some(&(_, at, i)) = heir {
-                kept[at][i] = Some(point.raw.id);
-            }
-        }
-        Self { kept }
-    }
-
-    fn of_patch(&mut self, index: usize) -> Vec<Option<u32>> {
-        core::mem::take(&mut self.kept[index])
-    }
 }
 
 /// A point of a patch, seen along its normal.
@@ -170,88 +219,101 @@ struct Member<N: Real, const D: usize> {
     parts: [u32; 2],
 }
 
-/// Leaves of a patch, whose first point is the deepest, at most as many points as are asked for:
-/// the deepest, and of the outline those that span most.
-fn reduce_patch<N: Space<D>, const D: usize>(
-    patch: &mut Patch<N, D>,
-    kept: Vec<Option<u32>>,
+/// The points of a patch, or their indices.
+type Members<N, const D: usize> = SmallVec<[Member<N, D>; 16]>;
+type Indices = SmallVec<[usize; 16]>;
+
+impl<N: Space<D>, const D: usize> Merging<'_, N, D> {
+    /// The points of a group that the request asks for, the deepest first; that one always, also
+    /// where its coordinates are no numbers.
+    fn members(&self, group: &Group, layout: &Layout, kept: &Kept) -> Members<N, D> {
+        let lead = &self.pieces[group.lead];
+        let tangents = (N::tables().tangents)(&lead.normal);
+        let origin: Point<N, D> = self.points[group.deepest].point1;
+        let ManifoldRequest { prediction, sine, .. } = *self.request;
+        let mut members = Members::new();
+        let mut push = |index: usize, parts: [u32; 2]| {
+            let (raw, is_first) = (&self.points[index], index == group.deepest);
+            let arm = if is_first { Vector::<N, D>::zeros() } else { raw.point1 - origin };
+            let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+            let reach = if sine > N::ZERO { sine * flat.norm() } else { N::ZERO };
+            if is_first || raw.distance <= prediction + reach {
+                let (point1, features) = (raw.point1, [raw.feature1, raw.feature2]);
+                let (distance, kept_id) = (raw.distance, kept[index]);
+                let candidate = Candidate { point1, distance, flat, features, kept_id };
+                members.push(Member { candidate, parts });
+            }
+        };
+        push(group.deepest, lead.parts);
+        for (piece, _) in layout.order.iter().filter(|(_, lead)| *lead == group.lead) {
+            let piece = &self.pieces[*piece];
+            let rest = piece.points.clone().filter(|index| *index != group.deepest);
+            rest.for_each(|index| push(index, piece.parts));
+        }
+        members
+    }
+}
+
+/// A patch of at most as many points as are asked for: the deepest, which comes first, and of the
+/// outline those that span most.
+fn reduced<N: Space<D>, const D: usize>(
+    normal: Vector<N, D>,
+    members: Members<N, D>,
     merging: &Merging<'_, N, D>,
     ids: &mut PairIds,
-) {
-    let tangents = (N::tables().tangents)(&patch.normal);
-    let members = members(patch, kept, merging, &tangents);
-    let lowest = patch.points[0].raw.distance;
-    let members = outline(members, lowest + merging.tolerance, merging.tolerance);
-    let mut candidates: Vec<Candidate<N, D>> = members.iter().map(|m| m.candidate).collect();
-    let deepest = super::deepest(&candidates, lowest + merging.tolerance);
+) -> Patch<N, D> {
+    let (lowest, tolerance) = (members[0].candidate.distance, merging.tolerance);
+    let (members, outline) = outline(members, lowest + tolerance, tolerance);
+    let mut candidates: SmallVec<[Candidate<N, D>; 16]> = SmallVec::new();
+    for &index in &outline {
+        candidates.push(members[index].candidate);
+    }
+    let deepest = super::deepest(&candidates, lowest + tolerance);
     candidates[deepest].distance = lowest;
     // In the plane two points delimit all there is.
-    let is_line = tangents[1] == Vector::<N, D>::zeros();
+    let is_line = (N::tables().tangents)(&normal)[1] == Vector::<N, D>::zeros();
     let most = merging.request.max_points.max(1);
     let limit = if is_line { most.min(2) } else { most };
-    let chosen = reduce::chosen(&candidates, deepest, limit, merging.tolerance);
-    patch.points.clear();
+    let chosen = reduce::chosen(&candidates, deepest, limit, tolerance);
+    let mut points: SmallVec<[PatchPoint<N, D>; 4]> = SmallVec::new();
     for &index in &chosen {
         let candidate = &candidates[index];
         let id = candidate.kept_id.unwrap_or_else(|| ids.next());
-        patch.points.push(PatchPoint { raw: candidate.named(id), parts: members[index].parts });
+        let parts = members[outline[index]].parts;
+        points.push(PatchPoint { raw: candidate.named(id), parts });
     }
-    patch.points.sort_by_key(|point| point.raw.id);
+    points.sort_by_key(|point| point.raw.id);
+    Patch { normal, points }
 }
 
-/// The points of a patch that the request asks for; the first, which is the deepest, always, also where
-/// its coordinates are no numbers.
-fn members<N: Real, const D: usize>(
-    patch: &Patch<N, D>,
-    kept: Vec<Option<u32>>,
-    merging: &Merging<'_, N, D>,
-    tangents: &[Vector<N, D>; 2],
-) -> Vec<Member<N, D>> {
-    let origin: Point<N, D> = patch.points[0].raw.point1;
-    let ManifoldRequest { prediction, sine, .. } = *merging.request;
-    let member = |(at, (point, kept_id)): (usize, (&PatchPoint<N, D>, Option<u32>))| {
-        let raw = &point.raw;
-        let is_first = at == 0;
-        let arm = if is_first { Vector::<N, D>::zeros() } else { raw.point1 - origin };
-        let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
-        let (point1, features) = (raw.point1, [raw.feature1, raw.feature2]);
-        let asked = is_first || raw.distance <= prediction + sine * flat.norm();
-        let candidate = Candidate { point1, distance: raw.distance, flat, features, kept_id };
-        asked.then_some(Member { candidate, parts: point.parts })
-    };
-    patch.points.iter().zip(kept).enumerate().filter_map(member).collect()
-}
-
-/// The points on the outline of all, each once; and the deepest, if no point of the outline is at
-/// most `level`.
+/// The points, each place once; and the indices of those on the outline of all, and of the deepest, if
+/// no point of the outline is at most `level`.
 fn outline<N: Real, const D: usize>(
-    members: Vec<Member<N, D>>,
+    members: Members<N, D>,
     level: N,
     tolerance: N,
-) -> Vec<Member<N, D>> {
+) -> (Members<N, D>, Indices) {
     let members = without_copies(members, tolerance);
-    let forth = chain(members.iter());
-    let back = chain(members.iter().rev());
+    let mut outline = chain(&members, 0..members.len());
+    let back = chain(&members, (0..members.len()).rev());
     // Each chain ends where the other starts.
-    let ends = forth.len().saturating_sub(1).max(1);
-    let mut outline: Vec<Member<N, D>> = forth[..ends].to_vec();
+    outline.truncate(outline.len().saturating_sub(1).max(1));
     outline.extend_from_slice(&back[..back.len() - 1]);
-    thin(&mut outline, tolerance);
-    if !outline.iter().any(|member| member.candidate.distance <= level) {
-        let depth = |member: &Member<N, D>| member.candidate.distance;
-        let deeper =
-            |best: Member<N, D>, next| if depth(&next) < depth(&best) { next } else { best };
-        outline.extend(members.into_iter().reduce(deeper));
+    thin(&members, &mut outline, tolerance);
+    let depth = |index: usize| members[index].candidate.distance;
+    if !outline.iter().any(|&index| depth(index) <= level) {
+        let deeper = |best, next| if depth(next) < depth(best) { next } else { best };
+        outline.extend((0..members.len()).reduce(deeper));
     }
-    outline
+    (members, outline)
 }
 
 /// The points sorted along the first tangent, then along the second; of points at one place, which
 /// the parts around it all have, one: one with a number, the deepest, or that of the first parts.
 fn without_copies<N: Real, const D: usize>(
-    mut members: Vec<Member<N, D>>,
+    mut members: Members<N, D>,
     tolerance: N,
-) -> Vec<Member<N, D>> {
+) -> Members<N, D> {
     let near = N::lit(4.0) * tolerance;
     let rank = |member: &Member<N, D>| (member.candidate.kept_id.is_none(), member.parts);
     let is_better = |new: &Member<N, D>, old: &Member<N, D>| {
@@ -259,24 +321,31 @@ fn without_copies<N: Real, const D: usize>(
         lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     };
     members.sort_by(by_place);
-    let mut kept: Vec<Member<N, D>> = Vec::new();
-    for member in members {
+    // The first ones are those kept.
+    let (mut count, mut is_exchanged) = (0, false);
+    for next in 0..members.len() {
+        let member = members[next];
         let flat = member.candidate.flat;
         // Sorted along the first tangent: only the last few can be at the same place.
-        let in_reach =
-            |&(_, old): &(usize, &Member<N, D>)| flat.x - old.candidate.flat.x <= N::TWO * near;
-        let last = kept.iter().enumerate().rev().take_while(in_reach);
-        let mut same = last.filter(|(_, old)| (old.candidate.flat - flat).norm() <= near);
-        let beside = same.next().map(|(at, _)| at);
-        match beside {
-            Some(at) if is_better(&member, &kept[at]) => kept[at] = member,
+        let in_reach = |at: &usize| flat.x - members[*at].candidate.flat.x <= N::TWO * near;
+        let mut last = (0..count).rev().take_while(in_reach);
+        match last.find(|&at| (members[at].candidate.flat - flat).norm_squared() <= near * near) {
+            Some(at) if is_better(&member, &members[at]) => {
+                (members[at], is_exchanged) = (member, true);
+            }
             Some(_) => {}
-            None => kept.push(member),
+            None => {
+                members[count] = member;
+                count += 1;
+            }
         }
     }
-    // An exchange may have taken a point past its neighbours.
-    kept.sort_by(by_place);
-    kept
+    members.truncate(count);
+    if is_exchanged {
+        // An exchange may have taken a point past its neighbours.
+        members.sort_by(by_place);
+    }
+    members
 }
 
 fn by_place<N: Real, const D: usize>(a: &Member<N, D>, b: &Member<N, D>) -> core::cmp::Ordering {
@@ -287,39 +356,42 @@ fn by_place<N: Real, const D: usize>(a: &Member<N, D>, b: &Member<N, D>) -> core
 /// One side of the hull of sorted points, from the first to the last: every corner turns left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
-fn chain<'a, N: Real, const D: usize>(
-    members: impl Iterator<Item = &'a Member<N, D>>,
-) -> Vec<Member<N, D>> {
-    let mut chain: Vec<Member<N, D>> = Vec::new();
-    for member in members {
-        while let [.., before, last] = &chain[..] {
+fn chain<N: Real, const D: usize>(
+    members: &[Member<N, D>],
+    order: impl Iterator<Item = usize>,
+) -> Indices {
+    let mut chain = Indices::new();
+    for member in order {
+        while let [.., before, last] = chain[..] {
             // Positive is left of the whole: inside.
-            if beside(before, last, member) < N::ZERO {
+            if beside(members, [before, last, member]) < N::ZERO {
                 break;
             }
             chain.pop();
         }
-        chain.push(*member);
+        chain.push(member);
     }
     chain
 }
 
-/// Twice the area of a triangle; positive if `at` lies left of the way from one end to the other.
-fn beside<N: Real, const D: usize>(from: &Member<N, D>, at: &Member<N, D>, to: &Member<N, D>) -> N {
-    let origin = from.candidate.flat;
-    cross2(&(to.candidate.flat - origin), &(at.candidate.flat - origin))
+/// Twice the area of a triangle; positive if the middle one lies left of the way from the first to the
+/// last.
+#[inline]
+fn beside<N: Real, const D: usize>(members: &[Member<N, D>], corners: [usize; 3]) -> N {
+    let [from, at, to] = corners.map(|corner| members[corner].candidate.flat);
+    cross2(&(to - from), &(at - from))
 }
 
 /// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
 /// next to them.
-fn thin<N: Real, const D: usize>(outline: &mut Vec<Member<N, D>>, tolerance: N) {
+fn thin<N: Real, const D: usize>(members: &[Member<N, D>], outline: &mut Indices, tolerance: N) {
     let mut at = 0;
     while outline.len() > 2 && at < outline.len() {
-        let before = &outline[if at == 0 { outline.len() - 1 } else { at - 1 }];
-        let after = &outline[if at + 1 == outline.len() { 0 } else { at + 1 }];
-        let length = (after.candidate.flat - before.candidate.flat).norm();
-        let is_straight = beside(before, &outline[at], after).abs() <= tolerance * length;
-        if is_straight {
+        let before = outline[if at == 0 { outline.len() - 1 } else { at - 1 }];
+        let after = outline[if at + 1 == outline.len() { 0 } else { at + 1 }];
+        let length = (members[after].candidate.flat - members[before].candidate.flat).norm();
+        let area = beside(members, [before, outline[at], after]);
+        if area.abs() <= tolerance * length {
             outline.remove(at);
         } else {
             at += 1;

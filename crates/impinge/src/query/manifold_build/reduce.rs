@@ -58,9 +58,10 @@ impl<N: Real, const D: usize> Outline<'_, N, D> {
     /// rounding errors.
     fn best_addition(&self, order: &[usize], tolerance: N) -> Option<(usize, usize)> {
         let (mut best, mut best_gain) = (None, N::ZERO);
+        let sides = self.sides(tolerance);
         for &index in order.iter().filter(|index| !self.corners.contains(index)) {
             let candidate = &self.candidates[index];
-            let (gain, place) = self.gain(&candidate.flat, tolerance);
+            let (gain, place) = self.gain(&candidate.flat, &sides, tolerance);
             let is_new = candidate.kept_id.is_none();
             let gain = if is_new { gain * N::lit(NEW_POINT_WEIGHT) } else { gain };
             if gain > best_gain * N::lit(ALMOST) {
@@ -70,24 +71,41 @@ impl<N: Real, const D: usize> Outline<'_, N, D> {
         best
     }
 
-    /// What a place adds: its distance from a single point, else the largest area (doubled) that it
-    /// spans with a side of the outline from outside.
-    fn gain(&self, flat: &Vector<N, 2>, tolerance: N) -> (N, usize) {
+    /// The sides of the outline; a point has none.
+    fn sides(&self, tolerance: N) -> SmallVec<[Side<N>; 8]> {
+        let mut sides = SmallVec::new();
         let corners = self.corners.as_slice();
         let place = |at: usize| self.candidates[corners[at]].flat;
-        if corners.len() == 1 {
-            let distance = (flat - place(0)).norm();
+        for at in 0..if corners.len() > 1 { corners.len() } else { 0 } {
+            let from = place(at);
+            let along = place(if at + 1 < corners.len() { at + 1 } else { 0 }) - from;
+            sides.push(Side { from, along, least: tolerance * along.norm() });
+        }
+        sides
+    }
+
+    /// What a place adds: its distance from a single point, else the largest area (doubled) that it
+    /// spans with a side of the outline from outside.
+    fn gain(&self, flat: &Vector<N, 2>, sides: &[Side<N>], tolerance: N) -> (N, usize) {
+        if sides.is_empty() {
+            let distance = (flat - self.candidates[self.corners[0]].flat).norm();
             return (if distance > tolerance { distance } else { N::ZERO }, 1);
         }
         let (mut gain, mut best) = (N::ZERO, 0);
-        for at in 0..corners.len() {
-            let from = place(at);
-            let side = place(if at + 1 < corners.len() { at + 1 } else { 0 }) - from;
-            let area = -cross2(&side, &(flat - from));
-            if area > gain && area > tolerance * side.norm() {
+        for (at, side) in sides.iter().enumerate() {
+            let area = -cross2(&side.along, &(flat - side.from));
+            if area > gain && area > side.least {
                 (gain, best) = (area, at + 1);
             }
         }
         (gain, best)
     }
+}
+
+/// A side of the outline.
+struct Side<N: Real> {
+    from: Vector<N, 2>,
+    along: Vector<N, 2>,
+    /// Areas up to this are rounding errors.
+    least: N,
 }

@@ -1,7 +1,7 @@
 //! What the nearest points of two convex solids lie on.
 
 use super::facet::{Facet, Which};
-use super::frame::Frame;
+use super::frame::{Frame, rounding};
 use super::{ManifoldRequest, Pair, at_witness, ball, face, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Real, Vector};
@@ -70,10 +70,31 @@ fn feature<N: Real, const D: usize>(
     is_second: bool,
 ) -> FeatureId {
     match known(pair, separation) {
-        Some(touched) if is_second => touched,
-        Some(_) => FeatureId::Face(0),
-        None => shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second),
+        Some(touched) if is_second => return touched,
+        Some(_) => return FeatureId::Face(0),
+        None => {}
     }
+    let seam = if is_second { None } else { on_seam(pair, separation) };
+    seam.unwrap_or_else(|| {
+        shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second)
+    })
+}
+
+/// The side or corner of a triangle, the first solid, that a solid with flat faces touches: the points
+/// of these are exact, so that the place tells.
+fn on_seam<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+) -> Option<FeatureId> {
+    let Pair {
+        first: Kind::Triangle(triangle), second: Kind::Cuboid(_) | Kind::Polytope(_), ..
+    } = pair
+    else {
+        return None;
+    };
+    let noise = rounding(pair);
+    let part = triangle.part_at(&separation.point1, &separation.normal, noise);
+    part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
 /// What a ball, the first solid, touches, where that is known at once.

@@ -21,10 +21,13 @@ pub(super) mod ball_tapered;
 mod ball_triangle;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
+mod cuboid_cylinder;
+mod cylinder_cylinder;
 mod flat_core;
 mod general;
 mod hulls;
 mod outline;
+mod outline_lanes;
 mod overlap;
 mod plane_any;
 mod polygon_polygon;
@@ -37,6 +40,11 @@ mod table2;
 mod table3;
 #[cfg(test)]
 mod tests;
+mod triangle_axes;
+mod triangle_cuboid;
+mod triangle_polytope;
+#[cfg(test)]
+mod triangle_tests;
 mod world;
 
 use crate::convex::Separation;
@@ -45,12 +53,15 @@ use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use overlap::certainly_overlap;
-pub(crate) use table2::separation as separation_in_plane;
-pub(crate) use table3::separation as separation_in_space;
+pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
+pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
 pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
+
+/// Whether two convex solids are farther apart than a limit of less than zero.
+pub(crate) type PartedFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> bool;
 
 /// One algorithm for each pair of kinds, by row and column in the order of [`ShapeKind`].
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];

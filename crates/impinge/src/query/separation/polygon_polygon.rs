@@ -7,6 +7,7 @@
 //! best normal.
 
 use super::outline::{Outline, Reach};
+use super::outline_lanes::best_side;
 use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
@@ -59,6 +60,14 @@ fn axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>, normal: Vector<N,
 
 /// The direction of the largest gap among the normals of all sides and the tips.
 fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
+    match best_side(outline1, outline2) {
+        Some((gap, normal)) => Axis { gap, normal },
+        None => best_of_all(outline1, outline2),
+    }
+}
+
+/// [`best_axis`] of any outlines.
+fn best_of_all<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
     let (reach1, reach2) = (Reach::of(outline1), Reach::of(outline2));
     let mut best: Option<Axis<N>> = None;
     let mut attempt = |normal: Vector<N, 2>| {
@@ -244,6 +253,32 @@ mod tests {
         let inside = of(&ball, &diamond, 0.0, 0.0);
         let expected = -0.5 - 2.0 / 5.0_f64.sqrt();
         assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
+    }
+
+    #[test]
+    fn sides_eight_at_a_time_are_the_same() {
+        use crate::query::separation::hulls::tests::Random;
+        let random = &mut Random(7);
+        let mut in_lanes = 0;
+        for count in (3..9).cycle().take(600) {
+            let outlines = [(); 2].map(|()| {
+                let mut place = || Point::from(random.vector::<f64>().xy());
+                let points: Vec<_> = (0..count).map(|_| place()).collect();
+                let at = random.vector::<f64>().xy() * 2.0;
+                let polygon = ConvexPolygon::try_from_points(&points).ok()?;
+                let Kind::Polytope(polygon) = polygon.geometry().0 else { return None };
+                let placed = Pose::from_translation(at);
+                let kind = Kind::Polytope(polygon);
+                let pair = Pair { first: kind, second: kind, pose12: placed };
+                Some(Outline::of(&pair, &kind).placed(&placed))
+            });
+            let [Some(outline1), Some(outline2)] = outlines else { continue };
+            let Some(found) = best_side(&outline1, &outline2) else { continue };
+            let axis = best_of_all(&outline1, &outline2);
+            assert_eq!(found, (axis.gap, axis.normal), "the best axis");
+            in_lanes += 1;
+        }
+        assert!(in_lanes > 50, "{in_lanes} pairs have neither tips nor too many vertices");
     }
 
     #[test]

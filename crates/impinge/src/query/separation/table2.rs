@@ -52,3 +52,8 @@ impl<N: Real> Plane<N> {
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     look_up(&Plane::<N>::TABLE, pair)(pair, limit)
 }
+
+/// Whether two convex solids of the plane are farther apart than a limit of less than zero.
+pub(crate) fn parted<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> bool {
+    separation(pair, limit).is_none_or(|found| found.distance > limit)
+}

@@ -2,12 +2,14 @@
 
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
-    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, flipped, general,
-    hulls, look_up, plane_any, rounded, segment_segment,
+    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cuboid_cylinder,
+    cylinder_cylinder, flipped, general, hulls, look_up, plane_any, rounded, segment_segment,
+    triangle_cuboid, triangle_polytope,
 };
 use crate::convex::Separation;
 use crate::math::Real;
 use crate::query::{Pair, composite};
+use crate::shape::Kind;
 
 /// The table of space, for one scalar.
 struct Space<N>(core::marker::PhantomData<N>);
@@ -23,12 +25,16 @@ impl<N: Real> Space<N> {
         let bo: Algorithm<N, 3> = ball_cone::separation;
         let ss: Algorithm<N, 3> = segment_segment::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
+        let tc: Algorithm<N, 3> = triangle_cuboid::separation;
+        let th: Algorithm<N, 3> = triangle_polytope::separation;
         let be: Algorithm<N, 3> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 3> = ball_tapered::separation;
         let rr: Algorithm<N, 3> = rounded::separation;
         let gg: Algorithm<N, 3> = general::separation;
         let ff: Algorithm<N, 3> = general::of_flat_cores;
         let hh: Algorithm<N, 3> = hulls::separation;
+        let cy: Algorithm<N, 3> = cuboid_cylinder::separation;
+        let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -39,10 +45,10 @@ impl<N: Real> Space<N> {
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
             [__, ss, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, ss, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, ff, ff, ff, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, ff, tc, th, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, cy, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, gg, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, gg, gg, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, yy, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],
@@ -57,4 +63,19 @@ impl<N: Real> Space<N> {
 /// The separation of any pair in space.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     look_up(&Space::<N>::TABLE, pair)(pair, limit)
+}
+
+/// Whether two convex solids of space are farther apart than a limit of less than zero.
+pub(crate) fn parted<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> bool {
+    let Pair { first, second, pose12 } = pair;
+    let known = match (first, second) {
+        (Kind::Triangle(triangle), Kind::Cuboid(cuboid)) => {
+            triangle_cuboid::is_beyond(triangle, cuboid, pose12, limit)
+        }
+        (Kind::Triangle(triangle), Kind::Polytope(hull)) => {
+            triangle_polytope::is_beyond(triangle, hull, pose12, limit)
+        }
+        _ => None,
+    };
+    known.unwrap_or_else(|| separation(pair, limit).is_none_or(|found| found.distance > limit))
 }

@@ -6,7 +6,7 @@ use super::super::between::Between;
 use super::super::bounds::{aabb_of, enclosing};
 use super::near::Probe;
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::math::{Point, Pose, Real, Space, min};
+use crate::math::{Point, Pose, Real, Space, max, min};
 use crate::shape::CompositeShape;
 
 /// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
@@ -21,27 +21,77 @@ pub(super) struct Nearby<N: Real> {
     pub(super) clearance: N,
 }
 
+/// More parts than this are not kept.
+const MOST_KEPT: usize = 64;
+/// The room that is searched around a box to find parts for later, as a share of its half extents.
+const ROOM: f64 = 0.125;
+
+/// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
+/// stays in that.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Around<N: Real, const D: usize> {
+    within: Option<Aabb<N, D>>,
+    /// In order.
+    parts: SmallVec<[u32; 8]>,
+    /// There are too many to keep.
+    is_crowded: bool,
+}
+
+impl<N: Space<D>, const D: usize> Around<N, D> {
+    /// The parts among which are all that overlap a box; `None` if they are not kept.
+    fn parts(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) -> Option<&[u32]> {
+        let is_known = self.within.as_ref().is_some_and(|within| within.contains(aabb));
+        if !is_known {
+            if !aabb.is_bounded() {
+                return None;
+            }
+            let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
+            let roomy = aabb.loosened(most * N::lit(ROOM));
+            self.parts.clear();
+            composite.search().overlapping(&roomy, &mut |part| self.parts.push(part));
+            self.is_crowded = self.parts.len() > MOST_KEPT;
+            if self.is_crowded {
+                self.parts = SmallVec::new();
+            }
+            self.parts.sort_unstable();
+            self.within = Some(roomy);
+        }
+        (!self.is_crowded).then_some(&self.parts)
+    }
+}
+
 /// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
 /// candidates those that no plane tells to be farther.
+///
+/// What is kept `around` must be of the same composite.
 pub(super) fn nearby<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
     reach: N,
+    around: Option<&mut Around<N, D>>,
 ) -> Nearby<N> {
-    let [None, Some(parts2)] = between.composites() else {
+    let ([None, Some(parts2)], Some(probe)) = (between.composites(), Probe::new(between, reach))
+    else {
         return Nearby { parts: candidates(between, is_self, reach), clearance: N::ZERO };
     };
     let (mut parts, aabb) = (PartPairs::new(), search_box(between, reach));
-    parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
-    let mut clearance = N::ZERO;
-    if let Some(probe) = Probe::new(between, reach) {
-        clearance = depth_in(&aabb, probe.center());
-        parts.retain(|[_, part2]| {
-            let bound = probe.bound(parts2, *part2);
+    let mut clearance = depth_in(&aabb, probe.center());
+    if let Some(kept) = around.and_then(|around| around.parts(parts2, &aabb)) {
+        for &part2 in kept {
+            let Some(bound) = probe.bound(parts2, part2, Some(&aabb)) else { continue };
             clearance = min(clearance, bound.from_middle);
-            !bound.is_beyond
-        });
+            if !bound.is_beyond {
+                parts.push([0, part2]);
+            }
+        }
+        return Nearby { parts, clearance };
     }
+    parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
+    parts.retain(|[_, part2]| {
+        let Some(bound) = probe.bound(parts2, *part2, None) else { return false };
+        clearance = min(clearance, bound.from_middle);
+        !bound.is_beyond
+    });
     parts.sort_unstable();
     Nearby { parts, clearance }
 }

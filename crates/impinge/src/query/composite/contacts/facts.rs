@@ -3,8 +3,10 @@
 use super::judge::{Case, Verdict, faces, judge};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector};
-use crate::query::manifold_build::{Along, Patch, build_along, build_between};
+use crate::math::{Point, Real, Space, Vector, min};
+use crate::query::manifold_build::{
+    Along, Piece, Points, build_along, build_between, build_on_face,
+};
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{FeatureId, Kind};
 
@@ -24,12 +26,15 @@ pub(super) enum Standing {
 /// Two parts that are within reach of each other.
 #[derive(Clone, Debug)]
 pub(super) struct Finding<N: Real, const D: usize> {
-    pub(super) parts: [u32; 2],
-    /// How far the two are apart, each taken alone.
+    /// How far the two are apart, each taken alone, and along which normal, from the first shape to
+    /// the second in the frame of the first; zero where several say so.
     pub(super) distance: N,
+    pub(super) normal: Vector<N, D>,
     /// What they say of the contact of the shapes, in the frame of the first. Without points where
     /// that is no contact of the shapes: few are asked for it, see [`nearest_points`].
-    pub(super) patch: Patch<N, D>,
+    pub(super) piece: Piece<N, D>,
+    /// The least distance of the piece's points.
+    pub(super) lowest: N,
     pub(super) standing: Standing,
     /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
     /// if it touches otherwise.
@@ -38,17 +43,46 @@ pub(super) struct Finding<N: Real, const D: usize> {
     pub(super) tolerance: N,
 }
 
+/// What is found, and where manifolds are made.
+#[derive(Default)]
+pub(super) struct Notes<N: Real, const D: usize> {
+    /// The points of all pieces.
+    pub(super) points: Points<N, D>,
+    raw: RawManifold<N, D>,
+}
+
+impl<N: Real, const D: usize> Notes<N, D> {
+    /// An empty manifold to be made.
+    fn blank(&mut self) -> &mut RawManifold<N, D> {
+        self.raw.points.clear();
+        &mut self.raw
+    }
+}
+
 impl<N: Real, const D: usize> Finding<N, D> {
-    /// The least distance of its points.
-    pub(super) fn lowest(&self) -> N {
-        let distances = self.patch.points.iter().map(|point| point.raw.distance);
-        distances.fold(N::INFINITY, crate::math::min)
+    pub(super) const fn parts(&self) -> [u32; 2] {
+        self.piece.parts
     }
 
     /// It holds, but was left out when it was found, so that its points are missing.
     pub(super) fn is_owing(&self) -> bool {
-        self.standing != Standing::Left && self.patch.points.is_empty()
+        self.standing != Standing::Left && self.piece.points.is_empty()
     }
+
+    /// What two parts say in the end.
+    pub(super) fn note(&mut self, (piece, lowest): (Piece<N, D>, N)) {
+        (self.piece, self.lowest) = (piece, lowest);
+    }
+}
+
+/// Notes a manifold of two parts: the piece and its least distance.
+fn noted<N: Space<D>, const D: usize>(
+    placed: &PartPair<'_, N, D>,
+    parts: [u32; 2],
+    notes: &mut Notes<N, D>,
+) -> (Piece<N, D>, N) {
+    let lowest = notes.raw.points.iter().fold(N::INFINITY, |low, point| min(low, point.distance));
+    (placed.piece(&notes.raw, parts, &mut notes.points), lowest)
 }
 
 /// Where the solid that meets a surface comes from, where it is not just its middle.
@@ -58,18 +92,18 @@ pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 pub(super) fn finding<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
-    reference: &Reference<N, D>,
-    request: &ManifoldRequest<N>,
+    (reference, request): (&Reference<N, D>, &ManifoldRequest<N>),
+    notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
     let placed = scene.pair(parts);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
-    match placed.centers() {
-        Some(centers) if has_surface => {
-            of_surfaces(scene, &Meeting { placed, parts, centers, reference }, request)
-        }
+    if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
-        _ => plain(&placed, parts, request),
+        return plain(&placed, parts, request, notes);
     }
+    let found = (N::tables().separation)(&placed.pair(), request.prediction)?;
+    let centers = placed.centers()?;
+    of_surfaces(scene, &Meeting { placed, parts, centers, reference, found }, request, notes)
 }
 
 /// Solids side by side: their contacts are those of the whole.
@@ -77,15 +111,16 @@ fn plain<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
+    notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    let mut raw = RawManifold::default();
-    (N::tables().contacts)(&placed.pair(), request, &mut raw);
-    let patch = placed.patch(&raw, parts);
-    let (standing, tolerance) = (Standing::Own, placed.tolerance());
-    let (distance, face) = (N::INFINITY, None);
-    let mut finding = Finding { parts, distance, patch, standing, face, tolerance };
-    finding.distance = finding.lowest();
-    (!finding.patch.points.is_empty()).then_some(finding)
+    (N::tables().contacts)(&placed.pair(), request, notes.blank());
+    if notes.raw.points.is_empty() {
+        return None;
+    }
+    let (piece, lowest) = noted(placed, parts, notes);
+    let (standing, tolerance, face) = (Standing::Own, placed.tolerance(), None);
+    let normal = Vector::<N, D>::zeros();
+    Some(Finding { distance: lowest, normal, piece, lowest, standing, face, tolerance })
 }
 
 /// Two parts, of which one at least belongs to a surface.
@@ -96,6 +131,8 @@ struct Meeting<'a, N: Real, const D: usize> {
     centers: [[Point<N, D>; 2]; 2],
     /// Of the first shape, as seen by the second.
     reference: &'a Reference<N, D>,
+    /// How far apart the two are.
+    found: Separation<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
@@ -140,10 +177,10 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
     request: &ManifoldRequest<N>,
+    notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
     let (placed, parts) = (&meeting.placed, meeting.parts);
-    let pair = placed.pair();
-    let found = (N::tables().separation)(&pair, request.prediction)?;
+    let (pair, found) = (placed.pair(), meeting.found);
     if !found.distance.is_finite_number() {
         return None;
     }
@@ -151,7 +188,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let over = over(&pair, tolerance);
     let verdicts = meeting.verdicts(scene, &found, over);
     let normal = placed.outward(&found.normal);
-    let mut raw = RawManifold::default();
+    let raw = notes.blank();
     let mut standing = match settled(placed, &verdicts, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => Standing::Left,
@@ -159,25 +196,26 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         Settled::Found(normal) => {
             let witness = Separation { normal: placed.inward(&normal), ..found };
             match over.filter(|over| is_certain(*over, &verdicts[1])) {
-                Some(over) => raw = of_ball(&witness, over),
-                None => build_between(&pair, &witness, request, &mut raw),
+                Some(over) => of_ball(&witness, over, raw),
+                None => build_on_face(&pair, &witness, request, raw),
             }
             Standing::Own
         }
         Settled::Forced(normal, standing) => {
             let least = if found.distance > N::ZERO { found.distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&normal), least };
-            build_along(&pair, &along, request, &mut raw);
+            build_along(&pair, &along, request, raw);
             standing
         }
     };
-    if overlooks(&raw, &found, tolerance) {
+    if overlooks(raw, &found, tolerance) {
         standing = Standing::Left;
         raw.points.clear();
     }
-    let patch = placed.patch(&raw, parts);
+    let (piece, lowest) = noted(placed, parts, notes);
     let face = verdicts[1].face().filter(|_| standing != Standing::Left);
-    Some(Finding { parts, distance: found.distance, patch, standing, face, tolerance })
+    let distance = found.distance;
+    Some(Finding { distance, normal, piece, lowest, standing, face, tolerance })
 }
 
 /// The feature of a triangle that a ball is over, where that is certain.
@@ -199,18 +237,12 @@ fn is_certain<N: Real, const D: usize>(over: FeatureId, verdict: &Verdict<N, D>)
 fn of_ball<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     over: FeatureId,
-) -> RawManifold<N, D> {
-    let mut raw = RawManifold { normal: witness.normal, ..RawManifold::default() };
-    let (point1, distance, id) = (witness.point1, witness.distance, raw.ids.next());
-    raw.points.push(RawPoint {
-        point1,
-        distance,
-        feature1: FeatureId::Face(0),
-        feature2: over,
-        id,
-        code: 0,
-    });
-    raw
+    out: &mut RawManifold<N, D>,
+) {
+    let (point1, distance) = (witness.point1, witness.distance);
+    let (feature1, feature2, id) = (FeatureId::Face(0), over, 0);
+    out.normal = witness.normal;
+    out.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
 }
 
 /// What two parts within reach say on their own of how near they are.
@@ -218,13 +250,14 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
-) -> Patch<N, D> {
-    let (placed, mut raw) = (scene.pair(parts), RawManifold::default());
-    let pair = placed.pair();
+    notes: &mut Notes<N, D>,
+) -> (Piece<N, D>, N) {
+    let placed = scene.pair(parts);
+    let (pair, raw) = (placed.pair(), notes.blank());
     if let Some(found) = (N::tables().separation)(&pair, request.prediction) {
-        build_between(&pair, &found, request, &mut raw);
+        build_between(&pair, &found, request, raw);
     }
-    placed.patch(&raw, parts)
+    noted(&placed, parts, notes)
 }
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,

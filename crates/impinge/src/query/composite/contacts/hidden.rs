@@ -64,7 +64,7 @@ fn is_hidden<N: Space<D>, const D: usize>(
     (back, back_normal): (&Finding<N, D>, &Vector<N, D>),
     (front, front_normal): (&Finding<N, D>, &Vector<N, D>),
 ) -> bool {
-    let (part, other) = (back.parts[1], front.parts[1]);
+    let (part, other) = (back.parts()[1], front.parts()[1]);
     // What is farther hides nothing, so that the prediction never changes what overlaps.
     front.distance <= max(back.distance, N::ZERO)
         && scene.are_adjacent(part, other)

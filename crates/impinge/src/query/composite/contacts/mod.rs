@@ -20,7 +20,10 @@ mod resolve;
 mod scene;
 mod view;
 
-use self::facts::{Finding, Reference, Standing};
+use smallvec::SmallVec;
+
+use self::candidates::Around;
+use self::facts::{Finding, Notes, Reference, Standing};
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
 use super::between::Between;
@@ -29,7 +32,7 @@ use super::ray::RayQuestion;
 use crate::bounding_volume::Ray;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
-use crate::query::manifold_build::{Merging, Patch, merge};
+use crate::query::manifold_build::{Merging, Patch, Piece, merge};
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::placed;
 use crate::query::{ManifoldRequest, Pair, PairIds};
@@ -53,9 +56,15 @@ pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     /// the side of the surface that it came from: a solid that was pushed halfway through a surface
     /// with two sides, or jumped there, is still on its old side.
     reference: Reference<N, D>,
+    around: Around<N, D>,
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
+    /// Forgets what was found of shapes that may be others now; the contacts and their names stay.
+    pub(crate) fn forget_shapes(&mut self) {
+        self.around = Around::default();
+    }
+
     /// How many contact points there are.
     pub(crate) fn len(&self) -> usize {
         self.patches.iter().map(|patch| patch.points.len()).sum()
@@ -64,6 +73,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
     /// The two shapes change places.
     pub(crate) fn flip_names(&mut self) {
         self.reference = None;
+        self.forget_shapes();
         for point in self.patches.iter_mut().flat_map(|patch| &mut patch.points) {
             point.parts.reverse();
             core::mem::swap(&mut point.raw.feature1, &mut point.raw.feature2);
@@ -73,7 +83,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
-    /// and features stay keep their numbers.
+    /// and features stay keep their numbers. Other shapes than before must be told of by
+    /// [`Self::forget_shapes`].
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
@@ -81,19 +92,23 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         let of_parts = of_parts(between, request);
-        let nearby = candidates::nearby(between, is_self, of_parts.prediction);
+        let around = Some(&mut self.around);
+        let nearby = candidates::nearby(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
         let way = Way { old: self.reference, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
         let query = Query { between, reference: &reference, request: &of_parts };
-        let findings = query.findings(&nearby.parts);
+        let mut notes = Notes::default();
+        let findings = query.findings(&nearby.parts, &mut notes);
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
         let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
-        let pieces = findings.into_iter().filter(|found| found.standing != Standing::Left);
-        let pieces = pieces.map(|finding| finding.patch).collect();
-        let merging = Merging { request, tolerance, old: &self.patches };
-        self.patches = merge(pieces, &merging, &mut self.ids);
+        let mut pieces: SmallVec<[Piece<N, D>; 8]> = SmallVec::new();
+        for found in findings.into_iter().filter(|found| found.standing != Standing::Left) {
+            pieces.push(found.piece);
+        }
+        let merging = Merging { request, tolerance, pieces: &pieces, points: &notes.points };
+        merge(&merging, &mut self.patches, &mut self.ids);
     }
 }
 
@@ -146,15 +161,20 @@ struct Query<'a, N: Real, const D: usize> {
     request: &'a ManifoldRequest<N>,
 }
 
+type Findings<N, const D: usize> = SmallVec<[Finding<N, D>; 8]>;
+
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
-    fn findings(&self, parts: &[[u32; 2]]) -> Vec<Finding<N, D>> {
+    fn findings(&self, parts: &[[u32; 2]], notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between);
-        let one = |&parts| facts::finding(&scene, parts, self.reference, self.request);
-        let mut findings: Vec<_> = parts.iter().filter_map(one).collect();
-        resolve::resolve(&scene, &mut findings);
+        let mut findings = Findings::new();
+        for &parts in parts {
+            let found = facts::finding(&scene, parts, (self.reference, self.request), notes);
+            findings.extend(found);
+        }
+        resolve::resolve(&scene, &mut findings, notes);
         for finding in findings.iter_mut().filter(|finding| finding.is_owing()) {
-            finding.patch = facts::nearest_points(&scene, finding.parts, self.request);
+            finding.note(facts::nearest_points(&scene, finding.parts(), self.request, notes));
         }
         findings
     }
@@ -226,12 +246,12 @@ fn deepest_within<N: Space<D>, const D: usize>(
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
     let reference = middle_of_first(between);
     let query = Query { between, reference: &reference, request: &request };
-    let nearby = candidates::nearby(between, false, request.prediction);
-    let findings = query.findings(&nearby.parts);
+    let nearby = candidates::nearby(between, false, request.prediction, None);
+    let mut notes = Notes::default();
+    let findings = query.findings(&nearby.parts, &mut notes);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
-    let points = kept.flat_map(|finding| {
-        let normal = finding.patch.normal;
-        finding.patch.points.iter().map(move |point| (normal, point.raw))
+    let points = kept.flat_map(|Finding { piece, .. }| {
+        notes.points[piece.points.clone()].iter().map(|point| (piece.normal, *point))
     });
     let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
     deepest.map(|(normal, point)| {

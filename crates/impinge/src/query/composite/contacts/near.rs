@@ -5,6 +5,7 @@
 //! middle. Any plane gives a lower bound of the distance, so no case needs care but for rounding.
 
 use super::super::between::Between;
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SupportMap};
@@ -52,22 +53,31 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
         &self.center
     }
 
-    /// What is known of a part of a composite; nothing of one that is not given by its corners.
-    pub(super) fn bound(&self, parts: &dyn CompositeShape<N, D>, part: u32) -> Bound<N> {
+    /// What is known of a part of a composite; nothing of one that is not given by its corners. `None`
+    /// if it is found to lie outside a box.
+    pub(super) fn bound(
+        &self,
+        parts: &dyn CompositeShape<N, D>,
+        part: u32,
+        within: Option<&Aabb<N, D>>,
+    ) -> Option<Bound<N>> {
         let Part { pose, solid } = parts.part(part);
         // Most composites that are given by corners give them in their own frame.
         let is_own = pose.is_same(&Pose::identity());
         let placed = |corner: &Point<N, D>| if is_own { *corner } else { pose.point(corner) };
         match solid {
             PartSolid::Triangle(triangle) => {
-                let corners = triangle.corners().each_ref().map(placed);
-                self.of_corners(&corners, &to_triangle(&corners, &self.center))
+                let [a, b, c] = triangle.corners();
+                let corners = [placed(a), placed(b), placed(c)];
+                is_in(&corners, within)
+                    .then(|| self.of_corners(&corners, &to_triangle(&corners, &self.center)))
             }
             PartSolid::Segment(segment) => {
                 let corners = [placed(segment.a()), placed(segment.b())];
-                self.of_corners(&corners, &to_segment(&corners, &self.center))
+                is_in(&corners, within)
+                    .then(|| self.of_corners(&corners, &to_segment(&corners, &self.center)))
             }
-            PartSolid::Shape(_) => Bound { from_middle: N::ZERO, is_beyond: false },
+            PartSolid::Shape(_) => Some(Bound { from_middle: N::ZERO, is_beyond: false }),
         }
     }
 
@@ -102,6 +112,22 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
         let farthest = self.map.core_support(&local) - self.map.center();
         local.dot(&farthest) / length + self.map.rounding()
     }
+}
+
+/// The box of some corners overlaps a box, if one is given.
+#[inline]
+fn is_in<N: Real, const D: usize, const K: usize>(
+    corners: &[Point<N, D>; K],
+    within: Option<&Aabb<N, D>>,
+) -> bool {
+    let Some(within) = within else { return true };
+    (0..D).all(|axis| {
+        let (mut low, mut high) = (corners[0][axis], corners[0][axis]);
+        for corner in &corners[1..] {
+            (low, high) = (min(low, corner[axis]), max(high, corner[axis]));
+        }
+        low <= within.maxs()[axis] && high >= within.mins()[axis]
+    })
 }
 
 /// From the point of a segment nearest to a point, to that.
@@ -170,7 +196,7 @@ mod tests {
         let pair = Pair { first: geometries.0.0, second: geometries.1.0, pose12 };
         let between = Between::of_pair(&pair);
         let probe = Probe::new(&between, reach).expect("a convex solid");
-        probe.bound(&mesh, 0)
+        probe.bound(&mesh, 0, None).expect("no box is given")
     }
 
     #[test]

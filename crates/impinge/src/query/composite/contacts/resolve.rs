@@ -1,6 +1,8 @@
 //! Which of the contacts of the parts are contacts of the whole.
 
-use super::facts::{Finding, Standing};
+use smallvec::SmallVec;
+
+use super::facts::{Finding, Notes, Standing};
 use super::scene::Scene;
 use crate::math::{Real, Space, Vector, max};
 
@@ -12,6 +14,8 @@ struct Way<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
+
+type Ways<N, const D: usize> = SmallVec<[Way<N, D>; 16]>;
 
 /// Leaves the contacts that hold for the whole.
 ///
@@ -26,6 +30,7 @@ struct Way<N: Real, const D: usize> {
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
+    notes: &mut Notes<N, D>,
 ) {
     super::hidden::drop_hidden(scene, findings);
     let is_asked =
@@ -33,7 +38,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     if findings.iter().any(is_asked) {
         leave_explained(scene, findings);
     }
-    keep_one(findings);
+    keep_one(findings, notes);
 }
 
 /// Leaves out contacts with faces that other contacts explain.
@@ -41,7 +46,7 @@ fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
 ) {
-    let mut ways = Vec::new();
+    let mut ways = Ways::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
         note(&mut ways, finding);
     }
@@ -60,19 +65,19 @@ fn leave_explained<N: Space<D>, const D: usize>(
 fn shallowest_first<N: Real, const D: usize>(
     findings: &[Finding<N, D>],
     standing: Standing,
-) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..findings.len()).collect();
-    order.retain(|&index| findings[index].standing == standing);
+) -> SmallVec<[usize; 16]> {
+    let mut order: SmallVec<[usize; 16]> = SmallVec::new();
+    order.extend((0..findings.len()).filter(|&index| findings[index].standing == standing));
     order.sort_by(|&a, &b| {
-        let lowest = |index: usize| findings[index].lowest().as_f64();
-        lowest(b).total_cmp(&lowest(a)).then(findings[a].parts.cmp(&findings[b].parts))
+        let lowest = |index: usize| findings[index].lowest.as_f64();
+        lowest(b).total_cmp(&lowest(a)).then(findings[a].parts().cmp(&findings[b].parts()))
     });
     order
 }
 
 /// Takes note of a contact as a way to part the shapes; of those along one normal the farthest.
-fn note<N: Real, const D: usize>(ways: &mut Vec<Way<N, D>>, finding: &Finding<N, D>) {
-    let (normal, depth) = (finding.patch.normal, -finding.lowest());
+fn note<N: Real, const D: usize>(ways: &mut Ways<N, D>, finding: &Finding<N, D>) {
+    let (normal, depth) = (finding.piece.normal, -finding.lowest);
     match ways.iter_mut().find(|way| way.normal == normal) {
         Some(way) => way.depth = max(way.depth, depth),
         None => ways.push(Way { normal, depth }),
@@ -86,37 +91,43 @@ fn is_explained<N: Space<D>, const D: usize>(
     finding: &Finding<N, D>,
     ways: &[Way<N, D>],
 ) -> bool {
-    let (normal, depth) = (finding.patch.normal, -finding.lowest());
+    let (normal, depth) = (finding.piece.normal, -finding.lowest);
     if depth <= finding.tolerance {
         return false;
     }
     let is_beyond = finding.standing == Standing::Beyond;
-    let placed = scene.pair(finding.parts);
-    ways.iter().any(|way| {
+    let is_asked = |way: &&Way<N, D>| {
         let is_other = is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
-        is_other
-            && way.depth > N::ZERO
-            && way.depth <= depth
-            && placed.is_parted(&(way.normal * way.depth), finding.tolerance)
-    })
+        is_other && way.depth > N::ZERO && way.depth <= depth
+    };
+    // The plane that is known to part the two best may do so well enough once they are moved.
+    let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
+    let (mut asked, room) = (ways.iter().filter(is_asked), -finding.tolerance);
+    asked.clone().any(|way| rest(way) > room) || {
+        let placed = asked.clone().next().map(|_| scene.pair(finding.parts()));
+        placed.is_some_and(|placed| {
+            asked.any(|way| placed.is_parted(&(way.normal * way.depth), finding.tolerance))
+        })
+    }
 }
 
 /// If the contacts that hold are farther than the nearest two parts, adds that of these. What is
 /// apart by rounding only, where parts touch, is made to touch.
-fn keep_one<N: Real, const D: usize>(findings: &mut [Finding<N, D>]) {
+fn keep_one<N: Real, const D: usize>(findings: &mut [Finding<N, D>], notes: &mut Notes<N, D>) {
     let nearest = least_of(findings, |finding| Some(finding.distance));
     let Some(nearest) = nearest else { return };
     let (least, tolerance) =
         (max(findings[nearest].distance, N::ZERO), findings[nearest].tolerance);
     let kept = least_of(findings, |finding| {
-        (finding.standing != Standing::Left).then(|| finding.lowest())
+        (finding.standing != Standing::Left).then_some(finding.lowest)
     });
-    match kept.map(|index| (index, findings[index].lowest())) {
+    match kept.map(|index| (index, findings[index].lowest)) {
         Some((_, lowest)) if lowest <= least => {}
         Some((index, lowest)) if lowest <= least + tolerance => {
-            for point in &mut findings[index].patch.points {
-                point.raw.distance = max(point.raw.distance - lowest, N::ZERO) + least;
+            for point in &mut notes.points[findings[index].piece.points.clone()] {
+                point.distance = max(point.distance - lowest, N::ZERO) + least;
             }
+            findings[index].lowest = least;
         }
         _ => findings[nearest].standing = Standing::Own,
     }

@@ -2,11 +2,9 @@
 
 use core::cell::OnceCell;
 
-use smallvec::SmallVec;
-
 use super::super::between::{Between, anchor, recentred};
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::manifold_build::{Patch, PatchPoint};
+use crate::query::manifold_build::{Piece, Points};
 use crate::query::{Pair, RawManifold};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
@@ -245,6 +243,11 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         Pair { first: first.kind(), second: second.kind(), pose12: self.lying.pose12 }
     }
 
+    /// None of the two is a half-space.
+    pub(super) fn has_centers(&self) -> bool {
+        self.bodies.iter().all(|body| Geometry(body.kind()).as_support_map().is_some())
+    }
+
     /// Points well inside the part of the first shape and that of the second, each as seen by the
     /// first shape and by the second; `None` if one is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
@@ -295,21 +298,26 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
     pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(way);
-        let found = (N::tables().separation)(&pair, -tolerance);
-        found.is_none_or(|found| found.distance > -tolerance)
+        (N::tables().parted)(&pair, -tolerance)
     }
 
-    /// A manifold of the bodies as one of the shapes, in the frame of the first.
-    pub(super) fn patch(&self, raw: &RawManifold<N, D>, parts: [u32; 2]) -> Patch<N, D> {
-        let mut points = SmallVec::new();
+    /// A manifold of the bodies as one of the shapes, in the frame of the first; its points are
+    /// appended to others.
+    pub(super) fn piece(
+        &self,
+        raw: &RawManifold<N, D>,
+        parts: [u32; 2],
+        points: &mut Points<N, D>,
+    ) -> Piece<N, D> {
+        let start = points.len();
         for point in &raw.points {
             let mut placed = *point;
             let across = if self.lying.is_turned { point.distance } else { N::ZERO };
             let foot = self.lying.frame.point(&(point.point1 + raw.normal * across));
             placed.point1 = self.origins[0] + foot.coords;
             [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
-            points.push(PatchPoint { raw: placed, parts });
+            points.push(placed);
         }
-        Patch { normal: self.outward(&raw.normal), points }
+        Piece { normal: self.outward(&raw.normal), parts, points: start..points.len() }
     }
 }

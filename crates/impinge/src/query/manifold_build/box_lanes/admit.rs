@@ -7,24 +7,55 @@ use super::masks::bits;
 use crate::math::{Real, Wide};
 
 /// The places of eight pairs, and for each of them a bit of a mask.
-pub(super) struct Slots<N: Real, const COUNT: usize> {
+pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize> {
     /// Seen along the normal; in the plane the second coordinate is always zero.
     pub(super) flat: [[[N; LANES]; COUNT]; 2],
     /// Above the face or side below.
     pub(super) height: [[N; LANES]; COUNT],
+    /// What is said of a candidate: on the first box, in its frame; no nearer than the gap, and no
+    /// farther than the prediction.
+    pub(super) points1: [[[N; LANES]; D]; COUNT],
+    pub(super) distances: [[N; LANES]; COUNT],
     /// The lanes where the slot holds a candidate.
     pub(super) valid: [u8; COUNT],
     /// Those where its distance is the smallest but for rounding.
     pub(super) level: [u8; COUNT],
 }
 
-impl<N: Real, const COUNT: usize> Slots<N, COUNT> {
+impl<N: Real, const D: usize, const COUNT: usize> Slots<N, D, COUNT> {
     pub(super) const fn new() -> Self {
         Self {
             flat: [[[N::ZERO; LANES]; COUNT]; 2],
             height: [[N::ZERO; LANES]; COUNT],
+            points1: [[[N::ZERO; LANES]; D]; COUNT],
+            distances: [[N::ZERO; LANES]; COUNT],
             valid: [0; COUNT],
             level: [0; COUNT],
+        }
+    }
+
+    /// Says of all candidates where they are, and how far: `place` is told where a candidate is seen
+    /// and how high.
+    #[inline(always)]
+    pub(super) fn place<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        limits: &Limits<V>,
+        place: impl Fn([V; 2], V) -> [V; D],
+    ) {
+        for slot in 0..COUNT {
+            if self.valid[slot] == 0 {
+                continue;
+            }
+            let [x, y] = &self.flat;
+            let flat = [V::load(simd, &x[slot]), V::load(simd, &y[slot])];
+            let height = V::load(simd, &self.height[slot]);
+            let point1 = place(flat, height);
+            for axis in 0..D {
+                point1[axis].store(&mut self.points1[slot][axis]);
+            }
+            let distance = height.larger(limits.gap).smaller(limits.prediction);
+            distance.store(&mut self.distances[slot]);
         }
     }
 }
@@ -63,9 +94,9 @@ impl<V> Admission<V> {
 
     /// Stores the height of a candidate where there is one and the prediction admits it.
     #[inline(always)]
-    pub(super) fn admit<S: Simd, N: Real, M, const COUNT: usize>(
+    pub(super) fn admit<S: Simd, N: Real, M, const D: usize, const COUNT: usize>(
         &mut self,
-        slots: &mut Slots<N, COUNT>,
+        slots: &mut Slots<N, D, COUNT>,
         slot: usize,
         height: V,
         is_there: M,

@@ -2,8 +2,9 @@
 
 use smallvec::SmallVec;
 
+use super::LANES;
 use super::admit::Slots;
-use crate::math::{Point, Real, Vector, cross2, max, min};
+use crate::math::{Real, Vector, cross2};
 use crate::query::manifold_build::reduce::{ALMOST, NEW_POINT_WEIGHT};
 use crate::query::{RawManifold, RawPoint};
 use crate::shape::FeatureId;
@@ -12,15 +13,14 @@ use crate::shape::FeatureId;
 pub(super) const SLOTS: usize = 24;
 
 /// The slots of one pair.
-pub(super) struct Choice<'a, N: Real, const COUNT: usize> {
-    pub(super) slots: &'a Slots<N, COUNT>,
+pub(super) struct Choice<'a, N: Real, const D: usize, const COUNT: usize> {
+    pub(super) slots: &'a Slots<N, D, COUNT>,
     pub(super) lane: usize,
     /// The slots that hold a candidate, by bits.
     pub(super) valid: u32,
     /// Those with the smallest distance but for rounding.
     pub(super) level: u32,
     pub(super) gap: N,
-    pub(super) prediction: N,
     pub(super) tolerance: N,
 }
 
@@ -29,8 +29,8 @@ pub(super) trait Naming {
     /// The features of a candidate, of the first and the second box.
     fn features(&self, slot: usize) -> [FeatureId; 2];
 
-    /// The candidate of these features, among those that there are.
-    fn slot(&self, features: [FeatureId; 2], valid: u32) -> Option<usize>;
+    /// The candidate with the features of a point, among those that there are.
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
     /// A number, not zero, that no candidate of any pair has but in this slot with these features;
     /// the slot is in the lowest bits.
@@ -46,29 +46,11 @@ const fn slot_of(code: u32) -> usize {
     (code & SLOT_BITS) as usize
 }
 
-/// The slots of the old points if all of them are candidates again, in the same slots: nothing has
-/// changed but places then.
-#[inline(always)]
-fn still<N: Real, const D: usize>(
-    old: &[RawPoint<N, D>],
-    naming: &impl Naming,
-    valid: u32,
-) -> Option<u32> {
-    let mut slots = 0;
-    for point in old {
-        let slot = slot_of(point.code);
-        let is_same = point.code == naming.code(slot) && valid >> slot & 1 == 1;
-        if !is_same {
-            return None;
-        }
-        slots |= 1 << slot;
-    }
-    Some(slots)
-}
-
 /// The numbers of the old points, for the slots that have their names.
 struct Kept {
     slots: u32,
+    /// All of the old points are candidates again, and in the same slots.
+    is_still: bool,
     ids: [u32; SLOTS],
 }
 
@@ -80,9 +62,12 @@ impl Kept {
         naming: &impl Naming,
         valid: u32,
     ) -> Self {
-        let mut kept = Self { slots: 0, ids: [0; SLOTS] };
+        let mut kept = Self { slots: 0, is_still: true, ids: [0; SLOTS] };
         for point in old {
-            let slot = naming.slot([point.feature1, point.feature2], valid & !kept.slots);
+            let own = slot_of(point.code);
+            let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
+            kept.is_still &= is_same;
+            let slot = if is_same { Some(own) } else { naming.slot(point, valid & !kept.slots) };
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
                 kept.ids[slot] = point.id;
@@ -92,22 +77,24 @@ impl Kept {
     }
 
     #[inline(always)]
-    fn id(&self, slot: usize) -> Option<u32> {
-        (self.slots >> slot & 1 == 1).then(|| self.ids[slot])
+    const fn has(&self, slot: usize) -> bool {
+        self.slots >> slot & 1 == 1
     }
 }
 
 /// Some slots in order.
 #[derive(Clone, Copy)]
-pub(super) struct Chosen {
+struct Chosen {
     len: usize,
     slots: [u8; SLOTS],
+    /// The same by bits.
+    mask: u32,
 }
 
 impl Chosen {
     #[inline(always)]
     fn all(valid: u32) -> Self {
-        let mut all = Self { len: 0, slots: [0; SLOTS] };
+        let mut all = Self { len: 0, slots: [0; SLOTS], mask: 0 };
         for slot in ones(valid) {
             all.push(slot);
         }
@@ -117,18 +104,8 @@ impl Chosen {
     #[inline(always)]
     fn push(&mut self, slot: usize) {
         self.slots[self.len] = slot.to_le_bytes()[0];
+        self.mask |= 1 << slot;
         self.len += 1;
-    }
-
-    #[inline(always)]
-    const fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Which slots these are, by bits.
-    #[inline(always)]
-    fn mask(&self) -> u32 {
-        self.iter().fold(0, |mask, slot| mask | 1 << slot)
     }
 
     #[inline(always)]
@@ -140,6 +117,7 @@ impl Chosen {
     fn insert(&mut self, place: usize, slot: usize) {
         self.slots.copy_within(place..self.len, place + 1);
         self.slots[place] = slot.to_le_bytes()[0];
+        self.mask |= 1 << slot;
         self.len += 1;
     }
 }
@@ -154,77 +132,71 @@ fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     })
 }
 
-impl<N: Real, const COUNT: usize> Choice<'_, N, COUNT> {
-    /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates,
-    /// which lie at `place`.
+impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
+    /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates.
     #[inline(always)]
-    pub(super) fn settle<const D: usize>(
-        &self,
-        naming: &impl Naming,
-        place: impl Fn(usize) -> Point<N, D>,
-        limit: usize,
-        raw: &mut RawManifold<N, D>,
-    ) {
-        let still = still(&raw.points, naming, self.valid);
-        let kept = still.unwrap_or_else(|| Kept::of(&raw.points, naming, self.valid).slots);
-        let deepest = self.deepest(kept);
-        let is_full = self.valid.count_ones() as usize > limit;
-        let chosen = if is_full { Some(self.outline(deepest, limit, kept)) } else { None };
-        let slots = chosen.as_ref().map_or(self.valid, Chosen::mask);
-        if still == Some(slots) {
-            return self.renew(deepest, place, &mut raw.points);
-        }
-        let chosen = chosen.unwrap_or_else(|| Chosen::all(slots));
-        self.replace((&chosen, deepest), naming, place, raw);
-    }
-
-    /// Moves points whose names stay.
-    #[inline(always)]
-    fn renew<const D: usize>(
-        &self,
-        deepest: usize,
-        place: impl Fn(usize) -> Point<N, D>,
-        points: &mut [RawPoint<N, D>],
-    ) {
-        for point in points {
-            let slot = slot_of(point.code);
-            point.point1 = place(slot);
-            point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+    pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
+        let kept = Kept::of(&raw.points, naming, self.valid);
+        let deepest = self.deepest(kept.slots);
+        let chosen = if self.valid.count_ones() as usize > limit {
+            self.outline(deepest, limit, kept.slots)
+        } else {
+            Chosen::all(self.valid)
+        };
+        if kept.is_still && kept.slots == chosen.mask {
+            // Nothing has changed but places.
+            for point in &mut raw.points {
+                self.put(slot_of(point.code), deepest, point);
+            }
+        } else {
+            self.replace((&chosen, deepest), &kept, naming, raw);
         }
     }
 
     /// Puts the points of some slots, in order of their numbers, in the place of those there are.
     #[inline(always)]
-    fn replace<const D: usize>(
+    fn replace(
         &self,
         (chosen, deepest): (&Chosen, usize),
+        kept: &Kept,
         naming: &impl Naming,
-        place: impl Fn(usize) -> Point<N, D>,
         raw: &mut RawManifold<N, D>,
     ) {
-        let kept = Kept::of(&raw.points, naming, self.valid);
-        raw.points.resize(chosen.len(), RawPoint::default());
+        raw.points.resize(chosen.len, RawPoint::default());
+        let (mut last, mut is_sorted) = (0, true);
         for (slot, point) in chosen.iter().zip(&mut raw.points) {
-            point.id = kept.id(slot).unwrap_or_else(|| raw.ids.next());
-            point.point1 = place(slot);
-            point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+            point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
+            is_sorted &= last <= point.id;
+            last = point.id;
+            self.put(slot, deepest, point);
             [point.feature1, point.feature2] = naming.features(slot);
             point.code = naming.code(slot);
         }
-        if !raw.points.is_sorted_by_key(|point| point.id) {
+        if !is_sorted {
             raw.points.sort_by_key(|point| point.id);
         }
     }
 
+    /// Says where the candidate of a slot is.
+    #[inline(always)]
+    fn put(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
+        let lane = self.lane & (LANES - 1);
+        let row = &self.slots.points1[slot];
+        for axis in 0..D {
+            point.point1[axis] = row[axis][lane];
+        }
+        point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+    }
+
     #[inline(always)]
     fn distance(&self, slot: usize) -> N {
-        min(max(self.slots.height[slot][self.lane], self.gap), self.prediction)
+        self.slots.distances[slot][self.lane & (LANES - 1)]
     }
 
     #[inline(always)]
     fn flat(&self, slot: usize) -> [N; 2] {
         let [x, y] = &self.slots.flat;
-        [x[slot][self.lane], y[slot][self.lane]]
+        [x[slot][self.lane & (LANES - 1)], y[slot][self.lane & (LANES - 1)]]
     }
 
     /// The candidate that stands for the witness: of those whose distance is the smallest but for
@@ -268,7 +240,7 @@ impl<N: Real, const COUNT: usize> Choice<'_, N, COUNT> {
     /// Slots by distance; of equals the first comes first.
     #[inline(always)]
     fn by_depth(&self, slots: u32, kept: u32) -> Rest<N> {
-        let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS] }, [0_i64; SLOTS]);
+        let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS], mask: 0 }, [0_i64; SLOTS]);
         for slot in ones(slots) {
             let (key, mut at) = (total(self.distance(slot)), order.len);
             while at > 0 && keys[at - 1] > key {
@@ -321,7 +293,7 @@ struct OutlineSide<N: Real> {
 impl<N: Real> Outline<N> {
     #[inline(always)]
     fn new(slot: usize, flat: [N; 2], tolerance: N) -> Self {
-        let mut chosen = Chosen { len: 0, slots: [0; SLOTS] };
+        let mut chosen = Chosen { len: 0, slots: [0; SLOTS], mask: 0 };
         chosen.push(slot);
         Self { chosen, corners: [flat; SLOTS], tolerance }
     }

@@ -3,8 +3,9 @@
 use fearless_simd::{Select, Simd};
 
 use super::{BoxJob, LANES};
-use crate::math::{Real, Wide};
+use crate::math::{Pose, Real, Wide};
 use crate::query::manifold_build::frame::ROUNDING_ERRORS;
+use crate::shape::Cuboid;
 
 /// What the queries of eight pairs start from: a row for each number, a column for each pair.
 pub(super) struct Inputs<N: Real, const D: usize> {
@@ -36,10 +37,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         self.straight = 0;
         for (lane, job) in jobs.iter().enumerate().take(LANES) {
             for (index, placed) in self.boxes.iter_mut().enumerate() {
-                let (pose, cuboid) = (job.poses[index], job.cuboids[index]);
-                put(placed.rotation.as_flattened_mut(), lane, pose.rotation.as_slice());
-                put(&mut placed.translation, lane, pose.translation.as_slice());
-                put(&mut placed.half, lane, cuboid.half_extents().as_slice());
+                placed.put(lane & (LANES - 1), job.poses[index], job.cuboids[index]);
             }
             self.prediction[lane & (LANES - 1)] = job.request.prediction;
             self.straight |= u64::from(job.request.sine <= N::ZERO) << lane;
@@ -77,18 +75,22 @@ impl<N: Real, const D: usize> Inputs<N, D> {
 
 impl<N: Real, const D: usize> Placed<N, D> {
     #[inline(always)]
+    fn put(&mut self, lane: usize, pose: &Pose<N, D>, cuboid: &Cuboid<N, D>) {
+        for column in 0..D {
+            for row in 0..D {
+                self.rotation[column][row][lane] = pose.rotation[(row, column)];
+            }
+            self.translation[column][lane] = pose.translation[column];
+            self.half[column][lane] = cuboid.half_extents()[column];
+        }
+    }
+
+    #[inline(always)]
     fn axes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [[V; D]; D] {
         by_axis(
             #[inline(always)]
             |axis| load(simd, &self.rotation[axis]),
         )
-    }
-}
-
-#[inline(always)]
-fn put<N: Real>(rows: &mut [[N; LANES]], lane: usize, numbers: &[N]) {
-    for (row, &number) in rows.iter_mut().zip(numbers) {
-        row[lane & (LANES - 1)] = number;
     }
 }
 
@@ -114,13 +116,13 @@ pub(super) struct Boxes<V, const D: usize> {
 
 /// The same number in all lanes.
 #[inline(always)]
-pub(super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
+pub(in super::super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
     V::all(simd, N::lit(value))
 }
 
 /// What there is for each axis.
 #[inline(always)]
-pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
+pub(in super::super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
     let mut all = [of(0); D];
     for (axis, one) in all.iter_mut().enumerate().skip(1) {
         *one = of(axis);
@@ -130,7 +132,7 @@ pub(super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D
 
 /// The sum of the products, in the order of the axes.
 #[inline(always)]
-pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
+pub(in super::super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
     let mut sum = a[0] * b[0];
     for axis in 1..D {
         sum = sum + a[axis] * b[axis];
@@ -140,13 +142,13 @@ pub(super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -
 
 /// The length.
 #[inline(always)]
-pub(super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+pub(in super::super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     dot(v, v).sqrt()
 }
 
 /// A vector in the frame with these axes.
 #[inline(always)]
-pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
+pub(in super::super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
     vector: &[V; D],
 ) -> [V; D] {
@@ -158,7 +160,7 @@ pub(super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
 
 /// Of two vectors the one that each lane wants.
 #[inline(always)]
-pub(super) fn either<S: Simd, V: Wide<S>, const D: usize>(
+pub(in super::super) fn either<S: Simd, V: Wide<S>, const D: usize>(
     is: V::Mask,
     one: &[V; D],
     other: &[V; D],

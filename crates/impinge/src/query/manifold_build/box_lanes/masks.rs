@@ -4,14 +4,20 @@ use fearless_simd::{Simd, SimdMask};
 
 /// A bit for each lane.
 #[inline(always)]
-pub(super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+pub(in super::super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     mask.to_bitmask().to_le_bytes()[0]
 }
 
-/// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
-/// Delight", 7-3): of eight masks, a byte for each pair.
+/// Eight masks of eight pairs, as a byte for each pair.
 #[inline(always)]
-pub(super) const fn transposed(mut x: u64) -> u64 {
+pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {
+    transposed(u64::from_le_bytes(rows)).to_le_bytes()
+}
+
+/// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
+/// Delight", 7-3).
+#[inline(always)]
+pub(in crate::query::manifold_build) const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;
     x ^= swapped ^ swapped << 7;
     let swapped = (x ^ x >> 14) & 0x0000_cccc_0000_cccc;

@@ -15,11 +15,13 @@ mod masks;
 mod plane;
 mod space;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use fearless_simd::{Level, Simd};
 
 use self::gather::Inputs;
+pub(super) use self::gather::{by_axis, dot, either, lit, norm, seen_from};
+pub(super) use self::masks::{bits, transposed};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::math::{Pose, Real, Wide};
 use crate::shape::{Cuboid, Kind};

@@ -9,7 +9,7 @@ use crate::query::{ManifoldRequest, RawManifold};
 use crate::shape::Cuboid;
 
 /// Everything that runs on this machine.
-fn levels() -> Vec<Level> {
+pub(in crate::query::manifold_build) fn levels() -> Vec<Level> {
     let level = Level::new();
     let mut all = vec![level];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -52,7 +52,9 @@ fn bits<N: Real>(value: N) -> u64 {
 }
 
 /// All that a manifold says.
-fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
+pub(in crate::query::manifold_build) fn facts<N: Real, const D: usize>(
+    raw: &RawManifold<N, D>,
+) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
         facts.extend(point.point1.coords.iter().map(|&x| bits(x)));

@@ -2,6 +2,7 @@
 
 mod box_faces;
 mod lasting;
+mod overlap;
 mod properties;
 mod resting;
 pub(in crate::query) mod scene;

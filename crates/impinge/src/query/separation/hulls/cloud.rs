@@ -13,14 +13,33 @@ pub(super) struct Cloud<N: Real> {
     count: usize,
 }
 
-/// A number for each vertex of a [`Cloud`].
-pub(super) struct Heights<N: Real>([[N; LANES]; BLOCKS]);
+/// How far the vertices of a [`Cloud`] lie along a vector.
+pub(super) struct Heights<N: Real> {
+    numbers: [[N; LANES]; BLOCKS],
+    used: usize,
+    count: usize,
+    pub(super) low: N,
+}
 
 impl<N: Real> Heights<N> {
+    /// The vertices that are not higher than this, as the bits of a number.
     #[inline(always)]
-    pub(super) fn at(&self, vertex: usize) -> N {
-        self.0[vertex / LANES][vertex % LANES]
+    pub(super) fn up_to<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u32 {
+        let mut bits = 0;
+        for (number, block) in self.numbers[..self.used].iter().enumerate() {
+            let is_low = V::load(simd, block).simd_le(V::all(simd, most)).to_bitmask();
+            bits |= is_low << (number * LANES);
+        }
+        // Beyond the last vertex are copies of it.
+        low_half(bits & !(u64::MAX << self.count))
     }
+}
+
+/// The low half of a number.
+#[inline(always)]
+fn low_half(bits: u64) -> u32 {
+    let [a, b, c, d, ..] = bits.to_le_bytes();
+    u32::from_le_bytes([a, b, c, d])
 }
 
 /// Where one frame lies in another, in units of the pair: `x` of the first is at
@@ -28,6 +47,12 @@ impl<N: Real> Heights<N> {
 pub(super) struct Place<N: Real> {
     pub(super) rotation: Matrix<N, 3>,
     pub(super) translation: Vector<N, 3>,
+}
+
+/// What there is for each of three axes. Not a `map`: that is not inlined into vector code.
+#[inline(always)]
+pub(super) fn by_axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
 }
 
 /// The scalar product of vectors in lanes.
@@ -58,16 +83,16 @@ impl<N: Real> Place<N> {
     /// Eight vectors turned.
     #[inline(always)]
     pub(super) fn turned<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, v: &[V; 3]) -> [V; 3] {
-        let rows: [[V; 3]; 3] = [0, 1, 2].map(
+        by_axis(
             #[inline(always)]
-            |row: usize| {
-                [0, 1, 2].map(
+            |row| {
+                let row = by_axis(
                     #[inline(always)]
-                    |column: usize| V::all(simd, self.rotation[(row, column)]),
-                )
+                    |column| V::all(simd, self.rotation[(row, column)]),
+                );
+                dot(v, &row)
             },
-        );
-        [dot(v, &rows[0]), dot(v, &rows[1]), dot(v, &rows[2])]
+        )
     }
 
     /// Where the second frame lies in the first.
@@ -117,22 +142,33 @@ impl<N: Real> Cloud<N> {
         Vector::<N, 3>::new(block[0][lane], block[1][lane], block[2][lane])
     }
 
-    /// How far the vertices lie along a vector, and the least of it.
+    /// How far the vertices lie along a vector.
     #[inline(always)]
     pub(super) fn heights<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         along: &Vector<N, 3>,
-    ) -> (Heights<N>, N) {
-        let along: [V; 3] = spread(simd, along);
-        let mut heights = Heights([[N::ZERO; LANES]; BLOCKS]);
+    ) -> Heights<N> {
+        let (along, used, count): ([V; 3], _, _) = (spread(simd, along), self.used, self.count);
+        let mut numbers = [[N::ZERO; LANES]; BLOCKS];
         let mut low = V::all(simd, N::INFINITY);
-        for (block, out) in self.blocks[..self.used].iter().zip(&mut heights.0) {
+        for (block, out) in self.blocks[..used].iter().zip(&mut numbers) {
             let height = dot(&load::<S, N, V>(simd, block), &along);
             low = height.smaller(low);
             height.store(out);
         }
-        (heights, -highest_lane(-low))
+        Heights { numbers, used, count, low: -highest_lane(-low) }
+    }
+
+    /// How far along a vector the lowest vertex lies.
+    #[inline(always)]
+    pub(super) fn low<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &Vector<N, 3>) -> N {
+        let along: [V; 3] = spread(simd, along);
+        let mut low = V::all(simd, N::INFINITY);
+        for block in &self.blocks[..self.used] {
+            low = dot(&load::<S, N, V>(simd, block), &along).smaller(low);
+        }
+        -highest_lane(-low)
     }
 
     /// The plane that lies farthest below all vertices, the first of equals, and how far.
@@ -170,9 +206,9 @@ impl<N: Real> Cloud<N> {
         for (number, block) in self.blocks[..self.used].iter().enumerate() {
             let rest = self.count - number * LANES;
             for lane in 0..if rest < LANES { rest } else { LANES } {
-                let vertex = [0, 1, 2].map(
+                let vertex = by_axis(
                     #[inline(always)]
-                    |axis: usize| V::all(simd, block[axis][lane]),
+                    |axis| V::all(simd, block[axis][lane]),
                 );
                 low = dot(along, &vertex).smaller(low);
             }
@@ -186,6 +222,24 @@ impl<N: Real> Cloud<N> {
 pub(super) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; LANES];
     numbers.store(&mut lanes);
-    let four = [0, 1, 2, 3].map(|lane: usize| max(lanes[lane], lanes[lane + 4]));
-    max(max(four[0], four[2]), max(four[1], four[3]))
+    let [a, b, c, d, e, f, g, h] = lanes;
+    max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
+}
+
+/// How far a point lies above the highest of some planes.
+#[inline(always)]
+pub(super) fn highest_over<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    planes: &[Planes<N, 3>],
+    shrink: N,
+    point: &Vector<N, 3>,
+) -> N {
+    let point: [V; 3] = spread(simd, point);
+    let mut highest = V::all(simd, -N::INFINITY);
+    for block in planes {
+        let normals: [V; 3] = load(simd, &block.normals);
+        let offsets = V::load(simd, &block.offsets) * V::all(simd, shrink);
+        highest = (dot(&normals, &point) - offsets).larger(highest);
+    }
+    highest_lane(highest)
 }

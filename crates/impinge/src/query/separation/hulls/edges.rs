@@ -4,9 +4,8 @@
 use core::array::from_fn;
 
 use fearless_simd::{Select, Simd, SimdMask};
-use smallvec::SmallVec;
 
-use super::cloud::{dot, highest_lane, load, spread};
+use super::cloud::{by_axis, dot, highest_lane, load, spread};
 use super::face::{Meeting, Side};
 use super::{Found, LANES, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
@@ -29,8 +28,32 @@ struct Edges<N: Real> {
     normals: [[[N; LANES]; 3]; 2],
 }
 
+/// As many edges as 32 vertices may have.
+pub(super) const MOST_EDGES: usize = 90;
+
 /// The edges that may decide.
-type Chosen = SmallVec<[u8; 96]>;
+struct Chosen {
+    indices: [u8; MOST_EDGES],
+    len: usize,
+}
+
+impl Chosen {
+    /// Those that end at one of some vertices, given as bits.
+    fn of(edges: &[PolytopeEdge], vertices: u32) -> Self {
+        let mut chosen = Self { indices: [0; MOST_EDGES], len: 0 };
+        for (index, edge) in (0_u8..).zip(edges) {
+            // Written over by the next one if this one is not.
+            chosen.indices[chosen.len] = index;
+            let ends = vertices >> edge.vertices[0] | vertices >> edge.vertices[1];
+            chosen.len += (ends & 1) as usize;
+        }
+        chosen
+    }
+
+    fn indices(&self) -> &[u8] {
+        &self.indices[..self.len]
+    }
+}
 
 /// An edge of each solid that are a face of the Minkowski difference.
 pub(super) struct Crossing<N> {
@@ -44,19 +67,12 @@ impl<N: Real> Meeting<'_, '_, N> {
     /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
     /// other.
     #[inline(always)]
-    fn chosen(&self, reach: N) -> [Chosen; 2] {
+    fn chosen<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> [Chosen; 2] {
         let slack = N::lit(4.0) * noise();
-        let (least, most) = (self.other.low - reach - slack, self.level() + reach + slack);
-        let choose = |side: &Side<'_, '_, N>, is_near: &dyn Fn(N) -> bool| {
-            let is_chosen = |edge: &PolytopeEdge| {
-                edge.vertices.iter().any(|&vertex| is_near(side.heights.at(vertex as usize)))
-            };
-            let edges = (0_u8..).zip(side.solid.edges).filter(|(_, edge)| is_chosen(edge));
-            edges.map(|(index, _)| index).collect()
-        };
+        let (least, most) = (self.other.heights.low - reach - slack, self.level() + reach + slack);
         [
-            choose(&self.own, &|height| height >= least),
-            choose(&self.other, &|height| height <= most),
+            Chosen::of(self.own.solid.edges, self.own.heights.up_to::<S, V>(simd, -least)),
+            Chosen::of(self.other.solid.edges, self.other.heights.up_to::<S, V>(simd, most)),
         ]
     }
 
@@ -116,11 +132,11 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Crossing<N>> {
-        let [chosen1, chosen2] = self.chosen(reach);
+        let [chosen1, chosen2] = self.chosen::<S, V>(simd, reach);
         let (mut best, mut least) = (None, self.height() + N::TWO * noise());
-        for eight in chosen2.chunks(LANES) {
+        for eight in chosen2.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, true);
-            for &index in &chosen1 {
+            for &index in chosen1.indices() {
                 let edge1 = self.edge(usize::from(index));
                 let normals1 = self.own.solid.edges[edge1.index]
                     .faces
@@ -161,11 +177,11 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Found<N>> {
-        let [chosen1, chosen2] = self.chosen(reach);
+        let [chosen1, chosen2] = self.chosen::<S, V>(simd, reach);
         let (mut nearest, mut least) = (None, N::INFINITY);
-        for eight in chosen2.chunks(LANES) {
+        for eight in chosen2.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, false);
-            for &index in &chosen1 {
+            for &index in chosen1.indices() {
                 let edge1 = self.edge(usize::from(index));
                 let squares = squares::<S, N, V>(simd, &edge1, &edges2);
                 let lowest = -highest_lane(-squares);
@@ -209,8 +225,8 @@ impl<N: Real> Meeting<'_, '_, N> {
         normal: &Vector<N, 3>,
         [on_own, on_other]: [Vector<N, 3>; 2],
     ) -> Option<Found<N>> {
-        let low = self.other.cloud.heights::<S, V>(simd, normal).1;
-        let high = -self.own.cloud.heights::<S, V>(simd, &-normal).1;
+        let low = self.other.cloud.low::<S, V>(simd, normal);
+        let high = -self.own.cloud.low::<S, V>(simd, &-normal);
         let distance = low - high;
         let off = on_other - on_own - normal * distance;
         let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
@@ -227,20 +243,15 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     edges2: &Edges<N>,
 ) -> Option<V> {
     let zero = V::all(simd, N::ZERO);
-    let (along1, along2) = (spread(simd, &edge1.along), load(simd, &edges2.along));
-    let beside1: [V; 2] = normals1.map(
-        #[inline(always)]
-        |normal| dot(&along2, &spread(simd, &normal)),
-    );
-    let is_negative = |height: V| height.simd_lt(zero);
-    let beside2: [V; 2] = [0, 1].map(
-        #[inline(always)]
-        |side: usize| dot(&along1, &load::<S, N, V>(simd, &edges2.normals[side])),
-    );
+    let (along1, along2): ([V; 3], [V; 3]) =
+        (spread(simd, &edge1.along), load(simd, &edges2.along));
+    let is_left1 = |side: usize| dot(&along2, &spread(simd, &normals1[side])).simd_lt(zero);
+    let is_left2 =
+        |side: usize| dot(&along1, &load::<S, N, V>(simd, &edges2.normals[side])).simd_lt(zero);
     // The arcs between the normals of each edge cross on the sphere of normals, those of the second
     // solid turned round.
-    let [left1, right1] = [is_negative(beside1[0]), is_negative(beside1[1])];
-    let [left2, right2] = [is_negative(beside2[0]), is_negative(beside2[1])];
+    let ([left1, right1], [left2, right2]) =
+        ([is_left1(0), is_left1(1)], [is_left2(0), is_left2(1)]);
     let is_face = (left1 ^ right1) & (left2 ^ right2) & (left2 ^ right1);
     if is_face.to_bitmask() == 0 {
         return None;
@@ -248,9 +259,9 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let across = crossed(&along1, &along2);
     let squared = dot(&across, &across);
     let from1: [V; 3] = spread(simd, &edge1.from);
-    let away = [0, 1, 2].map(
+    let away = by_axis(
         #[inline(always)]
-        |axis: usize| V::load(simd, &edges2.from[axis]) - from1[axis],
+        |axis| V::load(simd, &edges2.from[axis]) - from1[axis],
     );
     let height = dot(&across, &away) / squared.sqrt();
     let outward = left1.select(-height, height);
@@ -278,9 +289,9 @@ fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
     let from1: [V; 3] = spread(simd, &edge1.from);
-    let away = [0, 1, 2].map(
+    let away = by_axis(
         #[inline(always)]
-        |axis: usize| from1[axis] - V::load(simd, &edges2.from[axis]),
+        |axis| from1[axis] - V::load(simd, &edges2.from[axis]),
     );
     let least = V::all(simd, N::MIN_POSITIVE);
     let squared1 = V::all(simd, edge1.squared).larger(least);
@@ -291,9 +302,9 @@ fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let share1 = clamp((both * toward2 - toward1 * squared2) / spread);
     let share2 = clamp((both * share1 + toward2) / squared2);
     let share1 = clamp((both * share2 - toward1) / squared1);
-    let off = [0, 1, 2].map(
+    let off = by_axis(
         #[inline(always)]
-        |axis: usize| away[axis] + along1[axis] * share1 - along2[axis] * share2,
+        |axis| away[axis] + along1[axis] * share1 - along2[axis] * share2,
     );
     dot(&off, &off)
 }

@@ -1,9 +1,8 @@
 //! A face of one solid, and the vertices of the other that lie nearest to it.
 
 use fearless_simd::Simd;
-use smallvec::SmallVec;
 
-use super::cloud::{Cloud, Heights, Place};
+use super::cloud::{Cloud, Heights, Place, highest_over};
 use super::solid::Flat;
 use super::{Found, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
@@ -12,10 +11,9 @@ use crate::query::separation::segments::nearest_on_segment;
 /// A solid in the frame of the one whose face it is about.
 pub(super) struct Side<'s, 'a, N: Real> {
     pub(super) solid: &'s Flat<'a, N>,
-    pub(super) cloud: Cloud<N>,
-    /// Of the vertices along the normal of the face.
+    pub(super) cloud: &'s Cloud<N>,
+    /// Of the vertices, along the normal of the face or, of its own solid, against it.
     pub(super) heights: Heights<N>,
-    pub(super) low: N,
 }
 
 impl<'s, 'a, N: Real> Side<'s, 'a, N> {
@@ -23,11 +21,10 @@ impl<'s, 'a, N: Real> Side<'s, 'a, N> {
     pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         solid: &'s Flat<'a, N>,
-        cloud: Cloud<N>,
-        normal: &Vector<N, 3>,
+        cloud: &'s Cloud<N>,
+        along: &Vector<N, 3>,
     ) -> Self {
-        let (heights, low) = cloud.heights::<S, V>(simd, normal);
-        Self { solid, cloud, heights, low }
+        Self { solid, cloud, heights: cloud.heights::<S, V>(simd, along) }
     }
 }
 
@@ -52,28 +49,72 @@ enum Seen<N: Real> {
 
 impl<N: Real> Meeting<'_, '_, N> {
     /// The answer; `None` if it is not proved.
+    ///
+    /// Edges are looked at twice: first those near the plane, which mostly decide and are few, then all
+    /// within reach. No closures: those are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
         let height = self.height();
-        let (above, reach) = match self.seen() {
-            Seen::Above(point) => (Some(self.at(&point)), height.abs()),
-            Seen::Beside(reach) => (None, max(reach, height.abs())),
+        let (above, reaches) = match self.seen(self.lowest::<S, V>(simd)) {
+            Seen::Above(point) if height > N::ZERO => return Some(self.at(&point)),
+            Seen::Above(point) => (Some(self.at(&point)), [-height; 2]),
+            Seen::Beside(reach) if height > N::ZERO => {
+                (None, [min(height * N::TWO + N::lit(1.0 / 16.0), reach), reach])
+            }
+            Seen::Beside(reach) => (None, [-height, max(reach, -height)]),
         };
-        if height > N::ZERO {
-            return above.or_else(|| self.nearest::<S, V>(simd, reach));
+        for reach in reaches {
+            let is_last = reach >= reaches[1];
+            let mut are_apart = height > N::ZERO;
+            if !are_apart {
+                let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
+                    if above.is_some() || is_last {
+                        return above;
+                    }
+                    continue;
+                };
+                let found = self.across::<S, V>(simd, &crossing);
+                if let Some(found) = found
+                    && (is_last || self.is_certain::<S, V>(simd, &found))
+                {
+                    return Some(found);
+                }
+                are_apart = found.is_none() && crossing.height > N::ZERO;
+            }
+            if are_apart {
+                let found = self.nearest::<S, V>(simd, reach);
+                if found.is_some() {
+                    return found;
+                }
+            }
+            if is_last {
+                return None;
+            }
         }
-        match self.crossing::<S, V>(simd, reach) {
-            None => above,
-            Some(crossing) => match self.across::<S, V>(simd, &crossing) {
-                None if crossing.height > N::ZERO => self.nearest::<S, V>(simd, reach),
-                found => found,
-            },
-        }
+        None
+    }
+
+    /// Whether an answer across edges is one whatever other edges there are: the solids are apart, or
+    /// have a point in common, so that none farther from the plane than the way out along the normal of
+    /// the face can be better.
+    #[inline(always)]
+    fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, found: &Found<N>) -> bool {
+        let middle = (found.on_own + found.on_other) * N::HALF;
+        found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle)
+    }
+
+    /// Whether both solids hold a point, up to noise.
+    #[inline(always)]
+    fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
+        let in_other = self.place.rotation.tr_mul(&(point - self.place.translation));
+        let (own, other) = (self.own.solid.planes, self.other.solid.planes);
+        highest_over::<S, N, V>(simd, own, self.shrink, point) <= noise()
+            && highest_over::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
     }
 
     /// How far the other solid lies above the plane of the face.
     pub(super) fn height(&self) -> N {
-        self.other.low - self.level()
+        self.other.heights.low - self.level()
     }
 
     /// How far along its normal the face lies.
@@ -90,25 +131,24 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// The first of the lowest vertices that lies above the face, or, of edges and faces that are lowest,
     /// some point that does.
-    fn seen(&self) -> Seen<N> {
-        let lowest = self.lowest();
-        let mut reach = N::INFINITY;
-        for &vertex in &lowest {
-            let point = self.other.cloud.at(vertex);
+    fn seen(&self, lowest: u32) -> Seen<N> {
+        let (mut reach, mut rest) = (N::INFINITY, lowest);
+        while rest != 0 {
+            let point = self.other.cloud.at(rest.trailing_zeros() as usize);
             match self.distance_beside(&point) {
                 None => return Seen::Above(point),
                 Some(beside) => reach = min(beside, reach),
             }
+            rest &= rest - 1;
         }
-        let among = if lowest.len() > 1 { self.among(&lowest) } else { None };
+        let among = if lowest.count_ones() > 1 { self.among(lowest) } else { None };
         among.map_or(Seen::Beside(reach), Seen::Above)
     }
 
-    /// The vertices of the other solid that are lowest, up to noise.
-    fn lowest(&self) -> SmallVec<[usize; 8]> {
-        let most = self.other.low + noise();
-        let vertices = 0..self.other.solid.vertices;
-        vertices.filter(|&vertex| self.other.heights.at(vertex) <= most).collect()
+    /// The vertices of the other solid that are lowest, up to noise, as bits.
+    #[inline(always)]
+    fn lowest<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
+        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
     }
 
     /// The ends of the sides of the face, and the vectors in its plane into the face across them, as long as
@@ -143,9 +183,9 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// A point of the edges between some vertices that lies above the face; or, of the faces between
     /// them, above a corner of the face.
-    fn among(&self, lowest: &[usize]) -> Option<Vector<N, 3>> {
+    fn among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
-        let is_lowest = |vertex: &u32| lowest.contains(&(*vertex as usize));
+        let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
         let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
         let mut crossing = edges.filter_map(|edge| {
             self.clipped(edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize)))

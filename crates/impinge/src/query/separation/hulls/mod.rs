@@ -14,7 +14,7 @@ mod edges;
 mod face;
 mod solid;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use fearless_simd::{Level, Simd};
 
@@ -66,19 +66,19 @@ enum Verdict<N: Real> {
 }
 
 /// What arithmetic cannot resolve, in units of the pair.
-fn noise<N: Real>() -> N {
+pub(super) fn noise<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
 /// A unit of length in which the pair is about 1 large: a power of two, so that nothing is rounded.
 #[derive(Clone, Copy)]
-struct Units<N> {
-    scale: N,
-    shrink: N,
+pub(super) struct Units<N> {
+    pub(super) scale: N,
+    pub(super) shrink: N,
 }
 
 impl<N: Real> Units<N> {
-    fn of(reach1: N, reach2: N, translation: &Vector<N, 3>) -> Self {
+    pub(super) fn of(reach1: N, reach2: N, translation: &Vector<N, 3>) -> Self {
         // A quarter of everything: the sum of finite lengths must not overflow.
         let quarter = N::HALF * N::HALF;
         let away = unit(&(translation * quarter)).map_or(N::ZERO, |(_, length)| length);
@@ -153,16 +153,16 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
     // Seen from the solid whose face it is: the other one is placed in its frame.
     let is_second = height2 > height1 + noise();
-    let (sides, place, face) = if is_second {
-        ([(second, own2), (first, cloud1)], in_second, face2)
+    let (solids, clouds, place, face) = if is_second {
+        ([second, first], [&own2, &cloud1], in_second, face2)
     } else {
-        ([(first, own1), (second, cloud2)], in_first, face1)
+        ([first, second], [&own1, &cloud2], in_first, face1)
     };
-    let normal = sides[0].0.normal(face);
-    let [own, other] = sides.map(
-        #[inline(always)]
-        |(solid, cloud)| Side::new::<S, V>(simd, solid, cloud, &normal),
-    );
+    let normal = solids[0].normal(face);
+    let [own, other] = [
+        Side::new::<S, V>(simd, solids[0], clouds[0], &-normal),
+        Side::new::<S, V>(simd, solids[1], clouds[1], &normal),
+    ];
     let meeting = Meeting { own, other, place, face, normal, shrink };
     match meeting.resolve::<S, V>(simd) {
         Some(found) if is_second => {
@@ -196,7 +196,10 @@ impl<N: Real> Found<N> {
 
 /// An answer found in the frame of the second solid, in that of the first, at which it lies at
 /// `pose12`.
-fn in_first_frame<N: Real>(found: &Separation<N, 3>, pose12: &Pose<N, 3>) -> Separation<N, 3> {
+pub(super) fn in_first_frame<N: Real>(
+    found: &Separation<N, 3>,
+    pose12: &Pose<N, 3>,
+) -> Separation<N, 3> {
     Separation {
         distance: found.distance,
         normal: -pose12.vector(&found.normal),

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 
+use super::edges::MOST_EDGES;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::math::{Real, Vector};
 use crate::shape::{Cuboid, Planes, Polytope, PolytopeEdge, SupportMap};
@@ -28,7 +29,9 @@ impl<'a, N: Real> Flat<'a, N> {
     /// `None` for a polytope with more parts than there is room for.
     pub(super) fn of_polytope(polytope: &'a Polytope<N, 3>) -> Option<Self> {
         let (blocks, planes) = (polytope.blocks(), polytope.planes());
-        let fits = blocks.len() <= BLOCKS && planes.len() <= PLANE_BLOCKS;
+        let fits = blocks.len() <= BLOCKS
+            && planes.len() <= PLANE_BLOCKS
+            && polytope.edges().len() <= MOST_EDGES;
         fits.then(|| Self {
             blocks,
             vertices: polytope.vertices().len(),

@@ -11,7 +11,7 @@ use crate::query::separation::general;
 use crate::shape::{ConvexHull, Cuboid, Shape};
 
 /// Numbers between −1 and 1 by splitmix64.
-struct Random(u64);
+pub(in super::super) struct Random(pub(in super::super) u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
@@ -23,7 +23,7 @@ impl Random {
         f64::from(bits) / f64::from(1_u32 << 31) - 1.0
     }
 
-    fn vector<N: Real>(&mut self) -> Vector<N, 3> {
+    pub(in super::super) fn vector<N: Real>(&mut self) -> Vector<N, 3> {
         Vector::from([0; 3].map(|_: i32| N::lit(self.next())))
     }
 
@@ -32,7 +32,7 @@ impl Random {
     }
 
     /// Any turn, a quarter turn or a slight one.
-    fn turn<N: Real>(&mut self) -> Pose<N, 3> {
+    pub(in super::super) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
         let q = UnitQuaternion::from_quaternion(Quaternion::new(
@@ -46,7 +46,7 @@ impl Random {
         pose
     }
 
-    fn pick(&mut self, count: usize) -> usize {
+    pub(in super::super) fn pick(&mut self, count: usize) -> usize {
         let share = (self.next() + 1.0) / 2.0;
         (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
     }
@@ -100,7 +100,7 @@ fn levels() -> Vec<Level> {
 }
 
 /// How far off an answer is: from the distance, by its own points, and by what its normal separates.
-fn error<N: Real>(
+pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
     found: &Separation<N, 3>,
     truth: &Separation<N, 3>,
@@ -152,7 +152,6 @@ fn compare<N: Real>(seed: u64, rounds: usize) {
             }
         }
     }
-    println!("{undecided} of {count} undecided");
     assert!(undecided * 20 < count, "{undecided} of {count} are left to the general algorithm");
 }
 

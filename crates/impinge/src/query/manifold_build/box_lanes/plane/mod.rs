@@ -4,16 +4,16 @@ mod axis;
 mod names;
 mod sides;
 
-use fearless_simd::{Select, Simd};
+use fearless_simd::Simd;
 
 use self::names::Names;
 use self::sides::Sides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::Choice;
-use super::gather::{Boxes, Inputs, lit};
-use super::masks::{bits, transposed};
+use super::gather::{Inputs, lit};
+use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
-use crate::math::{Point, Real, Vector, Wide};
+use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts2;
 
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
@@ -21,12 +21,9 @@ const SLOTS: usize = 4;
 
 /// What is known of eight pairs before points are chosen.
 pub(super) struct Found<N: Real> {
-    slots: Slots<N, SLOTS>,
-    /// The points of the slots on the first boxes, in their frames.
-    points1: [[[N; LANES]; 2]; SLOTS],
+    slots: Slots<N, 2, SLOTS>,
     gap: [N; LANES],
     tolerance: [N; LANES],
-    prediction: [N; LANES],
     normal: [[N; LANES]; 2],
     /// The lanes: the axis across the lower side is the second, the side is on the positive side of
     /// it; the same of the upper side; the lower side is the second box's; the upper side's first
@@ -41,10 +38,8 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         let row = [N::ZERO; LANES];
         Self {
             slots: Slots::new(),
-            points1: [[row; 2]; SLOTS],
             gap: row,
             tolerance: row,
-            prediction: row,
             normal: [row; 2],
             sides: [0; 8],
             at_ends: [0; 2 * SLOTS],
@@ -80,15 +75,19 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         ];
         axis.gap.store(&mut self.gap);
         sides.tolerance.store(&mut self.tolerance);
-        prediction.store(&mut self.prediction);
         axis.normal[0].store(&mut self.normal[0]);
         axis.normal[1].store(&mut self.normal[1]);
-        self.place(simd, &boxes, &sides, axis.is_second);
+        let is_second = axis.is_second;
+        self.slots.place(
+            simd,
+            &limits,
+            #[inline(always)]
+            |[place, _], height| sides.point1(simd, &boxes, is_second, (place, height)),
+        );
     }
 
     #[inline(always)]
     fn settle(&self, jobs: &mut [BoxJob<'_, N, 2>]) {
-        let turned = |rows| transposed(u64::from_le_bytes(rows)).to_le_bytes();
         let (sides, at_ends) = (turned(self.sides), turned(self.at_ends));
         let [a, b, c, d] = self.slots.valid;
         let [e, f, g, h] = self.slots.level;
@@ -111,34 +110,6 @@ impl<N: Real> Eights<N, 2> for Found<N> {
 }
 
 impl<N: Real> Found<N> {
-    /// Where the slots are on the first boxes: as `Pose::point` for a lower side of the second box,
-    /// above which the first one is.
-    #[inline(always)]
-    fn place<S: Simd, V: Wide<S, Scalar = N>>(
-        &mut self,
-        simd: S,
-        boxes: &Boxes<V, 2>,
-        sides: &Sides<V, V::Mask>,
-        is_second: V::Mask,
-    ) {
-        let ([column1, column2], shift) = (&boxes.rotation, &boxes.translation);
-        for (slot, point1) in self.points1.iter_mut().enumerate() {
-            let place = V::load(simd, &self.slots.flat[0][slot]);
-            let height = V::load(simd, &self.slots.height[slot]);
-            let rise =
-                is_second.select(sides.is_upward.select(height, -height), V::all(simd, N::ZERO));
-            let level = sides.level + rise;
-            let x = sides.is_y.select(place, level);
-            let y = sides.is_y.select(level, place);
-            let there = [0, 1].map(
-                #[inline(always)]
-                |axis: usize| column1[axis] * x + column2[axis] * y + shift[axis],
-            );
-            is_second.select(there[0], x).store(&mut point1[0]);
-            is_second.select(there[1], y).store(&mut point1[1]);
-        }
-    }
-
     #[inline(always)]
     fn choose(&self, lane: usize, names: Names, slots: u32, job: &mut BoxJob<'_, N, 2>) {
         let choice = Choice {
@@ -147,14 +118,9 @@ impl<N: Real> Found<N> {
             valid: slots & 15,
             level: slots >> SLOTS,
             gap: self.gap[lane],
-            prediction: self.prediction[lane],
             tolerance: self.tolerance[lane],
         };
-        let place = |slot: usize| {
-            let [x, y] = &self.points1[slot & (SLOTS - 1)];
-            Point::<N, 2>::new(x[lane], y[lane])
-        };
-        choice.settle(&names, place, job.request.max_points.clamp(1, 2), job.raw);
+        choice.settle(&names, job.request.max_points.clamp(1, 2), job.raw);
         job.raw.normal = Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane]);
     }
 }

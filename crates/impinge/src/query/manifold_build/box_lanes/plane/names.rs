@@ -1,6 +1,8 @@
 //! Names of the slots of one pair in the plane.
 
 use super::SLOTS;
+use crate::math::Real;
+use crate::query::RawPoint;
 use crate::query::manifold_build::box_lanes::choose::Naming;
 use crate::query::manifold_build::box_sides::{side, vertex};
 use crate::shape::FeatureId;
@@ -13,6 +15,13 @@ static SIDES: [Parts; 4] = [parts(0, false), parts(1, false), parts(0, true), pa
 
 const fn parts(axis: usize, is_positive: bool) -> Parts {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
+}
+
+/// The part of these that has a name.
+#[inline(always)]
+fn part(parts: &Parts, id: FeatureId) -> Option<usize> {
+    let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);
+    (id == parts[end]).then_some(end)
 }
 
 /// How the slots of one pair are named: from the bits of the sides (`Found::sides`), and two bits for
@@ -36,6 +45,22 @@ impl Names {
     const fn at_end(self, slot: usize) -> u8 {
         self.at_ends >> (2 * slot) & 3
     }
+
+    #[inline(always)]
+    fn below(self) -> &'static Parts {
+        &SIDES[usize::from(self.sides & 3)]
+    }
+
+    #[inline(always)]
+    fn above(self) -> &'static Parts {
+        &SIDES[usize::from(self.sides >> 2 & 3)]
+    }
+
+    /// An end of the upper side by its place along the lower one, or the reverse.
+    #[inline(always)]
+    const fn turned(self, part: usize) -> usize {
+        if self.sides & 32 != 0 && part != 0 { 3 - part } else { part }
+    }
 }
 
 impl Naming for Names {
@@ -43,16 +68,23 @@ impl Naming for Names {
     fn features(&self, slot: usize) -> [FeatureId; 2] {
         let (own, other) = (usize::from(slot & 1 == 1) + 1, usize::from(self.at_end(slot)));
         let (below, above) = if slot < 2 { (other, own) } else { (own, other) };
-        let is_turned = self.sides & 32 != 0;
-        let above = if is_turned && above != 0 { 3 - above } else { above };
-        let below = SIDES[usize::from(self.sides & 3)][below];
-        let above = SIDES[usize::from(self.sides >> 2 & 3)][above];
+        let (below, above) = (self.below()[below], self.above()[self.turned(above)]);
         if self.sides & 16 == 0 { [below, above] } else { [above, below] }
     }
 
     #[inline(always)]
-    fn slot(&self, features: [FeatureId; 2], valid: u32) -> Option<usize> {
-        (0..SLOTS).find(|&slot| valid >> slot & 1 == 1 && self.features(slot) == features)
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize> {
+        let (first, second) = (point.feature1, point.feature2);
+        let (below, above) = if self.sides & 16 == 0 { (first, second) } else { (second, first) };
+        let below = part(self.below(), below)?;
+        let above = self.turned(part(self.above(), above)?);
+        let is_it = |slot: usize, at_end: usize| {
+            valid >> slot & 1 == 1 && usize::from(self.at_end(slot)) == at_end
+        };
+        if above != 0 && is_it(above - 1, below) {
+            return Some(above - 1);
+        }
+        (below != 0 && is_it(below + 1, above)).then(|| below + 1)
     }
 
     #[inline(always)]

@@ -17,7 +17,7 @@ pub(super) struct Sides<V, M> {
     pub(super) is_y: M,
     pub(super) is_upward: M,
     /// The side's place on that axis, and half of its length.
-    pub(super) level: V,
+    level: V,
     half: V,
     /// The same of the upper side, in its own box.
     pub(super) is_own_y: M,
@@ -103,7 +103,7 @@ impl<V, M> Sides<V, M> {
         &self,
         simd: S,
         admission: &mut Admission<V>,
-        slots: &mut Slots<N, SLOTS>,
+        slots: &mut Slots<N, 2, SLOTS>,
     ) -> [u8; 2 * SLOTS]
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -112,20 +112,48 @@ impl<V, M> Sides<V, M> {
         let above = [self.above(simd, 0), self.above(simd, 1)];
         let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
         // Ends of both sides are there already.
-        for (end, found) in below.iter_mut().enumerate() {
-            for (other, known) in above.iter().enumerate() {
+        for end in 0..2 {
+            for other in 0..2 {
+                let (found, known) = (&mut below[end], &above[other]);
                 let is_same = found.at_end[other] & known.at_end[end] & known.is_inside;
                 found.is_inside &= !is_same;
             }
         }
-        let mut at_ends = [0; 2 * SLOTS];
-        for (slot, found) in above.iter().chain(&below).enumerate() {
+        let (mut at_ends, [near, far], [low, high]) = ([0; 2 * SLOTS], &above, &below);
+        for (slot, found) in [near, far, low, high].into_iter().enumerate() {
             found.end.place.store(&mut slots.flat[0][slot]);
             admission.admit(slots, slot, found.end.height, found.is_inside);
             at_ends[2 * slot] = bits(found.at_end[0]);
             at_ends[2 * slot + 1] = bits(found.at_end[1]);
         }
         at_ends
+    }
+
+    /// Where a place along the lower side, so high above it, is on the first box, in its frame: as
+    /// `Pose::point` has it for a lower side of the second box, above which the first one is.
+    #[inline(always)]
+    pub(super) fn point1<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        boxes: &Boxes<V, 2>,
+        is_second: M,
+        (place, height): (V, V),
+    ) -> [V; 2]
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let rise = self.is_upward.select(height, -height);
+        let level = self.level + is_second.select(rise, V::all(simd, N::ZERO));
+        let own = [self.is_y.select(place, level), self.is_y.select(level, place)];
+        let ([x, y], shift) = (&boxes.rotation, &boxes.translation);
+        by_axis(
+            #[inline(always)]
+            |axis| {
+                let there = x[axis] * own[0] + y[axis] * own[1] + shift[axis];
+                is_second.select(there, own[axis])
+            },
+        )
     }
 
     /// An end of the upper side as the lower one sees it.
@@ -149,10 +177,7 @@ impl<V, M> Sides<V, M> {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
         let along = place - self.ends[0].place;
         let share = (along / self.length).larger(zero).smaller(one);
-        let [low, high] = self.ends.map(
-            #[inline(always)]
-            |end| end.height,
-        );
+        let (low, high) = (self.ends[0].height, self.ends[1].height);
         let height = low + (high - low) * share;
         self.beside(simd, End { place, height }, (along, self.length))
     }
@@ -215,9 +240,10 @@ impl<V, M> Upper<V, M> {
         let out = on(is_own_y, &half);
         let out = is_positive.select(out, -out);
         let side = is_own_y.select(half[0], half[1]);
-        let ends = [-side, side].map(
+        let [near, far]: [End<V>; 2] = by_axis(
             #[inline(always)]
-            |side| {
+            |end| {
+                let side = if end == 0 { -side } else { side };
                 let point = by_axis(
                     #[inline(always)]
                     |i| {
@@ -231,7 +257,6 @@ impl<V, M> Upper<V, M> {
                 End { place, height: is_upward.select(height, -height) }
             },
         );
-        let [near, far] = ends;
         let is_turned = far.place.simd_lt(near.place);
         let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
         Self { is_own_y, is_positive, is_turned, ends, is_aligned }

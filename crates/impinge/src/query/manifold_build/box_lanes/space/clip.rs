@@ -57,7 +57,7 @@ pub(super) struct Clip<'a, S, N: Real, V, M> {
     simd: S,
     faces: &'a Faces<V, M>,
     admission: Admission<V>,
-    slots: &'a mut Slots<N, SLOTS>,
+    slots: &'a mut Slots<N, 3, SLOTS>,
     corners: &'a mut Corners,
 }
 
@@ -73,7 +73,7 @@ where
         simd: S,
         faces: &'a Faces<V, M>,
         limits: &Limits<V>,
-        (slots, corners): (&'a mut Slots<N, SLOTS>, &'a mut Corners),
+        (slots, corners): (&'a mut Slots<N, 3, SLOTS>, &'a mut Corners),
     ) -> Self {
         Self { simd, faces, admission: Admission::new(simd, limits), slots, corners }
     }

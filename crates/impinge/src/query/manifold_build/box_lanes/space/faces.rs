@@ -172,4 +172,36 @@ impl<V, M> Faces<V, M> {
             is_fit,
         }
     }
+
+    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
+    /// `Pose::point` has it for a rectangle of the second box, above which the first one is.
+    #[inline(always)]
+    pub(super) fn point1<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        boxes: &Boxes<V, 3>,
+        is_second: M,
+        ([u, v], height): ([V; 2], V),
+    ) -> [V; 3]
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let level = self.half + is_second.select(height, V::all(simd, N::ZERO));
+        let w = self.is_upward.select(level, -level);
+        let [w0, w1, _] = self.is_w;
+        let own = [
+            w0.select(w, w1.select(v, u)),
+            w0.select(u, w1.select(w, v)),
+            w0.select(v, w1.select(u, w)),
+        ];
+        let ([x, y, z], shift) = (&boxes.rotation, &boxes.translation);
+        by_axis(
+            #[inline(always)]
+            |axis| {
+                let there = x[axis] * own[0] + y[axis] * own[1] + z[axis] * own[2] + shift[axis];
+                is_second.select(there, own[axis])
+            },
+        )
+    }
 }

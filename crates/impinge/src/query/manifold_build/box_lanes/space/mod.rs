@@ -12,25 +12,19 @@ use self::faces::Faces;
 use self::names::{Names, Side, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::{Choice, SLOTS};
-use super::gather::{Boxes, Inputs, lit};
-use super::masks::{bits, transposed};
+use super::gather::{Inputs, lit};
+use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
-use crate::math::{Point, Real, Vector, Wide};
+use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts3;
 
 /// What is known of eight pairs before points are chosen.
 pub(super) struct Found<N: Real> {
-    slots: Slots<N, SLOTS>,
+    slots: Slots<N, 3, SLOTS>,
     corners: Corners,
     gap: [N; LANES],
     tolerance: [N; LANES],
-    prediction: [N; LANES],
     normal: [[N; LANES]; 3],
-    /// The pose of the second box in the frame of the first, the rotation by columns.
-    rotation: [[[N; LANES]; 3]; 3],
-    translation: [[N; LANES]; 3],
-    /// Half of the rectangle's box across the rectangle.
-    half: [N; LANES],
     /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
     /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
     sides: [u8; 8],
@@ -47,11 +41,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
             corners: Corners::new(),
             gap: row,
             tolerance: row,
-            prediction: row,
             normal: [row; 3],
-            rotation: [[row; 3]; 3],
-            translation: [row; 3],
-            half: row,
             sides: [0; 8],
             is_apart: 0,
             is_built: 0,
@@ -87,9 +77,16 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         ];
         axis.gap.store(&mut self.gap);
         faces.tolerance.store(&mut self.tolerance);
-        prediction.store(&mut self.prediction);
-        faces.half.store(&mut self.half);
-        self.store(&boxes, &axis.normal);
+        for (row, along) in self.normal.iter_mut().zip(axis.normal) {
+            along.store(row);
+        }
+        let is_second = axis.is_second;
+        self.slots.place(
+            simd,
+            &limits,
+            #[inline(always)]
+            |flat, height| faces.point1(simd, &boxes, is_second, (flat, height)),
+        );
     }
 
     #[inline(always)]
@@ -113,17 +110,6 @@ impl<N: Real> Eights<N, 3> for Found<N> {
 
 impl<N: Real> Found<N> {
     #[inline(always)]
-    fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, boxes: &Boxes<V, 3>, normal: &[V; 3]) {
-        for (axis, &along) in normal.iter().enumerate() {
-            along.store(&mut self.normal[axis]);
-            boxes.translation[axis].store(&mut self.translation[axis]);
-            for row in 0..3 {
-                boxes.rotation[axis][row].store(&mut self.rotation[axis][row]);
-            }
-        }
-    }
-
-    #[inline(always)]
     fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
         let bits = columns.byte(6, lane);
         let sides = Sides::of(bits);
@@ -134,40 +120,12 @@ impl<N: Real> Found<N> {
             valid: columns.slots(0, lane),
             level: columns.slots(3, lane),
             gap: self.gap[lane],
-            prediction: self.prediction[lane],
             tolerance: self.tolerance[lane],
         };
-        let place = |slot| self.point1(lane, slot, &sides);
         let limit = job.request.max_points.max(1);
-        choice.settle(&Names::new(&sides, bits, parts), place, limit, job.raw);
-        job.raw.normal = self.vector(&self.normal, lane);
-    }
-
-    #[inline(always)]
-    fn vector(&self, rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
-        Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
-    }
-
-    /// The point of a slot on the first box, in its frame: as `Pose::point` for a rectangle of the
-    /// second box.
-    #[inline(always)]
-    fn point1(&self, lane: usize, slot: usize, sides: &Sides) -> Point<N, 3> {
-        let w = sides.rectangle.axis;
-        let rise = if sides.is_second { self.slots.height[slot][lane] } else { N::ZERO };
-        let level = self.half[lane] + rise;
-        let mut point = [N::ZERO; 3];
-        point[w] = if sides.rectangle.is_positive { level } else { -level };
-        point[(w + 1) % 3] = self.slots.flat[0][slot][lane];
-        point[(w + 2) % 3] = self.slots.flat[1][slot][lane];
-        let [x, y, z] = point;
-        if !sides.is_second {
-            return Point::<N, 3>::new(x, y, z);
-        }
-        let [column1, column2, column3] = &self.rotation;
-        let along = self.vector(column1, lane) * x
-            + self.vector(column2, lane) * y
-            + self.vector(column3, lane) * z;
-        Point::from(along + self.vector(&self.translation, lane))
+        choice.settle(&Names::new(&sides, bits, parts), limit, job.raw);
+        let [x, y, z] = &self.normal;
+        job.raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
     }
 }
 
@@ -206,10 +164,11 @@ impl Columns {
             part(level, 16),
             found.sides,
         ];
-        Self(rows.map(
-            #[inline(always)]
-            |row| transposed(u64::from_le_bytes(row)).to_le_bytes(),
-        ))
+        let mut columns = [[0; LANES]; 7];
+        for (column, row) in columns.iter_mut().zip(rows) {
+            *column = turned(row);
+        }
+        Self(columns)
     }
 
     #[inline(always)]

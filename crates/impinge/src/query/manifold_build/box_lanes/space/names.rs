@@ -3,6 +3,8 @@
 use super::super::choose::{Naming, SLOTS};
 use super::Sides;
 use super::clip::{CORNERS, SIGNS};
+use crate::math::Real;
+use crate::query::RawPoint;
 use crate::query::manifold_build::box_faces::{edge, face, vertex};
 use crate::shape::FeatureId;
 
@@ -164,6 +166,8 @@ const PLACES: usize = 32;
 const PARTS_AT: u32 = 5;
 const FACES_AT: u32 = 12;
 const MARK: u32 = 1 << 31;
+/// The bits of the two parts.
+const PAIR_BITS: u32 = 127;
 
 impl Names {
     /// From the two faces, as bits too.
@@ -187,6 +191,17 @@ impl Names {
     }
 }
 
+impl Names {
+    /// The two parts that bear these names, as one number.
+    #[inline(always)]
+    fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
+        let (below, above) = if self.is_second { (second, first) } else { (first, second) };
+        let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
+        let is_there = below != NONE && above != NONE;
+        is_there.then(|| PARTS * usize::from(below) + usize::from(above))
+    }
+}
+
 impl Naming for Names {
     #[inline(always)]
     fn features(&self, slot: usize) -> [FeatureId; 2] {
@@ -197,18 +212,17 @@ impl Naming for Names {
     }
 
     #[inline(always)]
-    fn slot(&self, [first, second]: [FeatureId; 2], valid: u32) -> Option<usize> {
-        let (below, above) = if self.is_second { (second, first) } else { (first, second) };
-        let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
-        if below == NONE || above == NONE {
-            return None;
-        }
-        let pair = 9 * below + above;
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize> {
+        let pair = if point.code >> FACES_AT == self.faces >> FACES_AT {
+            (point.code >> PARTS_AT & PAIR_BITS) as usize
+        } else {
+            self.pair([point.feature1, point.feature2])?
+        };
         let is_it = |slot: u8| {
             let slot = usize::from(slot);
-            slot < SLOTS && self.pairs[slot] == pair && valid >> slot & 1 == 1
+            slot < SLOTS && usize::from(self.pairs[slot]) == pair && valid >> slot & 1 == 1
         };
-        let [one, other] = SLOTS_OF[usize::from(pair)];
+        let [one, other] = SLOTS_OF[pair];
         let slot = if is_it(one) { one } else { other };
         is_it(slot).then_some(usize::from(slot))
     }

@@ -1,0 +1,78 @@
+//! The pairs of a group that are due, for algorithms that treat several at a time.
+
+use super::ObjectTable;
+use super::entry::{ContactEntry, ContactView};
+use super::group::Rows;
+use super::lanes::needs_update;
+use super::state::ContactState;
+use super::update::Changes;
+use crate::math::Space;
+use crate::query::{
+    ContactManifold, KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2, update_pairs3,
+};
+
+/// The contacts of some pairs of convex solids.
+pub(super) type ContactRows<'a, N, const D: usize> =
+    Rows<'a, ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+
+/// Pairs with copies of their solids, of which some may be due; what changes is noted.
+pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
+    pub(super) rows: ContactRows<'r, N, D>,
+    pub(super) table: &'t ObjectTable<N, D>,
+    pub(super) changes: &'t mut Changes,
+}
+
+/// [`update_pairs2`], for pairs of the narrow phase.
+pub(crate) fn update_lanes2<N: Space<2>>(
+    solids: [&Solid<N, 2>; 2],
+    due: &mut DueContacts<'_, '_, N, 2>,
+) -> bool {
+    update_pairs2(solids, due)
+}
+
+/// [`update_pairs3`], for pairs of the narrow phase.
+pub(crate) fn update_lanes3<N: Space<3>>(
+    solids: [&Solid<N, 3>; 2],
+    due: &mut DueContacts<'_, '_, N, 3>,
+) -> bool {
+    update_pairs3(solids, due)
+}
+
+impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.rows.states.len()
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, index: usize) -> Option<PairQuestion<'_, N, D>> {
+        let key = self.rows.keys[index];
+        let entry = &mut self.rows.states[index];
+        if !needs_update(entry.due, self.table, key) {
+            return None;
+        }
+        entry.begin(self.rows.views.get_mut(index));
+        let poses = [self.table.pose(key.0), self.table.pose(key.1)];
+        Some(entry.state.turned(poses, &entry.request)?.0)
+    }
+
+    #[inline(always)]
+    fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
+        let (first, second) = self.rows.keys[index];
+        let poses = [self.table.pose(first), self.table.pose(second)];
+        let entry = &mut self.rows.states[index];
+        entry.state.turned(poses, &entry.request).expect("a pair that began has its solids")
+    }
+
+    #[inline(always)]
+    fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
+        self.rows.states[index].state.raw_mut()
+    }
+
+    #[inline(always)]
+    fn end(&mut self, index: usize) {
+        if let Some(change) = self.rows.states[index].note() {
+            self.changes.push((self.rows.keys[index], change));
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Two balls: `separation/ball_ball.rs` in lanes.
+
+use fearless_simd::Simd;
+
+use super::gather::Inputs;
+use super::vectors::{times, unit};
+use super::{Form, Found, PairQuestion, Solid};
+use crate::math::{Real, Wide};
+use crate::shape::FeatureId;
+
+/// Balls whose centres are some way apart.
+pub(super) struct BallBall;
+
+impl<N: Real, const D: usize> Form<N, D> for BallBall {
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+        let [Solid::Ball(ball1), Solid::Ball(ball2)] = pair.solids else { return false };
+        inputs.put_centers(lane, pair);
+        inputs.put_radius(lane, 0, ball1.radius());
+        inputs.put_radius(lane, 1, ball2.radius());
+        true
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, D>,
+        found: &mut Found<N, D>,
+    ) {
+        let (normal, apart, is_usual) = unit(simd, &inputs.center2::<S, V>(simd));
+        let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
+        let distance = apart - radius1 - radius2;
+        let point1 = times(&normal, radius1);
+        found.put(simd, inputs, (distance, is_usual), [&normal, &point1]);
+    }
+
+    #[inline(always)]
+    fn features(_: u8) -> [FeatureId; 2] {
+        [FeatureId::Face(0); 2]
+    }
+}

@@ -1,0 +1,76 @@
+//! A ball and a box: `separation/ball_cuboid.rs` in lanes.
+
+use fearless_simd::Simd;
+
+use super::gather::Inputs;
+use super::vectors::{bits, by_axis, length_of, lit, minus, negated, rounding_of, times, unit};
+use super::{Form, Found, PairQuestion, Solid};
+use crate::math::{Real, Wide};
+use crate::shape::{Cuboid, FeatureId};
+
+/// Balls with their centre outside of the box.
+pub(super) struct BallCuboid;
+
+impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+        let [Solid::Ball(ball), Solid::Cuboid(cuboid)] = pair.solids else { return false };
+        inputs.put_poses(lane, pair);
+        inputs.put_radius(lane, 0, ball.radius());
+        inputs.put_end(lane, (1, 0), cuboid.half_extents());
+        true
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, D>,
+        found: &mut Found<N, D>,
+    ) {
+        let (pose12, half) = (inputs.pose12::<S, V>(simd), inputs.end(simd, (1, 0)));
+        let radius = inputs.radius(simd, 0);
+        let center = pose12.inverse_origin(simd);
+        let clamped = by_axis(
+            #[inline(always)]
+            |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
+        );
+        let (outward, away, is_outside) = unit(simd, &minus(&center, &clamped));
+        let normal = negated(&pose12.vector(&outward));
+        let point1 = times(&normal, radius);
+        let (reach, is_box) = length_of(simd, &half);
+        let noise = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
+        let touched = pose12.inverse_point(&pose12.point(&clamped));
+        let is_thick = found.put_part(simd, [&touched, &half], noise);
+        let is_usual = is_outside & is_box & is_thick;
+        found.put(simd, inputs, (away - radius, is_usual), [&normal, &point1]);
+    }
+
+    #[inline(always)]
+    fn features(parts: u8) -> [FeatureId; 2] {
+        [FeatureId::Face(0), Cuboid::<N, D>::part_named(parts)]
+    }
+}
+
+impl<N: Real, const D: usize> Found<N, D> {
+    /// `Cuboid::part_at` for a point of each box: masks of the axes that are free, then of the signs.
+    /// Answers the lanes where there is such a part.
+    #[inline(always)]
+    fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        [point, half]: [&[V; D]; 2],
+        noise: V,
+    ) -> V::Mask {
+        let thin = lit::<S, N, V>(simd, 4.0) * noise;
+        let mut is_thick = half[0].simd_gt(thin);
+        let mut is_inside = point[0].abs().simd_lt(half[0] - noise);
+        for axis in 0..D {
+            let is_free = point[axis].abs().simd_lt(half[axis] - noise);
+            is_thick &= half[axis].simd_gt(thin);
+            is_inside &= is_free;
+            self.parts[axis] = bits(is_free);
+            self.parts[D + axis] = !bits(point[axis].simd_lt(V::all(simd, N::ZERO)));
+        }
+        is_thick & !is_inside
+    }
+}

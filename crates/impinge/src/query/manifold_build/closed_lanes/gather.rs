@@ -1,0 +1,264 @@
+//! Eight pairs of solids side by side.
+
+use fearless_simd::Simd;
+
+use super::vectors::{by_axis, dot, norm, seen_from};
+use super::{Form, KeptPairs, LANES, PairQuestion};
+use crate::math::{Matrix, Real, Vector, Wide};
+
+/// A vector in each lane, by rows.
+type Rows<N, const D: usize> = [[N; LANES]; D];
+
+/// What eight pairs are asked about: a row for each number, a column for each pair.
+pub(super) struct Inputs<N: Real, const D: usize> {
+    /// By columns.
+    rotations: [[Rows<N, D>; D]; 2],
+    translations: [Rows<N, D>; 2],
+    /// The ends of a segment; the first is the half extents of a box.
+    ends: [[Rows<N, D>; 2]; 2],
+    radii: [[N; LANES]; 2],
+    prediction: [N; LANES],
+    sine: [N; LANES],
+    /// How many lanes are taken, and by which pairs.
+    pub(super) count: usize,
+    pub(super) places: [usize; LANES],
+    /// The lanes that hold a pair for the form.
+    pub(super) is_usable: u8,
+}
+
+impl<N: Real, const D: usize> Inputs<N, D> {
+    pub(super) const fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            rotations: [[[row; D]; D]; 2],
+            translations: [[row; D]; 2],
+            ends: [[[row; D]; 2]; 2],
+            radii: [row; 2],
+            prediction: row,
+            sine: row,
+            count: 0,
+            places: [0; LANES],
+            is_usable: 0,
+        }
+    }
+
+    /// Takes up to eight pairs, beginning with one of a number, and answers with which to go on. Lanes
+    /// beyond those taken keep what they had.
+    #[inline(always)]
+    pub(super) fn gather<F: Form<N, D>, P: KeptPairs<N, D>>(
+        &mut self,
+        pairs: &mut P,
+        from: usize,
+    ) -> usize {
+        (self.count, self.is_usable) = (0, 0);
+        let mut index = from;
+        while index < pairs.len() && self.count < LANES {
+            if let Some(pair) = pairs.begin(index) {
+                let lane = self.count;
+                self.is_usable |= u8::from(F::gather(self, lane, &pair)) << lane;
+                self.prediction[lane] = pair.request.prediction;
+                self.places[lane] = index;
+                self.count += 1;
+            }
+            index += 1;
+        }
+        index
+    }
+
+    /// Where both solids are, but not how the second is turned.
+    #[inline(always)]
+    pub(super) fn put_centers(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
+        put_all(&mut self.rotations[0], lane, &pair.poses[0].rotation);
+        put(&mut self.translations[0], lane, &pair.poses[0].translation);
+        put(&mut self.translations[1], lane, &pair.poses[1].translation);
+    }
+
+    /// Where both solids are.
+    #[inline(always)]
+    pub(super) fn put_poses(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
+        self.put_centers(lane, pair);
+        put_all(&mut self.rotations[1], lane, &pair.poses[1].rotation);
+    }
+
+    /// The radius of one of the solids.
+    #[inline(always)]
+    pub(super) const fn put_radius(&mut self, lane: usize, which: usize, radius: N) {
+        self.radii[which][lane & (LANES - 1)] = radius;
+    }
+
+    /// By how much solids may turn.
+    #[inline(always)]
+    pub(super) const fn put_sine(&mut self, lane: usize, sine: N) {
+        self.sine[lane & (LANES - 1)] = sine;
+    }
+
+    /// An end of the segment in the middle of one of the solids, or the half extents of a box.
+    #[inline(always)]
+    pub(super) fn put_end(&mut self, lane: usize, which: (usize, usize), end: &Vector<N, D>) {
+        put(&mut self.ends[which.0][which.1], lane, end);
+    }
+
+    #[inline(always)]
+    pub(super) fn radius<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, which: usize) -> V {
+        V::load(simd, &self.radii[which])
+    }
+
+    #[inline(always)]
+    pub(super) fn prediction<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> V {
+        V::load(simd, &self.prediction)
+    }
+
+    #[inline(always)]
+    pub(super) fn sine<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> V {
+        V::load(simd, &self.sine)
+    }
+
+    #[inline(always)]
+    pub(super) fn end<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        (which, end): (usize, usize),
+    ) -> [V; D] {
+        load(simd, &self.ends[which][end])
+    }
+
+    /// The second solid's place in the frame of the first, as `Pose::relative` has it.
+    #[inline(always)]
+    pub(super) fn center2<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
+        let axes = load_all::<S, N, V, D>(simd, &self.rotations[0]);
+        let from = load::<S, N, V, D>(simd, &self.translations[0]);
+        let to = load::<S, N, V, D>(simd, &self.translations[1]);
+        let away = by_axis(
+            #[inline(always)]
+            |axis| to[axis] - from[axis],
+        );
+        seen_from(&axes, &away)
+    }
+
+    /// The second solid's pose in the frame of the first, as `Pose::relative` has it.
+    #[inline(always)]
+    pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
+        let axes = load_all::<S, N, V, D>(simd, &self.rotations[0]);
+        let turned = load_all::<S, N, V, D>(simd, &self.rotations[1]);
+        let rotation = by_axis(
+            #[inline(always)]
+            |column| seen_from(&axes, &turned[column]),
+        );
+        LanePose { rotation, translation: self.center2(simd) }
+    }
+}
+
+#[inline(always)]
+fn put<N: Real, const D: usize>(rows: &mut Rows<N, D>, lane: usize, vector: &Vector<N, D>) {
+    for axis in 0..D {
+        rows[axis][lane & (LANES - 1)] = vector[axis];
+    }
+}
+
+#[inline(always)]
+fn put_all<N: Real, const D: usize>(
+    columns: &mut [Rows<N, D>; D],
+    lane: usize,
+    matrix: &Matrix<N, D>,
+) {
+    for column in 0..D {
+        for axis in 0..D {
+            columns[column][axis][lane & (LANES - 1)] = matrix[(axis, column)];
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    rows: &Rows<N, D>,
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::load(simd, &rows[axis]),
+    )
+}
+
+#[inline(always)]
+fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    columns: &[Rows<N, D>; D],
+) -> [[V; D]; D] {
+    by_axis(
+        #[inline(always)]
+        |column| load(simd, &columns[column]),
+    )
+}
+
+/// A pose in each lane: a `Pose`, its rotation by columns.
+pub(super) struct LanePose<V, const D: usize> {
+    rotation: [[V; D]; D],
+    translation: [V; D],
+}
+
+impl<V, const D: usize> LanePose<V, D> {
+    /// `Pose::vector`.
+    #[inline(always)]
+    pub(super) fn vector<S: Simd>(&self, local: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        by_axis(
+            #[inline(always)]
+            |row| {
+                let mut sum = self.rotation[0][row] * local[0];
+                for (axis, &along) in self.rotation.iter().zip(local).skip(1) {
+                    sum += axis[row] * along;
+                }
+                sum
+            },
+        )
+    }
+
+    /// `Pose::point`.
+    #[inline(always)]
+    pub(super) fn point<S: Simd>(&self, local: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        let turned = self.vector(local);
+        by_axis(
+            #[inline(always)]
+            |axis| turned[axis] + self.translation[axis],
+        )
+    }
+
+    /// `Pose::inverse_point`.
+    #[inline(always)]
+    pub(super) fn inverse_point<S: Simd>(&self, outer: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        let away = by_axis(
+            #[inline(always)]
+            |axis| outer[axis] - self.translation[axis],
+        );
+        by_axis(
+            #[inline(always)]
+            |column| dot(&self.rotation[column], &away),
+        )
+    }
+
+    /// `Pose::inverse_point` of the origin.
+    #[inline(always)]
+    pub(super) fn inverse_origin<S: Simd, N: Real>(&self, simd: S) -> [V; D]
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        self.inverse_point(&[V::all(simd, N::ZERO); D])
+    }
+
+    /// How far the second solid's origin is from the first's.
+    #[inline(always)]
+    pub(super) fn apart<S: Simd>(&self) -> V
+    where
+        V: Wide<S>,
+    {
+        norm(&self.translation)
+    }
+}

@@ -1,0 +1,93 @@
+//! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
+
+use fearless_simd::Simd;
+
+pub(super) use super::super::box_lanes::{bits, by_axis, dot, either, lit, norm, seen_from};
+use super::super::frame::ROUNDING_ERRORS;
+use crate::math::{Real, Wide};
+
+/// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
+#[inline(always)]
+pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
+    V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
+}
+
+#[inline(always)]
+pub(super) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| a[axis] - b[axis],
+    )
+}
+
+#[inline(always)]
+pub(super) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| a[axis] + b[axis],
+    )
+}
+
+#[inline(always)]
+pub(super) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| v[axis] * factor,
+    )
+}
+
+#[inline(always)]
+pub(super) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| -v[axis],
+    )
+}
+
+#[inline(always)]
+pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The lanes where a square is far from both ends of the range, so that its root is the length.
+#[inline(always)]
+pub(super) fn is_usual<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, squared: V) -> V::Mask {
+    squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
+        & squared.simd_lt(V::all(simd, N::MAX.sqrt()))
+}
+
+/// `unit` of vectors of usual length, which the mask says: direction and length.
+#[inline(always)]
+pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    v: &[V; D],
+) -> ([V; D], V, V::Mask) {
+    let squared = dot(v, v);
+    let length = squared.sqrt();
+    let direction = by_axis(
+        #[inline(always)]
+        |axis| v[axis] / length,
+    );
+    (direction, length, is_usual(simd, squared))
+}
+
+/// The length of a vector that is zero or of usual length, which the mask says.
+#[inline(always)]
+pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    v: &[V; D],
+) -> (V, V::Mask) {
+    let squared = dot(v, v);
+    let mut sum = v[0].abs();
+    for coordinate in &v[1..] {
+        sum += coordinate.abs();
+    }
+    let is_zero = sum.simd_le(V::all(simd, N::ZERO));
+    (squared.sqrt(), is_usual(simd, squared) | is_zero)
+}
+
+/// The lanes whose number is neither infinite nor NaN.
+#[inline(always)]
+pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> V::Mask {
+    number.abs().simd_lt(V::all(simd, N::INFINITY))
+}

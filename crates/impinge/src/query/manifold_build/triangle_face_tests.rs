@@ -1,0 +1,133 @@
+//! The fused algorithm for faces of triangles against the general builder.
+
+use super::along::{Along, build_between, build_in_general};
+use super::triangle_face::{OnFace, on_face3};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
+use crate::query::separation::separation_in_space;
+use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use crate::shape::{ConvexHull, Cuboid, Kind, Shape, Triangle};
+
+/// Numbers from -1 to 1.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn vector<N: Real>(&mut self, size: f64) -> Vector<N, 3> {
+        Vector::<N, 3>::from_fn(|_, _| N::lit(size * self.next()))
+    }
+
+    /// A triangle about one large; every fourth one lies along the axes.
+    fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
+        let mut corner = || Point::from(self.vector::<N>(1.0));
+        let [mut a, mut b, mut c] = [corner(), corner(), corner()];
+        if round % 4 == 0 {
+            (a.y, b.y, c.y) = (N::ZERO, N::ZERO, N::ZERO);
+        }
+        Triangle::new(a, b, c)
+    }
+
+    /// A solid that lies on the triangle by about `depth`, leaning by up to a fifth of a radian.
+    fn pose<N: Real>(&mut self, normal: &Vector<N, 3>, middle: &Point<N, 3>) -> Pose<N, 3> {
+        let lean: Vector<N, 3> = self.vector(0.2);
+        let up = unit(&(normal + lean)).map_or(*normal, |(up, _)| up);
+        let (u, v): (Vector<N, 3>, Vector<N, 3>) = orthonormal_basis(&up);
+        let mut pose = Pose::<N, 3>::identity();
+        for (axis, column) in [(0, u), (1, up), (2, -v)] {
+            pose.rotation.set_column(axis, &column);
+        }
+        let aside: Vector<N, 3> = self.vector(0.4);
+        pose.translation = middle.coords + normal * N::lit(0.45 + 0.1 * self.next()) + aside;
+        pose
+    }
+}
+
+fn normal_of<N: Real>(triangle: &Triangle<N, 3>) -> Vector<N, 3> {
+    let [a, b, c] = triangle.corners();
+    unit(&cross(&(b - a), &(c - a))).map_or(Vector::<N, 3>::y(), |(normal, _)| normal)
+}
+
+/// Both hold the same points by their names, up to rounding.
+fn same<N: Real>(found: &[RawPoint<N, 3>], expected: &[RawPoint<N, 3>], slack: N, what: &str) {
+    let name = |point: &RawPoint<N, 3>| (point.feature1, point.feature2);
+    assert_eq!(found.len(), expected.len(), "{what}: {found:?} {expected:?}");
+    for point in expected {
+        let twin = found.iter().find(|other| name(other) == name(point));
+        let twin = twin.unwrap_or_else(|| panic!("{what}: no {point:?} in {found:?}"));
+        let off = (twin.point1 - point.point1).norm() + (twin.distance - point.distance).abs();
+        assert!(off <= slack, "{what}: {twin:?} instead of {point:?}");
+    }
+}
+
+/// The contacts along the normal of the face, and those of a separation that has it.
+fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>, what: &str) -> [bool; 2] {
+    let slack = N::lit(2048.0) * N::EPSILON;
+    let prediction = N::lit(0.05);
+    let request = ManifoldRequest { prediction, sine: N::ZERO, max_points: 16 };
+    let (mut found, mut expected) = (RawManifold::default(), RawManifold::default());
+    let least = N::lit(-0.2);
+    let on_face = OnFace { normal: *normal, least, nearest: None, prediction };
+    let is_made = on_face3(pair, &on_face, &mut found);
+    build_in_general(pair, &Along { normal: *normal, least }, &request, &mut expected);
+    if is_made {
+        same(&found.points, &expected.points, slack, what);
+    }
+    let witness = separation_in_space(pair, prediction);
+    let Some(witness) = witness.filter(|w| (w.normal - normal).norm() < N::lit(1e-6)) else {
+        return [is_made && !found.points.is_empty(), false];
+    };
+    let witness = Separation { normal: *normal, ..witness };
+    let (least, nearest) = (-N::INFINITY, Some(witness.distance));
+    let on_face = OnFace { normal: *normal, least, nearest, prediction };
+    let is_found = on_face3(pair, &on_face, &mut found);
+    build_between(pair, &witness, &request, &mut expected);
+    if is_found {
+        same(&found.points, &expected.points, slack, &format!("{what}, from a separation"));
+        assert_eq!(found.points.iter().map(|p| p.distance).reduce(crate::math::min), nearest);
+    }
+    [is_made && !found.points.is_empty(), is_found]
+}
+
+fn at_random<N: Real>(rounds: usize) {
+    let (mut noise, mut made, mut of_witness) = (Noise(11), 0, 0);
+    for round in 0..rounds {
+        let triangle = noise.triangle::<N>(round);
+        let [a, b, c] = triangle.corners().map(|corner| corner.coords);
+        let normal = normal_of(&triangle) * if round % 2 == 0 { N::ONE } else { -N::ONE };
+        let middle = Point::from((a + b + c) / N::lit(3.0));
+        let mut pose12 = noise.pose(&normal, &middle);
+        if round % 8 == 0 {
+            pose12.rotation.fill_with_identity();
+        }
+        let half = noise.vector::<N>(0.2).abs() + Vector::<N, 3>::repeat(N::lit(0.3));
+        let cuboid = Cuboid::new(half);
+        let corners: Vec<_> = (0..8)
+            .map(|corner: usize| {
+                let sign = |axis: usize| if corner >> axis & 1 == 0 { -N::HALF } else { N::HALF };
+                Point::<N, 3>::new(sign(0), sign(1), sign(2)) + noise.vector::<N>(0.1)
+            })
+            .collect();
+        let hull = ConvexHull::from_points(&corners);
+        for second in [cuboid.geometry().0, hull.geometry().0] {
+            let pair = Pair { first: triangle.geometry().0, second, pose12 };
+            let is_box = matches!(second, Kind::Cuboid(_));
+            let [is_made, is_found] =
+                check_pair(&pair, &normal, &format!("round {round}, a box: {is_box}"));
+            made += usize::from(is_made);
+            of_witness += usize::from(is_found);
+        }
+    }
+    assert!(made > rounds / 2 && of_witness > rounds / 8, "{made} {of_witness} of {rounds}");
+}
+
+#[test]
+fn faces_of_triangles_as_in_general() {
+    at_random::<f32>(2000);
+    at_random::<f64>(2000);
+}

@@ -1,0 +1,193 @@
+//! Triangles against boxes and hulls, held against the general algorithm and against what needs no trust
+//! in either: a plane that parts two solids bounds their distance from below, and two of their points
+//! from above.
+
+use super::{general, separation, triangle_cuboid, triangle_polytope};
+use crate::convex::Separation;
+use crate::math::na::UnitQuaternion;
+use crate::math::{Point, Pose, Real, Vector};
+use crate::query::Pair;
+use crate::shape::{ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
+
+/// Numbers from -1 to 1.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn vector<N: Real>(&mut self, size: f64) -> Vector<N, 3> {
+        Vector::<f64, 3>::from_fn(|_, _| size * self.next()).map(|x| N::lit(N::lit(x).as_f64()))
+    }
+
+    fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
+        let turn = UnitQuaternion::from_scaled_axis(self.vector::<f64>(3.0));
+        let matrix = turn.to_rotation_matrix().into_inner().map(N::lit);
+        Pose { rotation: matrix, translation: self.vector(away) }
+    }
+
+    /// Also slivers, segments and points, and some that lie along the axes.
+    fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
+        let mut corner = || Point::from(self.vector::<N>(1.0));
+        let [a, mut b, mut c] = [corner(), corner(), corner()];
+        match round % 9 {
+            0 => c = a + (b - a) * N::lit(0.25),
+            1 => c = a + (b - a) * N::HALF + (c - a) * N::lit(1e-5),
+            2 => (b, c) = (a, a),
+            3 => (b.y, c.y) = (a.y, a.y),
+            4 => (b.y, b.z) = (a.y, a.z),
+            _ => {}
+        }
+        Triangle::new(a, b, c)
+    }
+}
+
+/// What a separation says is so, up to `slack`: its normal parts the solids by its distance, and its
+/// points are as far from each other and lie in them.
+fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: f64, what: &str) {
+    let maps = [pair.first, pair.second].map(|kind| match kind {
+        Kind::Triangle(triangle) => triangle as &dyn SupportMap<N, 3>,
+        Kind::Cuboid(cuboid) => cuboid,
+        Kind::Polytope(hull) => hull,
+        _ => unreachable!("none of these"),
+    });
+    let normal = found.normal;
+    assert!((normal.norm().as_f64() - 1.0).abs() < 1e-6, "{what}: unit");
+    let high = normal.dot(&maps[0].core_support(&normal).coords);
+    let local = pair.pose12.inverse_vector(&-normal);
+    let low = normal.dot(&pair.pose12.point(&maps[1].core_support(&local)).coords);
+    let proof = (low - high - found.distance).as_f64();
+    assert!(proof.abs() <= slack, "{what}: the normal says {} more", proof);
+    let away = found.point2 - found.point1 - normal * found.distance;
+    assert!(away.norm().as_f64() <= slack, "{what}: the points are aside by {away:?}");
+    let on = [found.point1, pair.pose12.inverse_point(&found.point2)];
+    for (map, point) in maps.iter().zip(on) {
+        for along in directions::<N>() {
+            let room = along.dot(&(map.core_support(&along) - point)).as_f64();
+            assert!(room >= -slack, "{what}: a point is outside by {room}");
+        }
+    }
+}
+
+/// Some directions all around.
+fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    let all = steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+    let some = all.filter(|v| *v != [0.0; 3]);
+    some.map(|v| Vector::<f64, 3>::from(v).normalize().map(N::lit))
+}
+
+/// What was met.
+#[derive(Default)]
+struct Tally {
+    overlaps: usize,
+    /// Answers that are not those of the general algorithm to the bit.
+    closed: usize,
+    rounds: usize,
+}
+
+/// Holds an algorithm against the general one.
+fn check_pair<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    own: super::Algorithm<N, 3>,
+    size: f64,
+    tally: &mut Tally,
+) {
+    let slack = 256.0 * N::EPSILON.as_f64() * size;
+    let found = own(pair, N::INFINITY).expect("within infinity");
+    let general = general::of_flat_cores(pair, N::INFINITY).expect("within infinity");
+    let triangle = match pair.first {
+        Kind::Triangle(triangle) => triangle,
+        _ => unreachable!("a triangle comes first"),
+    };
+    let what = format!("round {}: {triangle:?} {found:?} {general:?}", tally.rounds);
+    let off = (found.distance - general.distance).as_f64();
+    assert!(off.abs() <= slack, "off by {off}: {what}");
+    check_proof(pair, &found, slack, &what);
+    tally.rounds += 1;
+    tally.overlaps += usize::from(found.distance < N::ZERO);
+    tally.closed += usize::from(found != general);
+    assert_eq!(own(pair, found.distance), Some(found), "the limit is its distance: {what}");
+    let less = found.distance - N::lit(slack);
+    assert_eq!(own(pair, less), None, "beyond the limit: {what}");
+}
+
+/// Boxes and hulls at every depth, of sizes from a tenth to one, some of them flat.
+fn at_random<N: Real>(rounds: usize) {
+    let (mut noise, mut tallies) = (Noise(7), [Tally::default(), Tally::default()]);
+    for round in 0..rounds {
+        let triangle = noise.triangle::<N>(round);
+        let mut half = noise.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
+        if round % 7 == 0 {
+            half.y = N::ZERO;
+        }
+        let cuboid = Cuboid::new(half);
+        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<N>(0.6))).collect();
+        let hull = ConvexHull::from_points(&points);
+        let mut pose12 = noise.pose::<N>(if round % 3 == 0 { 1.5 } else { 0.5 });
+        if round % 5 == 0 {
+            pose12 = Pose::from_translation(pose12.translation);
+        }
+        let first = triangle.geometry().0;
+        let kinds = [cuboid.geometry().0, hull.geometry().0];
+        let own = [triangle_cuboid::separation, triangle_polytope::separation];
+        for at in 0..2 {
+            let pair = Pair { first, second: kinds[at], pose12 };
+            check_pair(&pair, own[at], 4.0, &mut tallies[at]);
+        }
+    }
+    for Tally { overlaps, closed, rounds } in tallies {
+        assert!(overlaps * 4 > rounds && closed * 4 > rounds, "{overlaps} {closed} of {rounds}");
+    }
+}
+
+#[test]
+fn boxes_and_hulls_at_random() {
+    at_random::<f32>(4000);
+    at_random::<f64>(4000);
+}
+
+#[test]
+fn scaling_by_powers_of_two_is_exact() {
+    let mut noise = Noise(3);
+    for round in 0..300 {
+        let triangle = noise.triangle::<f32>(round);
+        let half = noise.vector::<f32>(0.5).abs();
+        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<f32>(0.6))).collect();
+        let pose12 = noise.pose::<f32>(0.7);
+        let at = |factor: f32| {
+            let corners = triangle.corners().map(|corner| corner * factor);
+            let triangle = Triangle::new(corners[0], corners[1], corners[2]);
+            let points: Vec<_> = points.iter().map(|point| point * factor).collect();
+            let (cuboid, hull) = (Cuboid::new(half * factor), ConvexHull::from_points(&points));
+            let pose12 = Pose { translation: pose12.translation * factor, ..pose12 };
+            [cuboid.geometry().0, hull.geometry().0].map(|second| {
+                let pair = Pair { first: triangle.geometry().0, second, pose12 };
+                let found = separation(&pair, f32::INFINITY).expect("within infinity");
+                (found.distance / factor, found.normal, found.point1 / factor)
+            })
+        };
+        for factor in [2.0_f32.powi(-30), 2.0_f32.powi(30)] {
+            assert_eq!(at(1.0)[0], at(factor)[0], "a box, {factor}");
+            assert_eq!(at(1.0)[1], at(factor)[1], "a hull, {factor}");
+        }
+    }
+}
+
+#[test]
+fn a_box_on_a_face_has_its_normal() {
+    let p = |x, y, z| Point::<f64, 3>::new(x, y, z);
+    let triangle = Triangle::new(p(-4.0, 0.0, -4.0), p(0.0, 0.0, 8.0), p(4.0, 0.0, -4.0));
+    let cuboid = Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 1.0));
+    for (height, distance) in [(0.75, 0.25), (0.5, 0.0), (0.375, -0.125), (-0.25, -0.25)] {
+        let pose12 = Pose::from_translation(Vector::<f64, 3>::new(0.0, height, 0.0));
+        let pair = Pair { first: triangle.geometry().0, second: cuboid.geometry().0, pose12 };
+        let found = separation(&pair, 1.0).expect("within the limit");
+        assert_eq!((found.distance, found.normal.y), (distance, height.signum()), "at {height}");
+        assert_eq!((found.point1.x, found.point1.z), (0.0, 0.0), "below its middle");
+    }
+}
