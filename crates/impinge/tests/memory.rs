@@ -84,8 +84,8 @@ fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     });
     println!("{D} dimensions: {fresh:.1} bytes, after pairs {parted:.1}");
     assert!(fresh <= bound, "{fresh} bytes for an object that sleeps, {bound} are allowed");
-    // What pairs took is given back down to the least lengths that lists keep.
-    assert!(parted <= bound + 40.0, "{parted} bytes for one that had pairs, {bound} before");
+    // Three numbers for each object that has been in a pair stay, 12 bytes, and lists as long as any may.
+    assert!(parted <= bound + 60.0, "{parted} bytes for one that had pairs, {bound} before");
 }
 
 /// In space with `f32`: 88 bytes are the record of the user's words (pose 28, shape 16, query 12, groups

@@ -7,6 +7,7 @@ use impinge::broad_phase::DBVTBroadPhase;
 use impinge::math::{Point, Space};
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, DefaultNarrowPhase};
 use impinge::query::{ContactId, Proximity};
+use impinge::shape::ShapeHandle;
 use impinge::world::{CollisionGroups, CollisionWorld};
 use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step};
 
@@ -187,6 +188,24 @@ fn changes_in_place_are_followed<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Stopped(both.0, both.1)], "changed and partner removed");
 }
 
+/// The narrow phase keeps copies of small solids: they are made anew.
+fn another_solid_of_the_same_kind_is_seen<N: Stage<D>, const D: usize>() {
+    let kinds: [fn(f64) -> ShapeHandle<N, D>; 2] = [ball, cube];
+    for (kind, partner) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let mut world = World::<N, D>::new(N::lit(0.02));
+        let first = add(&mut world, 0.0, &kinds[kind](1.0), contacts(0.0));
+        let second = add(&mut world, 2.5, &kinds[partner](1.0), contacts(0.0));
+        let both = (first, second);
+        assert_eq!(step(&mut world), [], "apart by a half");
+        world.set_shape(first, kinds[kind](2.0));
+        assert_eq!(step(&mut world), [Started(both.0, both.1)], "deep by a half");
+        let deepest = world.contact_views().next().map(|(_, _, view)| view.deepest_contact());
+        assert_eq!(deepest.map(|found| found.contact.depth), Some(N::HALF), "{kind} {partner}");
+        world.set_shape(first, kinds[kind](1.0));
+        assert_eq!(step(&mut world), [Stopped(both.0, both.1)], "as before");
+    }
+}
+
 fn names_last_as_long_as_contacts<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let floor = half_space(1, 1.0);
@@ -277,6 +296,7 @@ in_tests! {
     removals_of_both_ends_tell_once,
     what_never_touched_never_stops,
     changes_in_place_are_followed,
+    another_solid_of_the_same_kind_is_seen,
     names_last_as_long_as_contacts,
     phases_are_exchanged_without_false_events,
     half_spaces_overlap_without_points,

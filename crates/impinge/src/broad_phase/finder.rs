@@ -367,6 +367,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         look.fit(&mut self.marks);
         look.fit(&mut self.last_change);
         look.fit(&mut self.waiting_at);
+        self.joiner.give_back(look);
         self.still.fit(look);
         self.pairs.fit(look);
     }

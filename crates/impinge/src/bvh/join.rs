@@ -15,6 +15,7 @@ use core::ops::Range;
 use super::kernel::{Kernel, TaskList, with_kernel};
 use super::tree::small;
 use super::{Block, Bounds, LANES, Tree};
+use crate::memory::Look;
 use crate::pairs::pack;
 
 /// Tasks per chunk in the upper layers, and block pairs per chunk in the lowest.
@@ -71,6 +72,14 @@ pub(super) struct Scratch<const D: usize> {
     pub(super) reaches: Vec<Bounds<D>>,
 }
 
+impl<const D: usize> Scratch<D> {
+    fn give_back(&mut self, look: Look) {
+        self.tasks.give_back();
+        self.next.give_back();
+        look.trim(&mut self.reaches);
+    }
+}
+
 /// Where chunks are worked on: the first list is for work on one thread, the others for one chunk
 /// each.
 #[derive(Clone, Debug, Default)]
@@ -81,6 +90,20 @@ struct Desks<const D: usize> {
 }
 
 impl<const D: usize> Joiner<D> {
+    /// Gives back the memory of lists that have been short for some time.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        for list in [&mut self.tasks, &mut self.next, &mut self.found] {
+            list.give_back();
+        }
+        look.trim(&mut self.slots);
+        self.desks.scratch.give_back(look);
+        #[cfg(feature = "parallel")]
+        for (list, scratch) in &mut self.desks.parallel {
+            list.give_back();
+            scratch.give_back(look);
+        }
+    }
+
     /// Appends the pairs within the tree that began or ended, each once, in no particular (but
     /// always the same) order. Of those that ended, some of [`Tree::strayed`] objects may be
     /// missing. The tree must be refitted.

@@ -83,11 +83,27 @@ pub(super) struct TaskList {
     first: Vec<u32>,
     second: Vec<u32>,
     len: usize,
+    /// The most that there were when it was emptied, since memory was given back.
+    longest: usize,
 }
 
 impl TaskList {
     pub(super) fn clear(&mut self) {
+        self.longest = self.longest.max(self.len);
         self.len = 0;
+    }
+
+    /// Gives back the memory of a list that has been short for some time; forgets what is in it.
+    pub(super) fn give_back(&mut self) {
+        self.clear();
+        let needed = (2 * self.longest).max(64 * LANES);
+        if self.first.len() / 2 > needed {
+            for list in [&mut self.first, &mut self.second] {
+                list.truncate(needed);
+                list.shrink_to_fit();
+            }
+        }
+        self.longest = 0;
     }
 
     pub(super) fn len(&self) -> usize {

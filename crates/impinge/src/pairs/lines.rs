@@ -8,6 +8,8 @@ use crate::memory::Look;
 const PER_LINE: usize = 8;
 /// Links in the line that an object with links has, beside what describes the rest.
 const INLINE: usize = PER_LINE - 1;
+/// More idle heads than this, and than others, are given back.
+const MOST_IDLE: usize = 256;
 /// The line of an object without links.
 const NO_HEAD: u32 = u32::MAX;
 /// The class of a run that is not there.
@@ -343,9 +345,24 @@ impl Lines {
 
     /// Gives memory back.
     pub(super) fn fit(&mut self, look: Look) {
+        if self.idle.len() > self.heads.len() / 2 + MOST_IDLE {
+            self.drop_idle();
+        }
         look.fit(&mut self.owned);
         look.fit(&mut self.heads);
         look.fit(&mut self.pool);
+    }
+
+    /// Forgets the heads that belong to nobody, and brings the others into the order of their objects.
+    fn drop_idle(&mut self) {
+        let used = self.heads.len() - self.idle.len();
+        let mut heads = Vec::with_capacity(used + used / 8);
+        for at in self.owned.iter_mut().filter(|at| **at != NO_HEAD) {
+            heads.push(self.heads[*at as usize]);
+            *at = small(heads.len() - 1);
+        }
+        self.heads = heads;
+        self.idle = Vec::new();
     }
 
     /// Checks that no two objects share a head, no two runs a line, no run leaves the pool, and none is

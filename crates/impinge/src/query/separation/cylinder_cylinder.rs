@@ -290,8 +290,10 @@ impl<N: Real> View<N> {
         let is_parallel = radial(&self.axis).norm() * self.other.half <= noise();
         let (low, high) =
             (max(self.center.y - reach, -self.own.half), min(self.center.y + reach, self.own.half));
-        let at = (low + high) * N::HALF - self.center.y;
-        is_parallel.then(|| self.center + down + self.axis * (at / self.axis.y))
+        let at = ((low + high) * N::HALF - self.center.y) / self.axis.y;
+        // Never beyond the ends: a disk, whose axis may point anywhere, has no line.
+        let half = self.other.half;
+        is_parallel.then(|| self.center + down + self.axis * max(min(at, half), -half))
     }
 
     /// From rim to rim, of solids that are apart, by Newton's method on the sphere of directions.

@@ -50,9 +50,8 @@ impl<N: Real, const D: usize, const COUNT: usize> Slots<N, D, COUNT> {
             let [x, y] = &self.flat;
             let flat = [V::load(simd, &x[slot]), V::load(simd, &y[slot])];
             let height = V::load(simd, &self.height[slot]);
-            let point1 = place(flat, height);
-            for axis in 0..D {
-                point1[axis].store(&mut self.points1[slot][axis]);
+            for (row, along) in self.points1[slot].iter_mut().zip(place(flat, height)) {
+                along.store(row);
             }
             let distance = height.larger(limits.gap).smaller(limits.prediction);
             distance.store(&mut self.distances[slot]);

@@ -181,9 +181,8 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
     #[inline(always)]
     fn put(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
         let lane = self.lane & (LANES - 1);
-        let row = &self.slots.points1[slot];
-        for axis in 0..D {
-            point.point1[axis] = row[axis][lane];
+        for (x, row) in point.point1.iter_mut().zip(&self.slots.points1[slot]) {
+            *x = row[lane];
         }
         point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
     }

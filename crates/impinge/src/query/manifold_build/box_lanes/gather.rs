@@ -135,7 +135,7 @@ pub(in super::super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T
 pub(in super::super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
     let mut sum = a[0] * b[0];
     for axis in 1..D {
-        sum = sum + a[axis] * b[axis];
+        sum += a[axis] * b[axis];
     }
     sum
 }
@@ -215,7 +215,7 @@ pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
 ) -> V::Mask {
     let mut all = size(&boxes.translation);
     for axis in &boxes.rotation {
-        all = all + size(axis);
+        all += size(axis);
     }
     all.simd_lt(V::all(simd, N::INFINITY))
 }
@@ -225,7 +225,7 @@ pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
 fn size<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     let mut sum = v[0].abs();
     for x in &v[1..] {
-        sum = sum + x.abs();
+        sum += x.abs();
     }
     sum
 }

@@ -106,6 +106,7 @@ fn update<S: Simd, N: Real, V: Wide<S, Scalar = N>, E: Eights<N, D>, const D: us
     simd: S,
     jobs: &mut [BoxJob<'_, N, D>],
 ) {
+    touch(jobs);
     let mut inputs = [Inputs::new(), Inputs::new()];
     let mut found = E::new();
     inputs[0].gather(jobs);
@@ -116,4 +117,19 @@ fn update<S: Simd, N: Real, V: Wide<S, Scalar = N>, E: Eights<N, D>, const D: us
         found.find::<S, V>(simd, &inputs[count % 2]);
         found.settle(&mut jobs[first..]);
     }
+}
+
+/// Reads a little of all that the pairs need, which lies scattered: many reads wait for the memory
+/// together here, and would wait one after another between the steps of eight pairs.
+#[inline(always)]
+fn touch<N: Real, const D: usize>(jobs: &[BoxJob<'_, N, D>]) {
+    let mut seen = 0;
+    for job in jobs {
+        let [half1, half2] = job.cuboids.map(Cuboid::half_extents);
+        let [pose1, pose2] = job.poses;
+        seen += u32::from(half1[0] > half2[0]);
+        seen += u32::from(pose1.rotation[(0, 0)] > pose2.rotation[(0, 0)]);
+        seen ^= job.raw.points.last().map_or(0, |point| point.id);
+    }
+    core::hint::black_box(seen);
 }

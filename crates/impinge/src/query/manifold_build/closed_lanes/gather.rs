@@ -206,9 +206,13 @@ impl<V, const D: usize> LanePose<V, D> {
         by_axis(
             #[inline(always)]
             |row| {
-                let mut sum = self.rotation[0][row] * local[0];
-                for (axis, &along) in self.rotation.iter().zip(local).skip(1) {
-                    sum += axis[row] * along;
+                let terms: [V; D] = by_axis(
+                    #[inline(always)]
+                    |column| self.rotation[column][row] * local[column],
+                );
+                let mut sum = terms[0];
+                for &term in &terms[1..] {
+                    sum += term;
                 }
                 sum
             },

@@ -25,7 +25,7 @@ use super::{general, wrong_kinds};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, Wide, unit};
 use crate::query::Pair;
-use crate::shape::Kind;
+use crate::shape::{Cuboid, Kind, SupportMap};
 
 /// How many vertices, faces or edges are treated at once.
 const LANES: usize = 8;
@@ -44,9 +44,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         (_, None) => Verdict::Undecided,
         (Kind::Polytope(first), Some(second)) => Flat::of_polytope(first)
             .map_or(Verdict::Undecided, |first| between(&first, &second, &pair.pose12, limit)),
-        (Kind::Cuboid(first), Some(second)) => {
+        (Kind::Cuboid(first), Some(second)) if has_volume(first, second.reach) => {
             between(&BoxParts::new(first).flat(), &second, &pair.pose12, limit)
         }
+        (Kind::Cuboid(_), _) => Verdict::Undecided,
         _ => wrong_kinds(pair),
     };
     match found {
@@ -54,6 +55,13 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         Verdict::Found(found) => Some(found).filter(|found| found.distance <= limit),
         Verdict::Undecided => general::of_flat_cores(pair, limit),
     }
+}
+
+/// Whether no side of a box is as short as noise beside a solid of this reach: faces without width have
+/// sides without direction.
+fn has_volume<N: Real>(cuboid: &Cuboid<N, 3>, reach: N) -> bool {
+    let least = noise::<N>() * (cuboid.reach() + reach);
+    cuboid.half_extents().iter().all(|&half| half > least)
 }
 
 /// How the test ended.

@@ -92,6 +92,6 @@ impl Naming for Names {
         let slot = slot & (SLOTS - 1);
         MARK | u32::from(self.sides & SIDE_BITS) << SIDES_AT
             | u32::from(self.at_end(slot)) << AT_END_AT
-            | slot as u32
+            | u32::from(slot.to_le_bytes()[0])
     }
 }

@@ -112,9 +112,8 @@ impl<V, M> Sides<V, M> {
         let above = [self.above(simd, 0), self.above(simd, 1)];
         let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
         // Ends of both sides are there already.
-        for end in 0..2 {
-            for other in 0..2 {
-                let (found, known) = (&mut below[end], &above[other]);
+        for (end, found) in below.iter_mut().enumerate() {
+            for (other, known) in above.iter().enumerate() {
                 let is_same = found.at_end[other] & known.at_end[end] & known.is_inside;
                 found.is_inside &= !is_same;
             }

@@ -230,7 +230,7 @@ impl Naming for Names {
     #[inline(always)]
     fn code(&self, slot: usize) -> u32 {
         let pair = u32::from(self.pairs[slot & (PLACES - 1)]);
-        self.faces | pair << PARTS_AT | slot as u32
+        self.faces | pair << PARTS_AT | u32::from(slot.to_le_bytes()[0])
     }
 }
 
