@@ -220,6 +220,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// Gives memory back that has not been needed for some time.
     pub(super) fn give_back(&mut self, look: Look) {
         look.fit(&mut self.slots);
+        look.fit(&mut self.records);
         self.changes.give_back(look);
         self.table.give_back(look);
     }
