@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use super::error::or_panic;
 use super::handle::Handles;
 use super::proposal::{Proposal, Proposals, Proxies};
-use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle};
+use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle, VisitProposals};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, Lanes};
 use crate::math::{Point, Real, Space, Vector};
@@ -277,7 +277,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         ray: &Ray<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+        visit: &mut VisitProposals<'_, N, T>,
     ) {
         let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
@@ -292,7 +292,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         &self,
         bv: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+        visit: &mut VisitProposals<'_, N, T>,
     ) {
         let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
@@ -303,7 +303,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         bv: &Aabb<N, D>,
         velocity: &Vector<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+        visit: &mut VisitProposals<'_, N, T>,
     ) {
         let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
         let sweep = Sweep { aabb: *bv, velocity: *velocity };

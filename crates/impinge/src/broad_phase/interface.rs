@@ -5,6 +5,10 @@ use super::{BroadPhaseError, Proposal, ProxyHandle};
 use crate::bounding_volume::BoundingVolume;
 use crate::math::{Real, max};
 
+/// Gets several proposals at a time and returns the new limit of a search; see
+/// [`BroadPhase::visit_ray_roughly`].
+pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
+
 /// Finds and keeps the pairs of objects whose bounding volumes overlap.
 ///
 /// `T` is the user's data of an object; callbacks get references to it. Object-safe.
@@ -152,12 +156,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     ///
     /// A broad phase around another that gives handles of its own makes proposals of its own by
     /// [`Proposal::of`]: those of the other know objects by its handles.
-    fn visit_ray_roughly(
-        &self,
-        ray: &BV::Ray,
-        max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
-    ) {
+    fn visit_ray_roughly(&self, ray: &BV::Ray, max_time: N, visit: &mut VisitProposals<'_, N, T>) {
         self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
@@ -196,7 +195,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         &self,
         bv: &BV,
         max_distance: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+        visit: &mut VisitProposals<'_, N, T>,
     ) {
         self.visit_nearest(bv, max_distance, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
@@ -207,7 +206,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         bv: &BV,
         velocity: &BV::Vector,
         max_time: N,
-        visit: &mut dyn FnMut(&[Proposal<'_, N, T>]) -> N,
+        visit: &mut VisitProposals<'_, N, T>,
     ) {
         self.visit_cast(bv, velocity, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }

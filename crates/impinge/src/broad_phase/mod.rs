@@ -31,5 +31,5 @@ pub use dbvt::{DBVTBroadPhase, TreeVolume};
 pub use error::BroadPhaseError;
 pub use finder::PairFinder;
 pub use handle::ProxyHandle;
-pub use interface::BroadPhase;
+pub use interface::{BroadPhase, VisitProposals};
 pub use proposal::Proposal;

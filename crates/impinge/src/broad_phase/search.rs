@@ -5,6 +5,9 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Real};
 use crate::partitioning::{Search, Sweep};
 
+/// Gets some objects and what they are found by, and returns the new limit of the search.
+type VisitGroup<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
+
 impl<N: Real, const D: usize> PairFinder<N, D> {
     /// The objects whose exact box meets `aabb`, ascending.
     pub fn overlapping(&self, aabb: &Aabb<N, D>) -> Vec<u32> {
@@ -35,12 +38,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// [`Self::visit_ray`] in no exact order, but near ones first, and several at a time.
-    pub fn visit_ray_roughly(
-        &self,
-        ray: &Ray<N, D>,
-        max_time: N,
-        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
-    ) {
+    pub fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut VisitGroup<'_, N>) {
         self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
     }
 
@@ -61,7 +59,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         &self,
         aabb: &Aabb<N, D>,
         max_distance: N,
-        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
+        visit: &mut VisitGroup<'_, N>,
     ) {
         self.search().groups_by_distance(aabb, max_distance, visit);
     }
@@ -83,7 +81,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         &self,
         sweep: &Sweep<N, D>,
         max_time: N,
-        visit: &mut dyn FnMut(&[(u32, N)]) -> N,
+        visit: &mut VisitGroup<'_, N>,
     ) {
         self.search().groups_by_time(sweep, max_time, visit);
     }

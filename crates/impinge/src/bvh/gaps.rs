@@ -110,7 +110,7 @@ impl<S: Simd> Wide<S> {
             let hi = f32x16::load_array_ref(simd, &block.hi[axis]);
             let below = f32x16::splat(simd, gaps.lo[axis]) - hi;
             let gap = above.max(below).max(0.0) * gaps.scale;
-            squared = squared + gap * gap;
+            squared += gap * gap;
         }
         squared.store_slice(keys);
         low_half(squared.simd_le(limit).to_bitmask())
@@ -192,16 +192,15 @@ mod tests {
                 assert_eq!(mask >> (LANES - 2), 0, "nothing is in empty lanes");
                 let is_least = |key: &u32| least == LANES || keys[least] <= *key;
                 assert!(keys.iter().all(is_least), "{least} of {keys:?}");
-                for lane in 0..LANES - 2 {
+                for (lane, key) in keys.into_iter().enumerate().take(LANES - 2) {
                     let Bounds { lo, hi } = block.lane(lane);
                     let exact = Aabb::new(Point::from(lo), Point::from(hi));
                     let distance = exact.distance_to_aabb(&aabb);
-                    if distance <= limit {
-                        assert!(mask >> lane & 1 == 1, "{aabb:?} {exact:?}: {distance} {limit}");
-                        let bound = f32::from_bits(keys[lane]);
-                        assert!(bound <= gaps.limit(distance), "a bound of {distance}");
-                        near += 1;
-                    }
+                    let is_near = distance <= limit;
+                    assert!(!is_near || mask >> lane & 1 == 1, "{aabb:?} {exact:?}: {distance}");
+                    let bound = f32::from_bits(key);
+                    assert!(!is_near || bound <= gaps.limit(distance), "a bound of {distance}");
+                    near += usize::from(is_near);
                 }
             }
         }

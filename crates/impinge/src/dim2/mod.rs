@@ -47,6 +47,7 @@ pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::broad_phase::{
         BroadPhase, BroadPhaseError, DBVTBroadPhase, Proposal, ProxyHandle, TreeVolume,
+        VisitProposals,
     };
 }
 

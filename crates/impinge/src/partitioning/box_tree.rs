@@ -350,7 +350,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         for (id, aabb) in (0..).zip(&self.boxes) {
             let tight = Bounds::enclosing(aabb);
             let is_listed = self.unbounded.binary_search(&id).is_ok();
-            let is_kept = self.tree.bounds(id) == Some(tight).filter(|tight| tight.is_finite());
+            let is_kept = self.tree.bounds(id) == Some(tight).filter(Bounds::is_finite);
             if is_listed == tight.is_finite() || !is_kept {
                 return Err(format!("box {id} is not where it belongs"));
             }

@@ -305,10 +305,9 @@ impl<N: Real, const D: usize> Facet<N, D> {
         let last = inward.len() - 1;
         for lane in 0..LANES {
             let side = if lane < last { lane } else { last };
-            for axis in 0..2 {
-                lines.from[axis][lane] = corners[side].flat[axis];
-                lines.inward[axis][lane] = inward[side][axis];
-            }
+            let (from, inward) = (&corners[side].flat, &inward[side]);
+            (lines.from[0][lane], lines.from[1][lane]) = (from.x, from.y);
+            (lines.inward[0][lane], lines.inward[1][lane]) = (inward.x, inward.y);
         }
         lines
     }

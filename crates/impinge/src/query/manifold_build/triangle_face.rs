@@ -129,7 +129,7 @@ impl<N: Real> Outline<N> {
     fn of_part(part: &Feature<N, 3>, base: &Self, tolerance: N) -> Option<Self> {
         let mut outline = Self::blank(part.id, base.tangents);
         let count = part.vertices.len();
-        if count < 3 || count > MOST || part.side_ids.len() != count {
+        if !(3..=MOST).contains(&count) || part.side_ids.len() != count {
             return None;
         }
         for (at, vertex) in part.vertices.iter().enumerate() {
@@ -181,8 +181,9 @@ impl<N: Real> Outline<N> {
     fn insides_of(&self, other: &Self) -> Insides<N> {
         let mut insides = [[N::ZERO; MOST]; MOST];
         for (row, place) in insides.iter_mut().zip(&other.flats[..other.count]) {
-            for at in 0..self.count {
-                row[at] = self.inward[at].dot(&(place - self.flats[at]));
+            let sides = self.inward.iter().zip(&self.flats).take(self.count);
+            for (inside, (inward, flat)) in row.iter_mut().zip(sides) {
+                *inside = inward.dot(&(place - flat));
             }
         }
         insides
@@ -192,7 +193,8 @@ impl<N: Real> Outline<N> {
     fn locate(&self, place: &Vector<N, 2>, insides: &[N; MOST], tolerance: N) -> Option<FeatureId> {
         let insides = &insides[..self.count];
         let least = insides.iter().fold(N::INFINITY, |least, &inside| min(inside, least));
-        if !(least >= -tolerance) {
+        let is_inside = least >= -tolerance;
+        if !is_inside {
             return None;
         }
         if least > tolerance {

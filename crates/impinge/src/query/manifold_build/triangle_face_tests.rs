@@ -27,7 +27,7 @@ impl Noise {
     fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
         let mut corner = || Point::from(self.vector::<N>(1.0));
         let [mut a, mut b, mut c] = [corner(), corner(), corner()];
-        if round % 4 == 0 {
+        if round.is_multiple_of(4) {
             (a.y, b.y, c.y) = (N::ZERO, N::ZERO, N::ZERO);
         }
         Triangle::new(a, b, c)

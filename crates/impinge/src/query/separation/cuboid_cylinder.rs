@@ -6,7 +6,7 @@
 //! large as the overlap is deep. What is not proved, such as an edge of the box in the rim, is left to the
 //! general algorithm.
 
-use super::cylinder_cylinder::{Found, Tried, radial};
+use super::cylinder_cylinder::{Attempt, Found, Tried, radial};
 use super::hulls::{Units, in_first_frame, noise};
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
@@ -41,7 +41,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     };
     let limit_in_units = limit * shrink;
     let slack = N::lit(16.0) * noise::<N>() * (N::ONE + limit_in_units.abs());
-    let tries: [(&dyn Fn() -> Option<Tried<N>>, bool); 4] = [
+    let tries: [(Attempt<'_, N>, bool); 4] = [
         (&|| Some(meeting.face()), false),
         (&|| Some(meeting.cap()), true),
         (&|| meeting.edge(), false),

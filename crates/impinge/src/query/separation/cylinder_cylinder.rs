@@ -95,6 +95,9 @@ pub(super) struct Tried<N: Real> {
     pub(super) found: Option<Found<N>>,
 }
 
+/// A direction that is looked for when it is its turn.
+pub(super) type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
+
 /// Two cylinders, seen from each.
 struct Meeting<N: Real> {
     views: [View<N>; 2],
@@ -121,7 +124,7 @@ impl<N: Real> Meeting<N> {
     /// Tries one direction after the other until one is the answer, or beyond the limit.
     fn resolve(&self, limit: N) -> Verdict<N> {
         let [first, second] = &self.views;
-        let tries: [(&dyn Fn() -> Option<Tried<N>>, bool); 6] = [
+        let tries: [(Attempt<'_, N>, bool); 6] = [
             (&|| Some(first.cap()), false),
             (&|| Some(second.cap()), true),
             (&|| first.across(), false),

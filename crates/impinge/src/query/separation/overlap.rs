@@ -136,8 +136,10 @@ mod tests {
     #[test]
     fn what_is_found_to_overlap_does() {
         for size in [1.0, 1e-9, 1e6] {
-            (space::<f32>(size), space::<f64>(size));
-            (plane::<f32>(size), plane::<f64>(size));
+            space::<f32>(size);
+            space::<f64>(size);
+            plane::<f32>(size);
+            plane::<f64>(size);
         }
     }
 

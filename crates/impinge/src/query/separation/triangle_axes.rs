@@ -136,7 +136,8 @@ impl<'a, N: Real> Fin<'a, N> {
         // Of solids that overlap the points do lie across from each other, but where other sides or
         // faces are as good but for rounding, they may be the wrong ones.
         let room = if axis.gap > N::ZERO { noise::<N>() } else { N::lit(4.0) * noise::<N>() };
-        if !(aside.norm() <= room) {
+        let is_across = aside.norm() <= room;
+        if !is_across {
             return None;
         }
         let placed = |point: Vector<N, 3>| self.pose12.point(&Point::from(point * self.scale));

@@ -105,12 +105,10 @@ fn best_edges<N: Real>(
     least: N,
 ) -> Option<Axis<N>> {
     let (mut best, mut bound) = (None, least);
-    for at in 0..3 {
-        let (side, on) = (&sides[at], &fin.corners[at]);
+    for (at, side) in sides.iter().enumerate() {
+        let on = &fin.corners[at];
         let off = &fin.corners[if at == 0 { 2 } else { at - 1 }];
-        for axis in 0..3 {
-            const NEXT: [(usize, usize); 3] = [(1, 2), (2, 0), (0, 1)];
-            let (i1, i2) = NEXT[axis];
+        for (axis, (i1, i2)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
             // The axis of the box times the side.
             let (x, y) = (-side[i2], side[i1]);
             let (p, q) = (x * on[i1] + y * on[i2], x * off[i1] + y * off[i2]);

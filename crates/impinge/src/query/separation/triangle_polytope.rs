@@ -162,9 +162,9 @@ fn best_edges<N: Real>(
             let across = if first >> side & 1 == 1 { across } else { -across };
             let slack = across.dot(&(fin.corners[side] - from * fin.shrink));
             let squared = across.norm_squared();
-            let is_less = bound >= N::ZERO && !(slack > N::ZERO);
-            let is_level = !(squared > least_sine::<N>() * least_sine() * along.norm_squared());
-            if is_less || is_level {
+            let is_more = bound < N::ZERO || slack > N::ZERO;
+            let is_steep = squared > least_sine::<N>() * least_sine() * along.norm_squared();
+            if !is_more || !is_steep {
                 continue;
             }
             let length = squared.sqrt();

@@ -44,7 +44,7 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
             Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
             Self::Near(own) => broad_phase.visit_nearest_roughly(own, limit, visit),
             Self::Cast(own, velocity) => {
-                broad_phase.visit_cast_roughly(own, velocity, limit, visit)
+                broad_phase.visit_cast_roughly(own, velocity, limit, visit);
             }
         }
     }

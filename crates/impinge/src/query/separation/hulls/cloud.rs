@@ -206,10 +206,8 @@ impl<N: Real> Cloud<N> {
         for (number, block) in self.blocks[..self.used].iter().enumerate() {
             let rest = self.count - number * LANES;
             for lane in 0..if rest < LANES { rest } else { LANES } {
-                let vertex = by_axis(
-                    #[inline(always)]
-                    |axis| V::all(simd, block[axis][lane]),
-                );
+                let [x, y, z] = block;
+                let vertex = [V::all(simd, x[lane]), V::all(simd, y[lane]), V::all(simd, z[lane])];
                 low = dot(along, &vertex).smaller(low);
             }
         }

@@ -1,5 +1,7 @@
 //! A face of one solid, and the vertices of the other that lie nearest to it.
 
+use core::ops::ControlFlow;
+
 use fearless_simd::Simd;
 
 use super::cloud::{Cloud, Heights, Place, highest_over};
@@ -65,33 +67,43 @@ impl<N: Real> Meeting<'_, '_, N> {
         };
         for reach in reaches {
             let is_last = reach >= reaches[1];
-            let mut are_apart = height > N::ZERO;
-            if !are_apart {
-                let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
-                    if above.is_some() || is_last {
-                        return above;
-                    }
-                    continue;
-                };
-                let found = self.across::<S, V>(simd, &crossing);
-                if let Some(found) = found
-                    && (is_last || self.is_certain::<S, V>(simd, &found))
-                {
-                    return Some(found);
-                }
-                are_apart = found.is_none() && crossing.height > N::ZERO;
-            }
-            if are_apart {
-                let found = self.nearest::<S, V>(simd, reach);
-                if found.is_some() {
-                    return found;
-                }
-            }
-            if is_last {
-                return None;
+            if let ControlFlow::Break(found) = self.within::<S, V>(simd, reach, is_last, above) {
+                return found;
             }
         }
         None
+    }
+
+    /// The answer by edges within a reach, unless more of them may have a better one.
+    #[inline(always)]
+    fn within<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+        is_last: bool,
+        above: Option<Found<N>>,
+    ) -> ControlFlow<Option<Found<N>>> {
+        let mut are_apart = self.height() > N::ZERO;
+        if !are_apart {
+            let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
+                let is_decided = above.is_some() || is_last;
+                return if is_decided {
+                    ControlFlow::Break(above)
+                } else {
+                    ControlFlow::Continue(())
+                };
+            };
+            let found = self.across::<S, V>(simd, &crossing);
+            if let Some(found) = found
+                && (is_last || self.is_certain::<S, V>(simd, &found))
+            {
+                return ControlFlow::Break(Some(found));
+            }
+            are_apart = found.is_none() && crossing.height > N::ZERO;
+        }
+        let found = if are_apart { self.nearest::<S, V>(simd, reach) } else { None };
+        let is_decided = found.is_some() || is_last;
+        if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
 
     /// Whether an answer across edges is one whatever other edges there are: the solids are apart, or
