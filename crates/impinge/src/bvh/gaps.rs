@@ -144,7 +144,7 @@ mod tests {
         let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;
         match *state >> 40 & 7 {
             0 => 0.0,
-            1 => small * largest * 0.0078125,
+            1 => small * 0.007_812_5 * largest,
             2 => small * 1e-30,
             3 => small * 1e-42,
             _ => small * 0.125,
