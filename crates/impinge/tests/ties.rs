@@ -179,7 +179,8 @@ fn of_equal_objects_the_first_by_handle_answers() {
             for _ in 0..25 {
                 ties += ask(&world, &mut random);
             }
-            let handles: Vec<_> = world.collision_objects().map(|object| object.handle()).collect();
+            let handles: Vec<_> =
+                world.collision_objects().map(impinge::world::CollisionObject::handle).collect();
             for &handle in handles.iter().step_by(5) {
                 let position = place(&mut random);
                 world.set_position(handle, position);
