@@ -38,12 +38,11 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if slots.is_empty() {
             return;
         }
-        let window = (self.homes.len() / WINDOW + 1).min(slots.len());
-        let start = self.cursor % slots.len();
-        self.cursor = start + window;
+        let start = if self.cursor < slots.len() { self.cursor } else { 0 };
+        self.cursor = start + self.homes.len() / WINDOW + 1;
         let is_resting =
             |id: u32| id != NONE && self.clock.wrapping_sub(self.last_change[id as usize]) >= REST;
-        let looked_at = slots.iter().skip(start).take(window);
+        let looked_at = slots[start..self.cursor.min(slots.len())].iter();
         resting.extend(looked_at.copied().filter(|&id| is_resting(id)));
     }
 }
