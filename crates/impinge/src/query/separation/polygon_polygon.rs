@@ -262,7 +262,11 @@ mod tests {
         let mut in_lanes = 0;
         for count in (3..9).cycle().take(600) {
             let outlines = [(); 2].map(|()| {
-                let mut place = || Point::from(random.vector::<f64>().xy());
+                // Vertices around a circle: few corners are tips.
+                let mut place = || {
+                    let away = random.vector::<f64>().xy().try_normalize(1e-3);
+                    Point::from(away.unwrap_or_else(Vector::<f64, 2>::x))
+                };
                 let points: Vec<_> = (0..count).map(|_| place()).collect();
                 let at = random.vector::<f64>().xy() * 2.0;
                 let polygon = ConvexPolygon::try_from_points(&points).ok()?;
