@@ -91,6 +91,7 @@ impl Contender for Coal {
             self.pairs.deepest(&mut found);
         }
         let answer = |found: f32| match question {
+            _ if found.is_nan() => Answer::UNSUPPORTED,
             Question::Distance => Answer(found),
             Question::Proximity => Answer::touching(found.is_finite()),
             _ => Answer::deepest(std::iter::once(found)),
