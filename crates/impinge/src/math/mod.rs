@@ -8,6 +8,7 @@
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.
 
 mod eight;
+pub(crate) mod lanes;
 mod pose;
 mod real;
 mod space;

@@ -3,6 +3,7 @@
 use fearless_simd::{Select, Simd};
 
 use super::{BoxJob, LANES};
+use crate::math::lanes::{by_axis, either, lit, norm, seen_from};
 use crate::math::{Pose, Real, Wide};
 use crate::query::manifold_build::frame::ROUNDING_ERRORS;
 use crate::shape::Cuboid;
@@ -112,63 +113,6 @@ pub(super) struct Boxes<V, const D: usize> {
     pub(super) translation: [V; D],
     pub(super) half1: [V; D],
     pub(super) half2: [V; D],
-}
-
-/// The same number in all lanes.
-#[inline(always)]
-pub(in super::super) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
-    V::all(simd, N::lit(value))
-}
-
-/// What there is for each axis.
-#[inline(always)]
-pub(in super::super) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
-    let mut all = [of(0); D];
-    for (axis, one) in all.iter_mut().enumerate().skip(1) {
-        *one = of(axis);
-    }
-    all
-}
-
-/// The sum of the products, in the order of the axes.
-#[inline(always)]
-pub(in super::super) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
-    let mut sum = a[0] * b[0];
-    for axis in 1..D {
-        sum += a[axis] * b[axis];
-    }
-    sum
-}
-
-/// The length.
-#[inline(always)]
-pub(in super::super) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
-    dot(v, v).sqrt()
-}
-
-/// A vector in the frame with these axes.
-#[inline(always)]
-pub(in super::super) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
-    axes: &[[V; D]; D],
-    vector: &[V; D],
-) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| dot(&axes[axis], vector),
-    )
-}
-
-/// Of two vectors the one that each lane wants.
-#[inline(always)]
-pub(in super::super) fn either<S: Simd, V: Wide<S>, const D: usize>(
-    is: V::Mask,
-    one: &[V; D],
-    other: &[V; D],
-) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| is.select(one[axis], other[axis]),
-    )
 }
 
 /// What a box of the pair sees of the other, the second where the mask says so: the other's axes and

@@ -20,7 +20,6 @@ pub(super) mod tests;
 use fearless_simd::{Level, Simd};
 
 use self::gather::Inputs;
-pub(super) use self::gather::{by_axis, dot, either, lit, norm, seen_from};
 pub(super) use self::masks::{bits, transposed};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::math::{Pose, Real, Wide};

@@ -2,9 +2,9 @@
 
 use fearless_simd::{Select, Simd};
 
-use super::Solid;
 use super::gather::Inputs;
 use super::vectors::{dot, either, length_of, minus, plus, times};
+use super::{PairQuestion, Solid};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::FeatureId;
 
@@ -13,6 +13,14 @@ pub(super) const END_OR_SIDE: [FeatureId; 4] =
     [FeatureId::Edge(0), FeatureId::Vertex(0), FeatureId::Vertex(1), FeatureId::Edge(0)];
 
 impl<N: Real, const D: usize> Inputs<N, D> {
+    /// Two segments or capsules and where they are; answers whether both are.
+    #[inline(always)]
+    pub(super) fn put_cores(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+        self.put_poses(lane, pair);
+        self.put_sine(lane, pair.request.sine);
+        self.put_core(lane, 0, pair.solids[0]) && self.put_core(lane, 1, pair.solids[1])
+    }
+
     /// A segment or capsule; answers whether it is one.
     #[inline(always)]
     pub(super) fn put_core(&mut self, lane: usize, which: usize, solid: &Solid<N, D>) -> bool {

@@ -17,9 +17,7 @@ pub(super) struct Segments2;
 impl<N: Real> Form<N, 2> for Segments2 {
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
-        inputs.put_poses(lane, pair);
-        inputs.put_sine(lane, pair.request.sine);
-        inputs.put_core(lane, 0, pair.solids[0]) && inputs.put_core(lane, 1, pair.solids[1])
+        inputs.put_cores(lane, pair)
     }
 
     #[inline(always)]

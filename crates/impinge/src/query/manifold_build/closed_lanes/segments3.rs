@@ -1,4 +1,4 @@
-//! Segments3 and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
+//! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
 
 use fearless_simd::{Select, Simd};
 
@@ -9,7 +9,7 @@ use super::{Form, Found, PairQuestion};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Segments3 and capsules whose cores are some way apart and cross when seen along the normal.
+/// Segments and capsules whose cores are some way apart and cross when seen along the normal.
 pub(super) struct Segments3;
 
 /// The ends of a segment in each lane.
@@ -18,9 +18,7 @@ type Ends<V> = [[V; 3]; 2];
 impl<N: Real> Form<N, 3> for Segments3 {
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
-        inputs.put_poses(lane, pair);
-        inputs.put_sine(lane, pair.request.sine);
-        inputs.put_core(lane, 0, pair.solids[0]) && inputs.put_core(lane, 1, pair.solids[1])
+        inputs.put_cores(lane, pair)
     }
 
     #[inline(always)]

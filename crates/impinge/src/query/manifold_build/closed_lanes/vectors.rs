@@ -2,8 +2,9 @@
 
 use fearless_simd::Simd;
 
-pub(super) use super::super::box_lanes::{bits, by_axis, dot, either, lit, norm, seen_from};
+pub(super) use super::super::box_lanes::bits;
 use super::super::frame::ROUNDING_ERRORS;
+pub(super) use crate::math::lanes::{by_axis, cross, dot, either, lit, norm, seen_from};
 use crate::math::{Real, Wide};
 
 /// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
@@ -42,11 +43,6 @@ pub(super) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D]
         #[inline(always)]
         |axis| -v[axis],
     )
-}
-
-#[inline(always)]
-pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The lanes where a square is far from both ends of the range, so that its root is the length.

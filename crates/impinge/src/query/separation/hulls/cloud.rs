@@ -3,6 +3,7 @@
 use fearless_simd::{Simd, SimdMask};
 
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
+use crate::math::lanes::{by_axis, dot};
 use crate::math::{Matrix, Real, Vector, Wide, max};
 use crate::shape::Planes;
 
@@ -47,18 +48,6 @@ fn low_half(bits: u64) -> u32 {
 pub(super) struct Place<N: Real> {
     pub(super) rotation: Matrix<N, 3>,
     pub(super) translation: Vector<N, 3>,
-}
-
-/// What there is for each of three axes. Not a `map`: that is not inlined into vector code.
-#[inline(always)]
-pub(super) fn by_axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
-    [of(0), of(1), of(2)]
-}
-
-/// The scalar product of vectors in lanes.
-#[inline(always)]
-pub(super) fn dot<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> V {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The same vector in all lanes.

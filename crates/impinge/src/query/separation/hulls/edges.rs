@@ -5,9 +5,10 @@ use core::array::from_fn;
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::cloud::{by_axis, dot, highest_lane, load, spread};
+use super::cloud::{highest_lane, load, spread};
 use super::face::{Meeting, Side};
 use super::{Found, LANES, noise};
+use crate::math::lanes::{self, by_axis, dot};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
@@ -256,7 +257,7 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if is_face.to_bitmask() == 0 {
         return None;
     }
-    let across = crossed(&along1, &along2);
+    let across = lanes::cross(&along1, &along2);
     let squared = dot(&across, &across);
     let from1: [V; 3] = spread(simd, &edge1.from);
     let away = by_axis(
@@ -269,11 +270,6 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
     let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
     Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))
-}
-
-#[inline(always)]
-fn crossed<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
@@ -302,7 +298,7 @@ fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let share1 = clamp((both * toward2 - toward1 * squared2) / spread);
     let share2 = clamp((both * share1 + toward2) / squared2);
     let share1 = clamp((both * share2 - toward1) / squared1);
-    let off = by_axis(
+    let off: [V; 3] = by_axis(
         #[inline(always)]
         |axis| away[axis] + along1[axis] * share1 - along2[axis] * share2,
     );

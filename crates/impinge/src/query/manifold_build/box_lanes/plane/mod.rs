@@ -10,9 +10,10 @@ use self::names::Names;
 use self::sides::Sides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::Choice;
-use super::gather::{Inputs, lit};
+use super::gather::Inputs;
 use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
+use crate::math::lanes::lit;
 use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts2;
 

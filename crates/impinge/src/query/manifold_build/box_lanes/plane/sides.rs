@@ -4,10 +4,11 @@
 use fearless_simd::{Select, Simd, SimdMask};
 
 use super::super::admit::{Admission, Slots};
-use super::super::gather::{Boxes, by_axis, dot, either, lit, other, tolerance};
+use super::super::gather::{Boxes, other, tolerance};
 use super::super::masks::bits;
 use super::SLOTS;
 use super::axis::BestSide;
+use crate::math::lanes::{by_axis, dot, either, lit};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 

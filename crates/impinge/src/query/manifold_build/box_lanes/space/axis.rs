@@ -2,7 +2,8 @@
 
 use fearless_simd::{Select, Simd};
 
-use super::super::gather::{Boxes, by_axis, dot, is_finite, lit};
+use super::super::gather::{Boxes, is_finite};
+use crate::math::lanes::{by_axis, dot, lit};
 use crate::math::{Real, Wide};
 
 /// The axis of the largest gap of eight pairs.

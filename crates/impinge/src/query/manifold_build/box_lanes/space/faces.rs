@@ -2,8 +2,9 @@
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::super::gather::{Boxes, by_axis, dot, either, lit, norm, other, seen_from, tolerance};
+use super::super::gather::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
+use crate::math::lanes::{by_axis, dot, either, lit, norm, seen_from};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 

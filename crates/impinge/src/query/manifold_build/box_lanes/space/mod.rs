@@ -12,9 +12,10 @@ use self::faces::Faces;
 use self::names::{Names, Side, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::{Choice, SLOTS};
-use super::gather::{Inputs, lit};
+use super::gather::Inputs;
 use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
+use crate::math::lanes::lit;
 use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts3;
 

@@ -1,0 +1,71 @@
+//! Vectors of which each coordinate is a number in every lane.
+//!
+//! Each operation is in the order of its scalar twin, so that a lane has the bits that a vector has. Nothing
+//! here is a `map`: closures that are handed to it are not inlined into vector code.
+
+use fearless_simd::{Select, Simd};
+
+use super::{Real, Wide};
+
+/// The same number in all lanes.
+#[inline(always)]
+pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
+    V::all(simd, N::lit(value))
+}
+
+/// What there is for each axis.
+#[inline(always)]
+pub(crate) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
+    let mut all = [of(0); D];
+    for (axis, one) in all.iter_mut().enumerate().skip(1) {
+        *one = of(axis);
+    }
+    all
+}
+
+/// The sum of the products, in the order of the axes.
+#[inline(always)]
+pub(crate) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
+    let mut sum = a[0] * b[0];
+    for axis in 1..D {
+        sum += a[axis] * b[axis];
+    }
+    sum
+}
+
+/// The length.
+#[inline(always)]
+pub(crate) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+    dot(v, v).sqrt()
+}
+
+/// The cross product.
+#[inline(always)]
+pub(crate) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// A vector in the frame with these axes.
+#[inline(always)]
+pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
+    axes: &[[V; D]; D],
+    vector: &[V; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| dot(&axes[axis], vector),
+    )
+}
+
+/// Of two vectors the one that each lane wants.
+#[inline(always)]
+pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
+    is: V::Mask,
+    one: &[V; D],
+    other: &[V; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| is.select(one[axis], other[axis]),
+    )
+}
