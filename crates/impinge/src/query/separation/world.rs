@@ -3,7 +3,7 @@
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
-use crate::query::pair::{Ordered, Placed};
+use crate::query::pair::{Ordered, Pair, Placed};
 use crate::shape::Shape;
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
@@ -40,13 +40,14 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<N> {
     let ordered = Ordered::new(placed1, placed2);
-    if limit >= N::ZERO && !ordered.has_composite() {
-        let pair = ordered.pair();
-        if (N::tables().certainly_overlap)(&pair) {
-            return Some(N::ZERO);
-        }
+    if ordered.has_composite() {
+        return of_composites(&ordered, limit, Wanted::Touching).map(|found| found.distance);
     }
-    in_first(&ordered, limit, Wanted::Touching).map(|found| found.distance)
+    let pair = finite(&ordered)?;
+    if limit >= N::ZERO && (N::tables().certainly_overlap)(&pair) {
+        return Some(N::ZERO);
+    }
+    super::separation(&pair, limit).map(|found| found.distance)
 }
 
 /// The separation in the frame of the first; `None` also if a pose is not finite.
@@ -59,11 +60,15 @@ fn in_first<N: Space<D>, const D: usize>(
     if ordered.has_composite() {
         return of_composites(ordered, limit, wanted);
     }
-    let pair = ordered.pair();
-    if !pair.pose12.is_finite() {
-        return None;
-    }
-    super::separation(&pair, limit)
+    super::separation(&finite(ordered)?, limit)
+}
+
+/// Two convex solids; `None` if a pose is not finite.
+#[inline]
+fn finite<'a, N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, 'a, N, D>,
+) -> Option<Pair<'a, N, D>> {
+    Some(ordered.pair()).filter(|pair| pair.pose12.is_finite())
 }
 
 /// [`in_first`], where one is a composite.
