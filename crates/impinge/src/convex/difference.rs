@@ -1,7 +1,7 @@
 //! The difference of two cores as one convex set, in units in which it is about 1 large.
 
-use super::Separation;
-use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit, unit_or};
+use super::{Separation, Units};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or};
 use crate::shape::SupportMap;
 
 /// What arithmetic cannot resolve, in units of the pair.
@@ -60,10 +60,7 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 }
 
-/// The cores of two solids, in the frame of the first, shrunk by a power of two.
-///
-/// One unit is at most the sum of the reaches of the cores and the distance of their origins, and
-/// more than half of it.
+/// The cores of two solids, in the frame of the first, in their [`Units`].
 pub(super) struct Pair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     solid1: &'a A,
     solid2: &'a B,
@@ -102,14 +99,9 @@ where
         if !pose12.is_finite() {
             return None;
         }
-        // A quarter of everything: the sum of finite lengths must not overflow.
-        let quarter = N::HALF * N::HALF;
-        let away = unit(&(pose12.translation * quarter)).map_or(N::ZERO, |(_, length)| length);
-        let size = safe_reach(solid1) * quarter + safe_reach(solid2) * quarter + away;
-        let scale = if size > N::ZERO { size.power_of_two_below() } else { N::ONE };
-        let shrink = quarter / scale;
+        let reaches = (safe_reach(solid1), safe_reach(solid2));
+        let Units { scale, shrink } = Units::of(reaches.0, reaches.1, &pose12.translation);
         let translation = pose12.translation * shrink;
-        let scale = scale / quarter;
         let rotation = pose12.rotation;
         Some(Self { solid1, solid2, rotation, translation, scale, shrink, is_flat: false })
     }

@@ -29,10 +29,12 @@ mod simplex2;
 mod simplex3;
 #[cfg(test)]
 mod tests;
+mod units;
 mod witness;
 
 pub(crate) use separation::Separation;
 pub(crate) use simplex::Simplicial;
+pub(crate) use units::Units;
 
 use crate::math::Pose;
 use crate::shape::SupportMap;

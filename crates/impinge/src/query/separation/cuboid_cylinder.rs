@@ -6,10 +6,10 @@
 //! large as the overlap is deep. What is not proved, such as an edge of the box in the rim, is left to the
 //! general algorithm.
 
-use super::cylinder_cylinder::{Attempt, Found, Tried, radial};
-use super::hulls::{Units, in_first_frame, noise};
-use super::{general, wrong_kinds};
-use crate::convex::Separation;
+use super::cylinder_cylinder::{Attempt, Found, Tried, Verdict, radial};
+use super::hulls::{noise, out_of_reach};
+use super::wrong_kinds;
+use crate::convex::{Separation, Units};
 use crate::math::{Matrix, Real, Vector, cross, max, min, unit};
 use crate::query::Pair;
 use crate::shape::{Kind, SupportMap};
@@ -39,26 +39,13 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         from_cylinder: -pair.pose12.inverse_vector(&center),
         axes: pair.pose12.rotation.transpose(),
     };
-    let limit_in_units = limit * shrink;
-    let slack = N::lit(16.0) * noise::<N>() * (N::ONE + limit_in_units.abs());
     let tries: [(Attempt<'_, N>, bool); 4] = [
         (&|| Some(meeting.face()), false),
         (&|| Some(meeting.cap()), true),
         (&|| meeting.edge(), false),
         (&|| meeting.corner(), true),
     ];
-    for (attempt, is_second) in tries {
-        let Some(tried) = attempt() else { continue };
-        if tried.height > limit_in_units + slack {
-            return None;
-        }
-        if let Some(found) = tried.found {
-            let found = found.restored(units.scale);
-            let found = if is_second { in_first_frame(&found, &pair.pose12) } else { found };
-            return Some(found).filter(|found| found.distance <= limit);
-        }
-    }
-    general::separation(pair, limit)
+    Verdict::of(&tries, out_of_reach(&units, limit)).answer(&units, pair, limit)
 }
 
 /// A box and a cylinder, in units of the pair.

@@ -8,9 +8,9 @@
 //! deep there holds such a ball. What is not proved is left to the general algorithm, such as two rims
 //! that overlap.
 
-use super::hulls::{Units, in_first_frame, noise};
+use super::hulls::{in_first_frame, noise, out_of_reach};
 use super::{general, wrong_kinds};
-use crate::convex::Separation;
+use crate::convex::{Separation, Units};
 use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::query::Pair;
 use crate::shape::{Cylinder, Kind, SupportMap};
@@ -30,26 +30,51 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
     let meeting = Meeting::new(first, second, &pair.pose12, units.shrink);
-    let limit_in_units = limit * units.shrink;
-    let slack = N::lit(16.0) * noise::<N>() * (N::ONE + limit_in_units.abs());
-    match meeting.resolve(limit_in_units + slack) {
-        Verdict::Beyond => None,
-        Verdict::Undecided => general::separation(pair, limit),
-        Verdict::Found(found, is_second) => {
-            let found = found.restored(units.scale);
-            let found = if is_second { in_first_frame(&found, &pair.pose12) } else { found };
-            Some(found).filter(|found| found.distance <= limit)
-        }
-    }
+    let verdict = meeting.resolve(out_of_reach(&units, limit));
+    verdict.answer(&units, pair, limit)
 }
 
 /// How the search ended.
-enum Verdict<N: Real> {
+pub(super) enum Verdict<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
     /// In the frame of the first solid, or that of the second.
     Found(Found<N>, bool),
     Undecided,
+}
+
+impl<N: Real> Verdict<N> {
+    /// Tries one direction after the other until one is the answer, or parts the solids by more than
+    /// `beyond`; with each goes whether it is seen from the second solid.
+    pub(super) fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
+        for (attempt, is_second) in tries {
+            let Some(tried) = attempt() else { continue };
+            if tried.height > beyond {
+                return Self::Beyond;
+            }
+            if let Some(found) = tried.found {
+                return Self::Found(found, *is_second);
+            }
+        }
+        Self::Undecided
+    }
+
+    /// The answer in the frame of the first solid and the lengths of the pair; what is not decided is left
+    /// to the general algorithm.
+    pub(super) fn answer(
+        &self,
+        units: &Units<N>,
+        pair: &Pair<'_, N, 3>,
+        limit: N,
+    ) -> Option<Separation<N, 3>> {
+        let found = match self {
+            Self::Beyond => return None,
+            Self::Undecided => return general::separation(pair, limit),
+            Self::Found(found, false) => found.restored(units.scale),
+            Self::Found(found, true) => in_first_frame(&found.restored(units.scale), &pair.pose12),
+        };
+        Some(found).filter(|found| found.distance <= limit)
+    }
 }
 
 /// An answer in the frame of one solid, from it to the other, in units of the pair.
@@ -121,8 +146,7 @@ impl<N: Real> Meeting<N> {
         }
     }
 
-    /// Tries one direction after the other until one is the answer, or beyond the limit.
-    fn resolve(&self, limit: N) -> Verdict<N> {
+    fn resolve(&self, beyond: N) -> Verdict<N> {
         let [first, second] = &self.views;
         let tries: [(Attempt<'_, N>, bool); 6] = [
             (&|| Some(first.cap()), false),
@@ -132,16 +156,7 @@ impl<N: Real> Meeting<N> {
             (&|| second.side(), true),
             (&|| first.rims(), false),
         ];
-        for (attempt, is_second) in tries {
-            let Some(tried) = attempt() else { continue };
-            if tried.height > limit {
-                return Verdict::Beyond;
-            }
-            if let Some(found) = tried.found {
-                return Verdict::Found(found, is_second);
-            }
-        }
-        Verdict::Undecided
+        Verdict::of(&tries, beyond)
     }
 }
 

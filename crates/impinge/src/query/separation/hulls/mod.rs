@@ -22,8 +22,8 @@ use self::cloud::{Cloud, Place};
 use self::face::{Meeting, Side};
 use self::solid::{BoxParts, Flat};
 use super::{general, wrong_kinds};
-use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, Wide, unit};
+use crate::convex::{Separation, Units};
+use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::Pair;
 use crate::shape::{Cuboid, Kind, SupportMap};
 
@@ -78,22 +78,11 @@ pub(super) fn noise<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// A unit of length in which the pair is about 1 large: a power of two, so that nothing is rounded.
-#[derive(Clone, Copy)]
-pub(super) struct Units<N> {
-    pub(super) scale: N,
-    pub(super) shrink: N,
-}
-
-impl<N: Real> Units<N> {
-    pub(super) fn of(reach1: N, reach2: N, translation: &Vector<N, 3>) -> Self {
-        // A quarter of everything: the sum of finite lengths must not overflow.
-        let quarter = N::HALF * N::HALF;
-        let away = unit(&(translation * quarter)).map_or(N::ZERO, |(_, length)| length);
-        let size = reach1 * quarter + reach2 * quarter + away;
-        let scale = if size > N::ZERO { size.power_of_two_below() } else { N::ONE };
-        Self { scale: scale / quarter, shrink: quarter / scale }
-    }
+/// What a lower bound has to exceed to be out of reach, in units of the pair: a limit of the caller's, and
+/// rounding.
+pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
+    let limit = limit * units.shrink;
+    limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs())
 }
 
 fn between<N: Real>(
@@ -142,9 +131,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) -> Verdict<N> {
     let units = Units::of(first.reach, second.reach, &pose12.translation);
     let shrink = units.shrink;
-    let limit = limit * shrink;
-    // A lower bound: what it rejects by more than rounding is out of reach.
-    let beyond = limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs());
+    let beyond = out_of_reach(&units, limit);
     let in_first = Place { rotation: pose12.rotation, translation: pose12.translation * shrink };
     let own2 = Cloud::own::<S, V>(simd, (second.blocks, second.vertices), shrink);
     let cloud2 = own2.placed::<S, V>(simd, &in_first);
