@@ -5,7 +5,7 @@
 
 use fearless_simd::{Select, Simd};
 
-use super::{Real, Wide};
+use super::{Real, Vector, Wide};
 
 /// The same number in all lanes.
 #[inline(always)]
@@ -21,6 +21,30 @@ pub(crate) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D
         *one = of(axis);
     }
     all
+}
+
+/// The same vector in all lanes.
+#[inline(always)]
+pub(crate) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    v: &Vector<N, D>,
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::all(simd, v[axis]),
+    )
+}
+
+/// As many vectors as there are lanes, by their coordinates.
+#[inline(always)]
+pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
+    simd: S,
+    block: &[[N; L]; D],
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::load(simd, &block[axis]),
+    )
 }
 
 /// The sum of the products, in the order of the axes.

@@ -7,6 +7,7 @@
 //! with flat faces; [`CompositeShape`] is a union of solids.
 
 mod ball;
+mod bend;
 mod bounds;
 mod capsule;
 mod composite;

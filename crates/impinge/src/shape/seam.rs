@@ -12,7 +12,7 @@
 use crate::math::{Real, Vector, unit};
 
 /// The sine of the angle up to which faces count as one flat: 0.57 degrees.
-const FLAT_SINE: f64 = 0.01;
+pub(super) const FLAT_SINE: f64 = 0.01;
 
 /// The sine of the angle that rounding may turn unit vectors by.
 pub(super) fn slack<N: Real>() -> N {

@@ -38,6 +38,12 @@ impl<N: Real, const D: usize> Segment<N, D> {
         Ok(Self { a, b })
     }
 
+    /// The segment between two points that are known to be finite.
+    #[inline]
+    pub(crate) const fn of_finite(a: Point<N, D>, b: Point<N, D>) -> Self {
+        Self { a, b }
+    }
+
     /// The first end.
     #[inline]
     #[must_use]

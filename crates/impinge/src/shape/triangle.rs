@@ -49,7 +49,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 
     /// The triangle of corners that are known to be finite.
     #[inline]
-    pub(super) const fn of_finite(corners: [Point<N, D>; 3]) -> Self {
+    pub(crate) const fn of_finite(corners: [Point<N, D>; 3]) -> Self {
         Self { corners }
     }
 

@@ -245,15 +245,23 @@ fn add_witness<N: Real, const D: usize>(
     out.push(Candidate::alone(&frame.witness, features));
 }
 
-/// The candidate that stands for the witness: of those whose distance is the smallest but for
-/// rounding, at most `limit`, one that the previous manifold held, then the deepest.
+/// The candidate that stands for the witness; see [`deepest_of`].
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
-    let rank = |index: usize| {
+    deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];
-        let is_level = candidate.distance <= limit;
-        (!(is_level && candidate.kept_id.is_some()), candidate.distance)
+        (candidate.kept_id.is_some(), candidate.distance)
+    })
+}
+
+/// Of candidates whose distance is the smallest but for rounding, at most `limit`, one that the previous
+/// manifold held, then the deepest: its index. `what` tells of each whether it was held, and its distance.
+#[inline]
+fn deepest_of<N: Real>(count: usize, limit: N, what: impl Fn(usize) -> (bool, N)) -> usize {
+    let rank = |index: usize| {
+        let (is_kept, distance) = what(index);
+        (!(distance <= limit && is_kept), distance)
     };
-    (1..candidates.len()).fold(0, |best, index| {
+    (1..count).fold(0, |best, index| {
         let (new, old) = (rank(index), rank(best));
         if (new.0, old.0) == (false, true) || new.0 == old.0 && new.1 < old.1 {
             index

@@ -74,11 +74,9 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     {
         return merging.push_alone(piece, (&kept, patches), ids);
     }
-    let layout = Layout::of(merging);
+    let (layout, choosing) = (Layout::of(merging), Choosing { merging, kept: &kept });
     for group in &layout.groups {
-        let members = merging.members(group, &layout, &kept);
-        let lead = &merging.pieces[group.lead];
-        patches.push(reduced(lead.normal, members, merging, ids));
+        patches.push(choosing.patch(group, &layout, ids));
     }
 }
 
@@ -214,152 +212,174 @@ fn are_level<N: Real, const D: usize>(
 
 /// A point of a patch, seen along its normal.
 #[derive(Clone, Copy)]
-struct Member<N: Real, const D: usize> {
-    candidate: Candidate<N, D>,
-    parts: [u32; 2],
+struct Member<N> {
+    flat: Vector<N, 2>,
+    /// The index of its piece, and its own.
+    piece: usize,
+    point: usize,
 }
 
 /// The points of a patch, or their indices.
-type Members<N, const D: usize> = SmallVec<[Member<N, D>; 16]>;
+type Members<N> = SmallVec<[Member<N>; 16]>;
 type Indices = SmallVec<[usize; 16]>;
 
-impl<N: Space<D>, const D: usize> Merging<'_, N, D> {
+/// What the points of a patch are chosen by.
+struct Choosing<'a, N: Real, const D: usize> {
+    merging: &'a Merging<'a, N, D>,
+    kept: &'a Kept,
+}
+
+impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
+    /// A patch of at most as many points as are asked for: the deepest and, of the outline, those that
+    /// span most.
+    fn patch(&self, group: &Group, layout: &Layout, ids: &mut PairIds) -> Patch<N, D> {
+        let normal = self.merging.pieces[group.lead].normal;
+        let tangents = (N::tables().tangents)(&normal);
+        let members = self.members(group, layout, &tangents);
+        let (lowest, tolerance) =
+            (self.merging.points[group.deepest].distance, self.merging.tolerance);
+        let outline = self.outline(members, lowest + tolerance);
+        let deepest = super::deepest_of(outline.len(), lowest + tolerance, |index| {
+            (self.kept[outline[index].point].is_some(), self.distance(&outline[index]))
+        });
+        // In the plane two points delimit all there is.
+        let is_line = tangents[1] == Vector::<N, D>::zeros();
+        let most = self.merging.request.max_points.max(1);
+        let limit = if is_line { most.min(2) } else { most };
+        let chosen = self.chosen(&outline, deepest, limit);
+        let mut named: SmallVec<[(u32, usize); 8]> = SmallVec::new();
+        for index in chosen {
+            named.push((self.kept[outline[index].point].unwrap_or_else(|| ids.next()), index));
+        }
+        named.sort_unstable();
+        let mut points: SmallVec<[PatchPoint<N, D>; 4]> = SmallVec::new();
+        for (id, index) in named {
+            let Member { piece, point, .. } = outline[index];
+            let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
+            if index == deepest {
+                raw.distance = lowest;
+            }
+            points.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+        }
+        Patch { normal, points }
+    }
+
+    fn distance(&self, member: &Member<N>) -> N {
+        self.merging.points[member.point].distance
+    }
+
     /// The points of a group that the request asks for, the deepest first; that one always, also
     /// where its coordinates are no numbers.
-    fn members(&self, group: &Group, layout: &Layout, kept: &Kept) -> Members<N, D> {
-        let lead = &self.pieces[group.lead];
-        let tangents = (N::tables().tangents)(&lead.normal);
-        let origin: Point<N, D> = self.points[group.deepest].point1;
-        let ManifoldRequest { prediction, sine, .. } = *self.request;
+    fn members(&self, group: &Group, layout: &Layout, tangents: &[Vector<N, D>; 2]) -> Members<N> {
+        let Merging { request, pieces, points, .. } = *self.merging;
+        let origin: Point<N, D> = points[group.deepest].point1;
         let mut members = Members::new();
-        let mut push = |index: usize, parts: [u32; 2]| {
-            let (raw, is_first) = (&self.points[index], index == group.deepest);
-            let arm = if is_first { Vector::<N, D>::zeros() } else { raw.point1 - origin };
-            let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
-            let reach = if sine > N::ZERO { sine * flat.norm() } else { N::ZERO };
-            if is_first || raw.distance <= prediction + reach {
-                let (point1, features) = (raw.point1, [raw.feature1, raw.feature2]);
-                let (distance, kept_id) = (raw.distance, kept[index]);
-                let candidate = Candidate { point1, distance, flat, features, kept_id };
-                members.push(Member { candidate, parts });
-            }
-        };
-        push(group.deepest, lead.parts);
+        members.push(Member {
+            flat: Vector::<N, 2>::zeros(),
+            piece: group.lead,
+            point: group.deepest,
+        });
         for (piece, _) in layout.order.iter().filter(|(_, lead)| *lead == group.lead) {
-            let piece = &self.pieces[*piece];
-            let rest = piece.points.clone().filter(|index| *index != group.deepest);
-            rest.for_each(|index| push(index, piece.parts));
+            for point in pieces[*piece].points.clone().filter(|point| *point != group.deepest) {
+                let arm = points[point].point1 - origin;
+                let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+                let is_turning = request.sine > N::ZERO;
+                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + reach {
+                    members.push(Member { flat, piece: *piece, point });
+                }
+            }
         }
         members
     }
-}
 
-/// A patch of at most as many points as are asked for: the deepest, which comes first, and of the
-/// outline those that span most.
-fn reduced<N: Space<D>, const D: usize>(
-    normal: Vector<N, D>,
-    members: Members<N, D>,
-    merging: &Merging<'_, N, D>,
-    ids: &mut PairIds,
-) -> Patch<N, D> {
-    let (lowest, tolerance) = (members[0].candidate.distance, merging.tolerance);
-    let (members, outline) = outline(members, lowest + tolerance, tolerance);
-    let mut candidates: SmallVec<[Candidate<N, D>; 16]> = SmallVec::new();
-    for &index in &outline {
-        candidates.push(members[index].candidate);
+    /// The points on the outline of all, each place once; and the deepest, if no point of the outline
+    /// is at most `level`.
+    fn outline(&self, members: Members<N>, level: N) -> Members<N> {
+        let members = self.without_copies(members);
+        let mut outline = chain(&members, 0..members.len());
+        let back = chain(&members, (0..members.len()).rev());
+        // Each chain ends where the other starts.
+        outline.truncate(outline.len().saturating_sub(1).max(1));
+        outline.extend_from_slice(&back[..back.len() - 1]);
+        thin(&members, &mut outline, self.merging.tolerance);
+        let depth = |index: usize| self.distance(&members[index]);
+        if !outline.iter().any(|&index| depth(index) <= level) {
+            let deeper = |best, next| if depth(next) < depth(best) { next } else { best };
+            outline.extend((0..members.len()).reduce(deeper));
+        }
+        let mut corners = Members::new();
+        for index in outline {
+            corners.push(members[index]);
+        }
+        corners
     }
-    let deepest = super::deepest(&candidates, lowest + tolerance);
-    candidates[deepest].distance = lowest;
-    // In the plane two points delimit all there is.
-    let is_line = (N::tables().tangents)(&normal)[1] == Vector::<N, D>::zeros();
-    let most = merging.request.max_points.max(1);
-    let limit = if is_line { most.min(2) } else { most };
-    let chosen = reduce::chosen(&candidates, deepest, limit, tolerance);
-    let mut points: SmallVec<[PatchPoint<N, D>; 4]> = SmallVec::new();
-    for &index in &chosen {
-        let candidate = &candidates[index];
-        let id = candidate.kept_id.unwrap_or_else(|| ids.next());
-        let parts = members[outline[index]].parts;
-        points.push(PatchPoint { raw: candidate.named(id), parts });
-    }
-    points.sort_by_key(|point| point.raw.id);
-    Patch { normal, points }
-}
 
-/// The points, each place once; and the indices of those on the outline of all, and of the deepest, if
-/// no point of the outline is at most `level`.
-fn outline<N: Real, const D: usize>(
-    members: Members<N, D>,
-    level: N,
-    tolerance: N,
-) -> (Members<N, D>, Indices) {
-    let members = without_copies(members, tolerance);
-    let mut outline = chain(&members, 0..members.len());
-    let back = chain(&members, (0..members.len()).rev());
-    // Each chain ends where the other starts.
-    outline.truncate(outline.len().saturating_sub(1).max(1));
-    outline.extend_from_slice(&back[..back.len() - 1]);
-    thin(&members, &mut outline, tolerance);
-    let depth = |index: usize| members[index].candidate.distance;
-    if !outline.iter().any(|&index| depth(index) <= level) {
-        let deeper = |best, next| if depth(next) < depth(best) { next } else { best };
-        outline.extend((0..members.len()).reduce(deeper));
-    }
-    (members, outline)
-}
-
-/// The points sorted along the first tangent, then along the second; of points at one place, which
-/// the parts around it all have, one: one with a number, the deepest, or that of the first parts.
-fn without_copies<N: Real, const D: usize>(
-    mut members: Members<N, D>,
-    tolerance: N,
-) -> Members<N, D> {
-    let near = N::lit(4.0) * tolerance;
-    let rank = |member: &Member<N, D>| (member.candidate.kept_id.is_none(), member.parts);
-    let is_better = |new: &Member<N, D>, old: &Member<N, D>| {
-        let lower = old.candidate.distance - new.candidate.distance;
-        lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
-    };
-    members.sort_by(by_place);
-    // The first ones are those kept.
-    let (mut count, mut is_exchanged) = (0, false);
-    for next in 0..members.len() {
-        let member = members[next];
-        let flat = member.candidate.flat;
-        // Sorted along the first tangent: only the last few can be at the same place.
-        let in_reach = |at: &usize| flat.x - members[*at].candidate.flat.x <= N::TWO * near;
-        let mut last = (0..count).rev().take_while(in_reach);
-        match last.find(|&at| (members[at].candidate.flat - flat).norm_squared() <= near * near) {
-            Some(at) if is_better(&member, &members[at]) => {
-                (members[at], is_exchanged) = (member, true);
-            }
-            Some(_) => {}
-            None => {
-                members[count] = member;
-                count += 1;
+    /// The points sorted along the first tangent, then along the second; of points at one place, which
+    /// the parts around it all have, one: one with a number, the deepest, or that of the first parts.
+    fn without_copies(&self, mut members: Members<N>) -> Members<N> {
+        let near = N::lit(4.0) * self.merging.tolerance;
+        members.sort_by(by_place);
+        // The first ones are those kept.
+        let (mut count, mut is_exchanged) = (0, false);
+        for next in 0..members.len() {
+            let member = members[next];
+            let flat = member.flat;
+            // Sorted along the first tangent: only the last few can be at the same place.
+            let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
+            let mut last = (0..count).rev().take_while(in_reach);
+            match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
+                Some(at) if self.is_better(&member, &members[at]) => {
+                    (members[at], is_exchanged) = (member, true);
+                }
+                Some(_) => {}
+                None => {
+                    members[count] = member;
+                    count += 1;
+                }
             }
         }
+        members.truncate(count);
+        if is_exchanged {
+            // An exchange may have taken a point past its neighbours.
+            members.sort_by(by_place);
+        }
+        members
     }
-    members.truncate(count);
-    if is_exchanged {
-        // An exchange may have taken a point past its neighbours.
-        members.sort_by(by_place);
+
+    fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
+        let tolerance = self.merging.tolerance;
+        let rank = |member: &Member<N>| {
+            (self.kept[member.point].is_none(), self.merging.pieces[member.piece].parts)
+        };
+        let lower = self.distance(old) - self.distance(new);
+        lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     }
-    members
+
+    /// The indices of at most `limit` points of the outline.
+    fn chosen(&self, outline: &Members<N>, deepest: usize, limit: usize) -> SmallVec<[usize; 8]> {
+        if outline.len() <= limit {
+            return (0..outline.len()).collect();
+        }
+        let mut candidates: SmallVec<[Candidate<N, D>; 16]> = SmallVec::new();
+        for &Member { flat, point, .. } in outline {
+            let RawPoint { point1, distance, feature1, feature2, .. } = self.merging.points[point];
+            let (features, kept_id) = ([feature1, feature2], self.kept[point]);
+            candidates.push(Candidate { point1, distance, flat, features, kept_id });
+        }
+        reduce::chosen(&candidates, deepest, limit, self.merging.tolerance)
+    }
 }
 
-fn by_place<N: Real, const D: usize>(a: &Member<N, D>, b: &Member<N, D>) -> core::cmp::Ordering {
-    let (a, b) = (&a.candidate.flat, &b.candidate.flat);
+fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+    let (a, b) = (&a.flat, &b.flat);
     a.x.as_f64().total_cmp(&b.x.as_f64()).then(a.y.as_f64().total_cmp(&b.y.as_f64()))
 }
 
 /// One side of the hull of sorted points, from the first to the last: every corner turns left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
-fn chain<N: Real, const D: usize>(
-    members: &[Member<N, D>],
-    order: impl Iterator<Item = usize>,
-) -> Indices {
+fn chain<N: Real>(members: &[Member<N>], order: impl Iterator<Item = usize>) -> Indices {
     let mut chain = Indices::new();
     for member in order {
         while let [.., before, last] = chain[..] {
@@ -377,19 +397,19 @@ fn chain<N: Real, const D: usize>(
 /// Twice the area of a triangle; positive if the middle one lies left of the way from the first to the
 /// last.
 #[inline]
-fn beside<N: Real, const D: usize>(members: &[Member<N, D>], corners: [usize; 3]) -> N {
-    let [from, at, to] = corners.map(|corner| members[corner].candidate.flat);
+fn beside<N: Real>(members: &[Member<N>], [from, at, to]: [usize; 3]) -> N {
+    let (from, at, to) = (members[from].flat, members[at].flat, members[to].flat);
     cross2(&(to - from), &(at - from))
 }
 
 /// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
 /// next to them.
-fn thin<N: Real, const D: usize>(members: &[Member<N, D>], outline: &mut Indices, tolerance: N) {
+fn thin<N: Real>(members: &[Member<N>], outline: &mut Indices, tolerance: N) {
     let mut at = 0;
     while outline.len() > 2 && at < outline.len() {
         let before = outline[if at == 0 { outline.len() - 1 } else { at - 1 }];
         let after = outline[if at + 1 == outline.len() { 0 } else { at + 1 }];
-        let length = (members[after].candidate.flat - members[before].candidate.flat).norm();
+        let length = (members[after].flat - members[before].flat).norm();
         let area = beside(members, [before, outline[at], after]);
         if area.abs() <= tolerance * length {
             outline.remove(at);

@@ -3,8 +3,9 @@
 use super::HeightField;
 use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
+use crate::shape::bend::Bend;
 use crate::shape::seam::{Seam, is_across, leads_up_clearly, slack};
-use crate::shape::tri_mesh::{Rise, inward_of, normal_of, rise_of};
+use crate::shape::tri_mesh::{inward_of, normal_of};
 use crate::shape::{FeatureId, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
@@ -39,9 +40,13 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
 }
 
 impl<N: Real> HeightField<N, 3> {
+    fn points_of(&self, corners: &[GridPoint; 3]) -> [Point<N, 3>; 3] {
+        corners.map(|[row, column]| self.grid.point(row, column))
+    }
+
     /// The unit normal on the front of a triangle; zero without area.
     fn front_of(&self, corners: &[GridPoint; 3]) -> Vector<N, 3> {
-        normal_of(&corners.map(|[row, column]| self.grid.point(row, column)))
+        normal_of(&self.points_of(corners))
     }
 
     /// The corners of the triangles around a point of the grid: eight at most, without the holes.
@@ -63,14 +68,12 @@ impl<N: Real> HeightField<N, 3> {
         let (a, b, c) = (own[side % 3], own[(side + 1) % 3], own[(side + 2) % 3]);
         let [start, end] = [a, b].map(|[row, column]| self.grid.point(row, column));
         let others = || self.around_point(a).filter(|other| other.contains(&b) && *other != own);
-        let is_hollow = others().any(|other| {
-            let opposite = other.iter().find(|corner| **corner != a && **corner != b);
-            opposite.is_some_and(|&[row, column]| {
-                rise_of(&[start, end, self.grid.point(row, column)], normal) == Rise::Clear
-            })
-        });
-        if is_hollow {
-            return false;
+        if let (Some(other), None) = (others().next(), others().nth(1)) {
+            let points = [own, other].map(|corners| self.points_of(&corners));
+            let bend = Bend::new(points.each_ref(), points.each_ref().map(normal_of));
+            if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
+                return answer;
+            }
         }
         let mut seam = Seam::of_faces(self.front_of(&own), normal);
         let mut add = |corners: &[GridPoint; 3], [row, column]: GridPoint| {

@@ -115,47 +115,6 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
-/// How much the direction of [`inward_of`] rises along a unit vector, compared with nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::shape) enum Rise {
-    /// By more than what counts as rounding, however it is computed.
-    Clear,
-    /// Not so, but the triangle has an area.
-    Unclear,
-    /// Perhaps there is no area.
-    Unknown,
-}
-
-/// [`Rise`] of a triangle from the side between its first two corners: at less cost than the direction
-/// itself, which need not be known where it is clear.
-pub(in crate::shape) fn rise_of<N: Real, const D: usize>(
-    corners: &[Point<N, D>; 3],
-    normal: &Vector<N, D>,
-) -> Rise {
-    let [a, b, c] = corners;
-    let (along, arm) = (b - a, c - a);
-    let (length, arm_length) = (along.norm_squared(), arm.norm_squared());
-    let across = arm * length - along * arm.dot(&along);
-    let (rise, across) = (across.dot(normal), across.norm_squared());
-    let is_tall = across > N::lit(TALL) * length * length * max(length, arm_length);
-    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
-    let unsure = N::lit(4096.0) * N::EPSILON * farthest;
-    // What is no number, or has lost digits by being small, is not known.
-    let is_known = is_tall && length > unsure * unsure && across > N::MIN_POSITIVE / N::EPSILON;
-    if !is_known {
-        Rise::Unknown
-    } else if rise > N::ZERO && rise * rise > N::lit(STEEP) * across {
-        Rise::Clear
-    } else {
-        Rise::Unclear
-    }
-}
-
-/// A triangle with a squared height of more than this, of its longer side, has an area.
-const TALL: f64 = 1.0 / 1024.0;
-/// Squared sines above this are no rounding.
-const STEEP: f64 = 1.0 / (512.0 * 512.0);
-
 /// Whether a side is in the list, or the list is full.
 fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
     crossed.len() >= MOST_CROSSED || crossed.contains(side)

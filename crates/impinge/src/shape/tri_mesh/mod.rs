@@ -9,7 +9,7 @@ mod surface3;
 mod table;
 mod topology;
 
-pub(super) use around::{Rise, inward_of, rise_of};
+pub(super) use around::inward_of;
 pub(super) use composite::{aabb_at, sphere_around};
 pub(super) use surface3::normal_of;
 pub(crate) use table::MeshTable;

@@ -1,9 +1,10 @@
 //! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
 
+use super::super::bend::Bend;
 use super::super::seam::{Seam, is_across, leads_up_clearly, slack};
 use super::super::segment::length_of;
 use super::TriMesh;
-use super::around::{Rise, noise, rise_of};
+use super::around::noise;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::FeatureId;
 
@@ -65,8 +66,13 @@ impl<N: Real> TriMesh<N, 3> {
     /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
     /// are not flat there.
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        if self.is_refused(part, side, normal) {
-            return false;
+        let other = self.topology.single_across(part, side);
+        let bend = other.and_then(|other| {
+            let fronts = [part, other].map(|face| self.normals[face as usize]);
+            Bend::new([&self.corners(part), &self.corners(other)], fronts)
+        });
+        if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
+            return answer;
         }
         let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         let mut add = |triangle: u32, inward: Vector<N, 3>| {
@@ -79,31 +85,6 @@ impl<N: Real> TriMesh<N, 3> {
         let corners = self.corners(part);
         let edge = corners[(side + 1) % 3] - corners[side];
         is_across(&edge, normal) && seam.admits(self.is_one_sided)
-    }
-
-    /// The two faces at an edge, if there are no others, have clearly an area, and one of them rises
-    /// along the normal or both lie flat: the common cases of what is refused, at less cost.
-    fn is_refused(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        let Some(other) = self.topology.single_across(part, side) else { return false };
-        let Some(at) = self.side_between(other, self.joint_ends(part, side)) else { return false };
-        let faces = [(part, side), (other, at)];
-        let rises = faces.map(|(triangle, side)| {
-            let corners = self.corners(triangle);
-            rise_of(&[0, 1, 2].map(|turn| corners[(side + turn) % 3]), normal)
-        });
-        let seam = || {
-            let mut seam = Seam::of_faces(self.normals[part as usize], normal);
-            for (face, _) in faces {
-                seam.add_face(N::ZERO, &self.normals[face as usize]);
-            }
-            seam
-        };
-        match rises {
-            [Rise::Unknown, _] | [_, Rise::Unknown] => false,
-            [Rise::Clear, _] | [_, Rise::Clear] => true,
-            // As if nothing rose: then only faces that lie flat are refused.
-            _ => !seam().admits(false),
-        }
     }
 
     /// No side that leaves the corner rises along the normal, and the faces are not flat there.

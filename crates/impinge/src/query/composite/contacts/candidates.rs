@@ -4,9 +4,11 @@ use smallvec::SmallVec;
 
 use super::super::between::Between;
 use super::super::bounds::{aabb_of, enclosing};
+use super::around::Around;
 use super::near::Probe;
+use super::tiles::LANES;
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::math::{Point, Pose, Real, Space, max, min};
+use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::CompositeShape;
 
 /// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
@@ -19,45 +21,6 @@ pub(super) struct Nearby<N: Real> {
     /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
     /// nothing is known.
     pub(super) clearance: N,
-}
-
-/// More parts than this are not kept.
-const MOST_KEPT: usize = 64;
-/// The room that is searched around a box to find parts for later, as a share of its half extents.
-const ROOM: f64 = 0.125;
-
-/// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
-/// stays in that.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Around<N: Real, const D: usize> {
-    within: Option<Aabb<N, D>>,
-    /// In order.
-    parts: SmallVec<[u32; 8]>,
-    /// There are too many to keep.
-    is_crowded: bool,
-}
-
-impl<N: Space<D>, const D: usize> Around<N, D> {
-    /// The parts among which are all that overlap a box; `None` if they are not kept.
-    fn parts(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) -> Option<&[u32]> {
-        let is_known = self.within.as_ref().is_some_and(|within| within.contains(aabb));
-        if !is_known {
-            if !aabb.is_bounded() {
-                return None;
-            }
-            let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-            let roomy = aabb.loosened(most * N::lit(ROOM));
-            self.parts.clear();
-            composite.search().overlapping(&roomy, &mut |part| self.parts.push(part));
-            self.is_crowded = self.parts.len() > MOST_KEPT;
-            if self.is_crowded {
-                self.parts = SmallVec::new();
-            }
-            self.parts.sort_unstable();
-            self.within = Some(roomy);
-        }
-        (!self.is_crowded).then_some(&self.parts)
-    }
 }
 
 /// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
@@ -74,18 +37,13 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
     else {
         return Nearby { parts: candidates(between, is_self, reach), clearance: N::ZERO };
     };
-    let (mut parts, aabb) = (PartPairs::new(), search_box(between, reach));
-    let mut clearance = depth_in(&aabb, probe.center());
-    if let Some(kept) = around.and_then(|around| around.parts(parts2, &aabb)) {
-        for &part2 in kept {
-            let Some(bound) = probe.bound(parts2, part2, Some(&aabb)) else { continue };
-            clearance = min(clearance, bound.from_middle);
-            if !bound.is_beyond {
-                parts.push([0, part2]);
-            }
-        }
-        return Nearby { parts, clearance };
+    let aabb = search_box(between, reach);
+    if let Some(around) = around
+        && around.reaches(parts2, &aabb)
+    {
+        return near_kept(&probe, parts2, around, &aabb);
     }
+    let (mut parts, mut clearance) = (PartPairs::new(), depth_in(&aabb, probe.center()));
     parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
     parts.retain(|[_, part2]| {
         let Some(bound) = probe.bound(parts2, *part2, None) else { return false };
@@ -93,6 +51,36 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
         !bound.is_beyond
     });
     parts.sort_unstable();
+    Nearby { parts, clearance }
+}
+
+/// Of the parts that are kept those that may be within reach.
+fn near_kept<N: Space<D>, const D: usize>(
+    probe: &Probe<'_, N, D>,
+    composite: &dyn CompositeShape<N, D>,
+    around: &mut Around<N, D>,
+    aabb: &Aabb<N, D>,
+) -> Nearby<N> {
+    let sight = probe.sight(around, aabb);
+    let (mut parts, mut clearance) = (PartPairs::new(), depth_in(aabb, probe.center()));
+    for (block, kept) in around.parts().chunks(LANES).enumerate() {
+        let bounds = around.tiles().get(block).and_then(|tiles| tiles.bounds(&sight));
+        if let Some(bounds) = bounds {
+            clearance = min(clearance, bounds.from_middle);
+            let is_near = |lane: &usize| bounds.near >> lane & 1 == 1;
+            for lane in (0..kept.len()).filter(is_near) {
+                parts.push([0, kept[lane]]);
+            }
+            continue;
+        }
+        for &part2 in kept {
+            let Some(bound) = probe.bound(composite, part2, Some(aabb)) else { continue };
+            clearance = min(clearance, bound.from_middle);
+            if !bound.is_beyond {
+                parts.push([0, part2]);
+            }
+        }
+    }
     Nearby { parts, clearance }
 }
 

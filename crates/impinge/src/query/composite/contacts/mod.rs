@@ -10,6 +10,7 @@
 //! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
 //! their neighbours.
 
+mod around;
 mod candidates;
 mod facts;
 mod hidden;
@@ -18,11 +19,12 @@ mod near;
 mod over;
 mod resolve;
 mod scene;
+mod tiles;
 mod view;
 
 use smallvec::SmallVec;
 
-use self::candidates::Around;
+use self::around::Around;
 use self::facts::{Finding, Notes, Reference, Standing};
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
@@ -97,7 +99,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let center = middle_of_first(between);
         let way = Way { old: self.reference, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
-        let query = Query { between, reference: &reference, request: &of_parts };
+        let around = Some(&self.around);
+        let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
         let findings = query.findings(&nearby.parts, &mut notes);
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
@@ -156,6 +159,8 @@ fn advanced<N: Space<D>, const D: usize>(
 /// What is asked of a pair.
 struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
+    /// What is kept of the parts of the second shape.
+    around: Option<&'a Around<N, D>>,
     reference: &'a Reference<N, D>,
     /// What is asked of two parts.
     request: &'a ManifoldRequest<N>,
@@ -166,7 +171,7 @@ type Findings<N, const D: usize> = SmallVec<[Finding<N, D>; 8]>;
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
     fn findings(&self, parts: &[[u32; 2]], notes: &mut Notes<N, D>) -> Findings<N, D> {
-        let scene = Scene::new(self.between);
+        let scene = Scene::new(self.between, self.around);
         let mut findings = Findings::new();
         for &parts in parts {
             let found = facts::finding(&scene, parts, (self.reference, self.request), notes);
@@ -245,7 +250,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
     let reference = middle_of_first(between);
-    let query = Query { between, reference: &reference, request: &request };
+    let query = Query { between, around: None, reference: &reference, request: &request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
     let mut notes = Notes::default();
     let findings = query.findings(&nearby.parts, &mut notes);
@@ -268,7 +273,7 @@ pub(crate) fn own_distance<N: Space<D>, const D: usize>(
 ) -> Option<N> {
     let between = Between::of_pair(pair);
     let candidates = candidates::candidates(&between, true, max(limit, N::ZERO));
-    let scene = Scene::new(&between);
+    let scene = Scene::new(&between, None);
     let one = |&parts| (N::tables().separation)(&scene.pair(parts).pair(), limit);
     let distances = candidates.iter().filter_map(one).map(|found| found.distance);
     distances.reduce(min)

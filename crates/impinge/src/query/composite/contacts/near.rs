@@ -5,6 +5,8 @@
 //! middle. Any plane gives a lower bound of the distance, so no case needs care but for rounding.
 
 use super::super::between::Between;
+use super::around::Around;
+use super::tiles::Sight;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;
@@ -14,6 +16,18 @@ use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SupportMap};
 /// for the distance of curved solids stops, whichever is more.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
+
+/// The slack of bounds, as a share of all lengths.
+#[inline]
+pub(super) fn relative_slack<N: Real>() -> N {
+    max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
+}
+
+/// What is shorter has lost digits.
+#[inline]
+pub(super) fn least_length<N: Real>() -> N {
+    N::MIN_POSITIVE / N::EPSILON
+}
 
 /// A convex first shape, as the second sees it.
 pub(super) struct Probe<'a, N: Real, const D: usize> {
@@ -51,6 +65,20 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
     /// The middle of the solid.
     pub(super) const fn center(&self) -> &Point<N, D> {
         &self.center
+    }
+
+    /// What the solid sees of parts that are kept by their corners, in a box.
+    pub(super) fn sight(&self, around: &mut Around<N, D>, within: &Aabb<N, D>) -> Sight<N, D> {
+        Sight {
+            center: self.center.coords,
+            turn: self.pose21.rotation,
+            half: around.half(self.map),
+            rounding: self.map.rounding(),
+            reach: self.reach,
+            low: within.mins().coords,
+            high: within.maxs().coords,
+            size: self.size,
+        }
     }
 
     /// What is known of a part of a composite; nothing of one that is not given by its corners. `None`
@@ -94,10 +122,9 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
             farthest = max(farthest, arm.norm_squared());
         }
         let length = toward.norm();
-        let relative = max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED));
-        let slack = relative * (farthest.sqrt() + self.size);
+        let slack = relative_slack::<N>() * (farthest.sqrt() + self.size);
         // Written so that what is no number bounds nothing, nor what has lost digits by being small.
-        let is_bound = length > slack && least > N::MIN_POSITIVE / N::EPSILON;
+        let is_bound = length > slack && least > least_length();
         if !is_bound {
             return Bound { from_middle: N::ZERO, is_beyond: false };
         }

@@ -3,6 +3,7 @@
 use core::cell::OnceCell;
 
 use super::super::between::{Between, anchor, recentred};
+use super::around::Around;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::manifold_build::{Piece, Points};
 use crate::query::{Pair, RawManifold};
@@ -13,6 +14,8 @@ pub(super) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// What holds the parts of each together.
     pub(super) surfaces: [Option<&'a dyn Surface<N, D>>; 2],
+    /// What is kept of the parts of the second.
+    around: Option<&'a Around<N, D>>,
     /// How the parts of a surface lie that a convex solid meets: most lie alike.
     usual: OnceCell<Usual<N, D>>,
 }
@@ -103,9 +106,15 @@ impl<N: Real, const D: usize> Body<'_, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
-    pub(super) fn new(between: &'a Between<'a, N, D>) -> Self {
+    pub(super) fn new(between: &'a Between<'a, N, D>, around: Option<&'a Around<N, D>>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
-        Self { between, surfaces: between.composites().map(surface), usual: OnceCell::new() }
+        let surfaces = between.composites().map(surface);
+        Self { between, surfaces, around, usual: OnceCell::new() }
+    }
+
+    /// A part of the second shape, from what is kept of it or else from the shape.
+    fn part2(&self, composite: &'a dyn CompositeShape<N, D>, part: u32) -> Part<'a, N, D> {
+        self.around.and_then(|around| around.part(part)).unwrap_or_else(|| composite.part(part))
     }
 
     /// The first shape is one solid.
@@ -128,9 +137,11 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         normal: &Vector<N, D>,
     ) -> Option<(N, N, N)> {
         let composite = self.between.composites()[1]?;
-        let origin = anchor(&composite.part(plane));
-        let (part, plane) =
-            (moved(&composite.part(part), &origin), moved(&composite.part(plane), &origin));
+        let origin = anchor(&self.part2(composite, plane));
+        let (part, plane) = (
+            moved(&self.part2(composite, part), &origin),
+            moved(&self.part2(composite, plane), &origin),
+        );
         let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
             let map = Geometry(body.kind()).as_support_map()?;
             let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));
@@ -145,7 +156,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.between.composites();
         let piece1 = composite1.map(|composite| composite.part(part1));
-        let piece2 = composite2.map(|composite| composite.part(part2));
+        let piece2 = composite2.map(|composite| self.part2(composite, part2));
         if let (None, Some(piece2)) = (&piece1, &piece2)
             && let Some(pair) = self.as_usual(piece2)
         {

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdMask};
 
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::math::lanes::{by_axis, dot};
+use crate::math::lanes::{by_axis, dot, load, spread};
 use crate::math::{Matrix, Real, Vector, Wide, max};
 use crate::shape::Planes;
 
@@ -48,24 +48,6 @@ fn low_half(bits: u64) -> u32 {
 pub(super) struct Place<N: Real> {
     pub(super) rotation: Matrix<N, 3>,
     pub(super) translation: Vector<N, 3>,
-}
-
-/// The same vector in all lanes.
-#[inline(always)]
-pub(super) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    v: &Vector<N, 3>,
-) -> [V; 3] {
-    [V::all(simd, v.x), V::all(simd, v.y), V::all(simd, v.z)]
-}
-
-/// Eight vectors.
-#[inline(always)]
-pub(super) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    block: &[[N; LANES]; 3],
-) -> [V; 3] {
-    [V::load(simd, &block[0]), V::load(simd, &block[1]), V::load(simd, &block[2])]
 }
 
 impl<N: Real> Place<N> {
@@ -117,7 +99,7 @@ impl<N: Real> Cloud<N> {
         let mut cloud = Self { blocks: [[[N::ZERO; LANES]; 3]; BLOCKS], ..*self };
         let origin: [V; 3] = spread(simd, &at.translation);
         for (block, out) in self.blocks[..self.used].iter().zip(&mut cloud.blocks) {
-            let turned = at.turned(simd, &load::<S, N, V>(simd, block));
+            let turned = at.turned(simd, &load::<_, _, V, 3, LANES>(simd, block));
             for (axis, out) in out.iter_mut().enumerate() {
                 (turned[axis] + origin[axis]).store(out);
             }
@@ -142,7 +124,7 @@ impl<N: Real> Cloud<N> {
         let mut numbers = [[N::ZERO; LANES]; BLOCKS];
         let mut low = V::all(simd, N::INFINITY);
         for (block, out) in self.blocks[..used].iter().zip(&mut numbers) {
-            let height = dot(&load::<S, N, V>(simd, block), &along);
+            let height = dot(&load::<_, _, V, 3, LANES>(simd, block), &along);
             low = height.smaller(low);
             height.store(out);
         }
@@ -155,7 +137,7 @@ impl<N: Real> Cloud<N> {
         let along: [V; 3] = spread(simd, along);
         let mut low = V::all(simd, N::INFINITY);
         for block in &self.blocks[..self.used] {
-            low = dot(&load::<S, N, V>(simd, block), &along).smaller(low);
+            low = dot(&load::<_, _, V, 3, LANES>(simd, block), &along).smaller(low);
         }
         -highest_lane(-low)
     }

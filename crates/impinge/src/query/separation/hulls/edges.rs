@@ -5,10 +5,10 @@ use core::array::from_fn;
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::cloud::{highest_lane, load, spread};
+use super::cloud::highest_lane;
 use super::face::{Meeting, Side};
 use super::{Found, LANES, noise};
-use crate::math::lanes::{self, by_axis, dot};
+use crate::math::lanes::{self, by_axis, dot, load, spread};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
@@ -247,8 +247,9 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
     let is_left1 = |side: usize| dot(&along2, &spread(simd, &normals1[side])).simd_lt(zero);
-    let is_left2 =
-        |side: usize| dot(&along1, &load::<S, N, V>(simd, &edges2.normals[side])).simd_lt(zero);
+    let is_left2 = |side: usize| {
+        dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[side])).simd_lt(zero)
+    };
     // The arcs between the normals of each edge cross on the sphere of normals, those of the second
     // solid turned round.
     let ([left1, right1], [left2, right2]) =

@@ -1,0 +1,137 @@
+//! The parts around a solid, kept from update to update.
+
+use smallvec::SmallVec;
+
+use super::tiles::{LANES, Tiles};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangle};
+
+/// More parts than this are not kept.
+const MOST_KEPT: usize = 64;
+/// The room that is searched around a box to find parts for later, as a share of its half extents.
+const ROOM: f64 = 0.125;
+
+/// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
+/// stays in that.
+///
+/// Parts that are given by their corners, in the frame of the composite, are kept with these: eight side
+/// by side, in one place of memory, whereas the composite has them wherever its vertices lie.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Around<N: Real, const D: usize> {
+    within: Option<Aabb<N, D>>,
+    /// In order.
+    parts: SmallVec<[u32; 8]>,
+    /// Of all parts, or of none.
+    tiles: Vec<Tiles<N, D>>,
+    are_segments: bool,
+    /// Half the extents of the solid's core, in its own frame.
+    half: Option<Vector<N, D>>,
+    /// There are too many to keep.
+    is_crowded: bool,
+}
+
+impl<N: Space<D>, const D: usize> Around<N, D> {
+    /// Makes sure that the parts are among those kept that overlap a box; answers whether they are.
+    pub(super) fn reaches(
+        &mut self,
+        composite: &dyn CompositeShape<N, D>,
+        aabb: &Aabb<N, D>,
+    ) -> bool {
+        let is_known = self.within.as_ref().is_some_and(|within| within.contains(aabb));
+        if !is_known {
+            if !aabb.is_bounded() {
+                return false;
+            }
+            self.fill(composite, aabb);
+        }
+        !self.is_crowded
+    }
+
+    fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) {
+        let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
+        let roomy = aabb.loosened(most * N::lit(ROOM));
+        self.parts.clear();
+        self.tiles.clear();
+        composite.search().overlapping(&roomy, &mut |part| self.parts.push(part));
+        self.is_crowded = self.parts.len() > MOST_KEPT;
+        if self.is_crowded {
+            self.parts = SmallVec::new();
+        }
+        self.parts.sort_unstable();
+        self.within = Some(roomy);
+        self.fill_tiles(composite);
+    }
+
+    /// Copies the corners of all parts, if all have corners.
+    fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
+        for parts in self.parts.chunks(LANES) {
+            let mut tiles = Tiles::blank();
+            for lane in 0..LANES {
+                let part = composite.part(parts[lane.min(parts.len() - 1)]);
+                let is_first = lane == 0 && self.tiles.is_empty();
+                match corners_of(&part) {
+                    Some((corners, is_segment)) if is_first || is_segment == self.are_segments => {
+                        tiles.put(lane, &corners);
+                        self.are_segments = is_segment;
+                    }
+                    _ => return self.tiles.clear(),
+                }
+            }
+            self.tiles.push(tiles);
+        }
+    }
+
+    /// The parts, in order.
+    pub(super) fn parts(&self) -> &[u32] {
+        &self.parts
+    }
+
+    /// The corners of all parts by eights; empty if they are not kept.
+    pub(super) fn tiles(&self) -> &[Tiles<N, D>] {
+        &self.tiles
+    }
+
+    /// Half the extents of the core of the solid that this is about.
+    pub(super) fn half(&mut self, map: &dyn SupportMap<N, D>) -> Vector<N, D> {
+        *self.half.get_or_insert_with(|| {
+            let center = map.center();
+            Vector::<N, D>::from_fn(|axis, _| {
+                let reach = |sign| {
+                    let mut way = Vector::<N, D>::zeros();
+                    way[axis] = sign;
+                    (map.core_support(&way) - center)[axis].abs()
+                };
+                max(reach(N::ONE), reach(-N::ONE))
+            })
+        })
+    }
+
+    /// A part from what is kept of it.
+    pub(super) fn part(&self, part: u32) -> Option<Part<'static, N, D>> {
+        if self.tiles.is_empty() {
+            return None;
+        }
+        let at = self.parts.binary_search(&part).ok()?;
+        let [a, b, c] = self.tiles[at / LANES].corners(at % LANES);
+        let solid = if self.are_segments {
+            PartSolid::Segment(Segment::of_finite(a, b))
+        } else {
+            PartSolid::Triangle(Triangle::of_finite([a, b, c]))
+        };
+        Some(Part { pose: Pose::identity(), solid })
+    }
+}
+
+/// The corners of a part that lies in its composite's own frame, those of a segment with the second twice,
+/// and whether it is one.
+fn corners_of<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Option<([Point<N, D>; 3], bool)> {
+    if !part.pose.is_same(&Pose::identity()) {
+        return None;
+    }
+    match &part.solid {
+        PartSolid::Triangle(triangle) => Some((*triangle.corners(), false)),
+        PartSolid::Segment(segment) => Some(([*segment.a(), *segment.b(), *segment.b()], true)),
+        PartSolid::Shape(_) => None,
+    }
+}

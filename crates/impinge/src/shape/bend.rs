@@ -1,0 +1,132 @@
+//! The edge between two triangles: which normals it has, told by the faces' own.
+//!
+//! The normals of an edge are those between the normals of its two faces on the side where it is a ridge,
+//! and none on the side where it is hollow. For triangles that are neither thin nor far away for their
+//! size that is plain to see without the directions from the edge into the faces, which the rule of
+//! [`seam`](super::seam) goes by; what is close is left to that.
+
+use super::seam::{FLAT_SINE, slack};
+use crate::math::{Point, Real, Vector, cross, max, max_component, min};
+
+/// A triangle with a squared height of more than this, of its longest side, is not thin.
+const TALL: f64 = 1.0 / 1024.0;
+/// A share of what counts as flat that is left to the rule of seams.
+const CLOSE: f64 = 0.1;
+
+/// Two triangles that share an edge, and whose fronts are on one side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bend<N: Real> {
+    /// The unit normals on the fronts, and the scalar product of the two.
+    fronts: [Vector<N, 3>; 2],
+    cosine: N,
+    kind: Kind,
+}
+
+/// How an edge looks from the front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Flat,
+    Ridge,
+    Hollow,
+}
+
+impl<N: Real> Bend<N> {
+    /// By the corners of two triangles that share an edge, and their normals; `None` where it is not plain
+    /// how they lie.
+    pub(super) fn new(corners: [&[Point<N, 3>; 3]; 2], fronts: [Vector<N, 3>; 2]) -> Option<Self> {
+        let cosine = fronts[0].dot(&fronts[1]);
+        // Written so that what is no number is not plain.
+        let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
+        if !is_plain {
+            return None;
+        }
+        let (squared_sine, flat) = (N::ONE - cosine * cosine, N::lit(FLAT_SINE * FLAT_SINE));
+        if squared_sine <= flat * N::lit(1.0 - CLOSE) {
+            return Some(Self { fronts, cosine, kind: Kind::Flat });
+        }
+        let heights = [
+            height_of(corners[1], corners[0], &fronts[0]),
+            height_of(corners[0], corners[1], &fronts[1]),
+        ];
+        let is_bent = squared_sine > flat * N::lit(1.0 + CLOSE);
+        let kind = match heights.map(|height| height > N::ZERO) {
+            [true, true] if is_bent => Kind::Hollow,
+            [false, false] if is_bent => Kind::Ridge,
+            _ => return None,
+        };
+        Some(Self { fronts, cosine, kind })
+    }
+
+    /// Whether a unit vector that is none of the faces' normals is one that the edge has; `None` where it
+    /// is close, or not on the same side of both faces.
+    pub(super) fn admits(&self, normal: &Vector<N, 3>, is_one_sided: bool) -> Option<bool> {
+        let [along1, along2] = self.fronts.each_ref().map(|front| front.dot(normal));
+        let is_front = along1 > N::ZERO && along2 > N::ZERO;
+        if !is_front && !(along1 < N::ZERO && along2 < N::ZERO) {
+            return None;
+        }
+        match (self.kind, is_front) {
+            (Kind::Flat, _) => {
+                // Close to the faces' normal and yet not flat it may lean along the edge as well.
+                let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
+                let is_level = squared_sine < N::lit(1.0 - CLOSE);
+                let is_leaning = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
+                (is_level || is_leaning).then_some(false)
+            }
+            (Kind::Hollow, true) | (Kind::Ridge, false) => Some(false),
+            (Kind::Ridge, true) => self.is_between(normal, [along1, along2]),
+            (Kind::Hollow, false) => self
+                .is_between(normal, [along1, along2])
+                .filter(|is_between| !(is_one_sided && *is_between)),
+        }
+    }
+
+    /// The vector lies between the two normals, or between their opposites, and across the edge.
+    fn is_between(&self, normal: &Vector<N, 3>, [along1, along2]: [N; 2]) -> Option<bool> {
+        // The heights over the planes that part the normals from what lies beyond them, times their sine.
+        let insides = [along2 - self.cosine * along1, along1 - self.cosine * along2];
+        let inside = if along1 < N::ZERO {
+            min(-insides[0], -insides[1])
+        } else {
+            min(insides[0], insides[1])
+        };
+        let room = N::lit(8.0) * slack::<N>();
+        if inside < -room {
+            return Some(false);
+        }
+        let sine = (N::ONE - self.cosine * self.cosine).sqrt();
+        let along_edge = cross(&self.fronts[0], &self.fronts[1]).dot(normal).abs() / sine;
+        if along_edge > N::lit(FLAT_SINE * (1.0 + CLOSE)) {
+            return Some(false);
+        }
+        (inside > room && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
+    }
+}
+
+/// The height over the plane of one triangle of that corner of another that is farthest from it: the one
+/// that is not on their edge.
+fn height_of<N: Real>(
+    corners: &[Point<N, 3>; 3],
+    plane: &[Point<N, 3>; 3],
+    front: &Vector<N, 3>,
+) -> N {
+    corners.iter().fold(N::ZERO, |farthest, corner| {
+        let height = front.dot(&(corner - plane[0]));
+        if height.abs() > farthest.abs() { height } else { farthest }
+    })
+}
+
+/// The triangle is not thin, and not so far away that its corners are no more than rounding.
+fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
+    let [a, b, c] = corners;
+    let (ab, ac) = (b - a, c - a);
+    let squared = [ab.norm_squared(), ac.norm_squared(), (c - b).norm_squared()];
+    let longest = max(squared[0], max(squared[1], squared[2]));
+    let shortest = min(squared[0], min(squared[1], squared[2]));
+    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
+    let unsure = N::lit(4096.0) * N::EPSILON * farthest;
+    let area = cross(&ab, &ac).norm_squared();
+    area > N::lit(TALL) * longest * longest
+        && shortest > unsure * unsure
+        && area > N::MIN_POSITIVE / N::EPSILON
+}
