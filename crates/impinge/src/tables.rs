@@ -10,7 +10,7 @@ use core::fmt;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::narrow_phase::{
     CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
     GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
@@ -21,8 +21,9 @@ use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, ov
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, certainly_overlap, distance_in_world, in_world, parted_in_plane,
-    parted_in_space, separation_in_plane, separation_in_space, touching_in_world,
+    Algorithm, PartedFn, Separations, certainly_overlap, distance_in_world, in_world,
+    parted_in_plane, parted_in_space, separation_in_plane, separation_in_space, separations2,
+    separations3, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
@@ -38,6 +39,8 @@ use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
+    /// That of many triangles from one solid, if there is an algorithm for that.
+    pub(crate) separations: SeparationsFn<N, D>,
     pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
@@ -98,6 +101,8 @@ type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
+type SeparationsFn<N, const D: usize> =
+    fn(&[Triangle<N, D>], (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
@@ -202,6 +207,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
+    separations: SeparationsFn<N, D>,
     certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
@@ -221,6 +227,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
+        separations: separations2,
         certainly_overlap,
         contacts: contacts2,
         update_lanes: update_lanes2,
@@ -241,6 +248,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
+        separations: separations3,
         certainly_overlap,
         contacts: contacts3,
         update_lanes: update_lanes3,
@@ -263,6 +271,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
+            separations: particular.separations,
             certainly_overlap: particular.certainly_overlap,
             separation_in_world: in_world,
             contact_in_world,

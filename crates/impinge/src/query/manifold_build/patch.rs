@@ -85,18 +85,27 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
     /// the nearest, the first of equals.
     fn kept(&self, old: &[Patch<N, D>]) -> Kept {
         let mut kept = Kept::from_elem(None, self.points.len());
+        let mut at = 0;
         for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
-            let Ok(at) = self.pieces.binary_search_by(|piece| piece.parts.cmp(parts)) else {
-                continue;
-            };
-            let is_heir = |&index: &usize| {
+            // The points of one pair of parts come together, as a rule.
+            if self.pieces.get(at).is_none_or(|piece| piece.parts != *parts) {
+                let Ok(found) = self.pieces.binary_search_by(|piece| piece.parts.cmp(parts)) else {
+                    continue;
+                };
+                at = found;
+            }
+            let (mut heir, mut nearest) = (None, N::INFINITY);
+            for index in self.pieces[at].points.clone() {
                 let new = &self.points[index];
-                kept[index].is_none()
-                    && (new.feature1, new.feature2) == (raw.feature1, raw.feature2)
-            };
-            let arm = |index: usize| (self.points[index].point1 - raw.point1).norm_squared();
-            let heirs = self.pieces[at].points.clone().filter(is_heir);
-            let heir = heirs.reduce(|best, next| if arm(next) < arm(best) { next } else { best });
+                let is_heir = (new.feature1, new.feature2) == (raw.feature1, raw.feature2);
+                if !is_heir || kept[index].is_some() {
+                    continue;
+                }
+                let away = (new.point1 - raw.point1).norm_squared();
+                if heir.is_none() || away < nearest {
+                    (heir, nearest) = (Some(index), away);
+                }
+            }
             if let Some(heir) = heir {
                 kept[heir] = Some(raw.id);
             }

@@ -52,17 +52,24 @@ pub(crate) fn on_face3<N: Real>(
         _ => return false,
     };
     let (tolerance, normal) = (rounding(pair), asked.normal);
-    let Some(base) = Outline::of_triangle(triangle, &normal, tolerance) else { return false };
+    let mut base = Outline::blank(tangents3(&normal));
+    if !base.fill_with_triangle(triangle, &normal, tolerance) {
+        return false;
+    }
     let mut part = Feature::default();
     solid.core_feature(&pair.pose12.inverse_vector(&-normal), &mut part);
     for vertex in &mut part.vertices {
         *vertex = pair.pose12.point(vertex);
     }
     let lean = part.normal.map(|own| pair.pose12.vector(&own));
-    let Some(top) = Outline::of_part(&part, &base, tolerance) else { return false };
     let Some(lean) = lean else { return false };
-    let insides = [base.insides_of(&top), top.insides_of(&base)];
-    let mut meeting = Meeting { asked, base, top, insides, lean, tolerance, lowest: N::INFINITY };
+    let mut top = Outline::blank(base.tangents);
+    if !top.fill_with_part(&part, &base.points[0], tolerance) {
+        return false;
+    }
+    let insides = &[base.insides_of(&top), top.insides_of(&base)];
+    let (base, top, lowest) = (&base, &top, N::INFINITY);
+    let mut meeting = Meeting { asked, base, top, insides, lean, tolerance, lowest };
     out.points.clear();
     out.normal = normal;
     meeting.corners(out);
@@ -87,19 +94,23 @@ struct Outline<N: Real> {
 }
 
 impl<N: Real> Outline<N> {
-    fn blank(id: FeatureId, tangents: [Vector<N, 3>; 2]) -> Self {
+    fn blank(tangents: [Vector<N, 3>; 2]) -> Self {
         let (flats, point) = ([Vector::<N, 2>::zeros(); MOST], Point::<N, 3>::origin());
         let ids = [FeatureId::Face(0); MOST];
-        let (points, inward, sides) = ([point; MOST], flats, ids);
+        let (id, points, inward, sides) = (ids[0], [point; MOST], flats, ids);
         Self { count: 0, id, points, flats, inward, ids, sides, tangents }
     }
 
-    /// Seen from where the normal points; `None` of one that is thin or not perpendicular to it.
-    fn of_triangle(triangle: &Triangle<N, 3>, normal: &Vector<N, 3>, tolerance: N) -> Option<Self> {
+    /// Seen from where the normal points; answers false of one that is thin or not perpendicular to it.
+    fn fill_with_triangle(
+        &mut self,
+        triangle: &Triangle<N, 3>,
+        normal: &Vector<N, 3>,
+        tolerance: N,
+    ) -> bool {
         let corners = triangle.corners();
-        let mut outline = Self::blank(FeatureId::Face(0), tangents3(normal));
         let ways = [corners[1] - corners[0], corners[2] - corners[0]];
-        let [b, c] = ways.map(|way| outline.flat(&way));
+        let [b, c] = ways.map(|way| self.flat(&way));
         let is_level = ways.iter().all(|way| way.dot(normal).abs() <= tolerance);
         let area = cross2(&b, &c);
         let longest = max(max(b.norm_squared(), c.norm_squared()), (c - b).norm_squared());
@@ -108,44 +119,44 @@ impl<N: Real> Outline<N> {
             && area.abs() > N::lit(LEAST_HEIGHT) * longest
             && longest > N::lit(4096.0) * tolerance * tolerance;
         if !is_plain {
-            return None;
+            return false;
         }
         // The names of corners are their places; a side has that of the corner that it leaves.
         let ring: [(usize, u32, u32); 3] = if area > N::ZERO {
             [(0, 0, 0), (1, 1, 1), (2, 2, 2)]
         } else {
-            outline.id = FeatureId::Face(1);
+            self.id = FeatureId::Face(1);
             [(0, 0, 2), (2, 2, 1), (1, 1, 0)]
         };
         for (corner, id, side) in ring {
             let flat = [Vector::<N, 2>::zeros(), b, c][corner];
-            outline.push(corners[corner], flat, [FeatureId::Vertex(id), FeatureId::Edge(side)]);
+            self.push(corners[corner], flat, [FeatureId::Vertex(id), FeatureId::Edge(side)]);
         }
-        outline.fence(N::ONE);
-        Some(outline)
+        self.fence(N::ONE);
+        true
     }
 
-    /// A face of the solid, seen on the plane of another outline; `None` of what is no polygon there.
-    fn of_part(part: &Feature<N, 3>, base: &Self, tolerance: N) -> Option<Self> {
-        let mut outline = Self::blank(part.id, base.tangents);
+    /// A face of the solid, seen from a point; answers false of what is no polygon there.
+    fn fill_with_part(&mut self, part: &Feature<N, 3>, from: &Point<N, 3>, tolerance: N) -> bool {
+        self.id = part.id;
         let count = part.vertices.len();
         if !(3..=MOST).contains(&count) || part.side_ids.len() != count {
-            return None;
+            return false;
         }
         for (at, vertex) in part.vertices.iter().enumerate() {
-            let flat = outline.flat(&(vertex - base.points[0]));
-            outline.push(*vertex, flat, [part.vertex_ids[at], part.side_ids[at]]);
+            let flat = self.flat(&(vertex - from));
+            self.push(*vertex, flat, [part.vertex_ids[at], part.side_ids[at]]);
         }
         let (mut area, mut shortest, mut longest) = (N::ZERO, N::INFINITY, N::ZERO);
         for at in 0..count {
-            let squared = outline.side(at).norm_squared();
+            let squared = self.side(at).norm_squared();
             (shortest, longest) = (min(shortest, squared), max(longest, squared));
-            area += cross2(&(outline.flats[at] - outline.flats[0]), &outline.side(at));
+            area += cross2(&(self.flats[at] - self.flats[0]), &self.side(at));
         }
         let room = N::lit(64.0) * tolerance;
         let is_plain = shortest > room * room && area.abs() > room * longest.sqrt();
-        outline.fence(if area < N::ZERO { -N::ONE } else { N::ONE });
-        is_plain.then_some(outline)
+        self.fence(if area < N::ZERO { -N::ONE } else { N::ONE });
+        is_plain
     }
 
     fn push(&mut self, point: Point<N, 3>, flat: Vector<N, 2>, [id, side]: [FeatureId; 2]) {
@@ -227,10 +238,10 @@ impl<N: Real> Outline<N> {
 /// The triangle and the face of the solid over it.
 struct Meeting<'a, N: Real> {
     asked: &'a OnFace<N, 3>,
-    base: Outline<N>,
-    top: Outline<N>,
+    base: &'a Outline<N>,
+    top: &'a Outline<N>,
     /// Of the corners of the top in the base, and of those of the base in the top.
-    insides: [Insides<N>; 2],
+    insides: &'a [Insides<N>; 2],
     /// The outward normal of the solid's face.
     lean: Vector<N, 3>,
     tolerance: N,

@@ -11,11 +11,12 @@ use smallvec::SmallVec;
 use super::segments::nearest_of_segments;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, cross, max, max_component, min};
-use crate::shape::{ConvexPolyhedron, Feature, FeatureId, Triangle};
+use crate::query::Pair;
+use crate::shape::{ConvexPolyhedron, Feature, FeatureId, Kind, Triangle};
 
 /// Thinner than this part of its longest side a triangle counts as a segment, and edges at an angle
 /// with a smaller sine as parallel.
-const THIN: f64 = 16.0;
+pub(super) const THIN: f64 = 16.0;
 
 /// A triangle in the frame of the solid, in units in which neither of the two, nor the way between
 /// their origins, is larger than 2.
@@ -70,20 +71,40 @@ impl<'a, N: Real> Fin<'a, N> {
         pose12: &'a Pose<N, 3>,
         reach: N,
     ) -> Option<Self> {
+        let (scale, shrink) = Self::units(triangle, pose12, reach)?;
         let [a, b, c] = triangle.corners();
+        let place = |corner: &Point<N, 3>| {
+            pose12.rotation.tr_mul(&((corner.coords - pose12.translation) * shrink))
+        };
+        let corners = [place(a), place(b), place(c)];
+        Some(Self { triangle, pose12, corners, scale, shrink })
+    }
+
+    /// A triangle whose corners are known in the frame of the solid, in its [`Self::units`].
+    pub(super) const fn placed(
+        triangle: &'a Triangle<N, 3>,
+        pose12: &'a Pose<N, 3>,
+        corners: [Vector<N, 3>; 3],
+        (scale, shrink): (N, N),
+    ) -> Self {
+        Self { triangle, pose12, corners, scale, shrink }
+    }
+
+    /// The length of a unit, and its inverse.
+    #[inline]
+    pub(super) fn units(
+        triangle: &Triangle<N, 3>,
+        pose12: &Pose<N, 3>,
+        reach: N,
+    ) -> Option<(N, N)> {
         let mut size = max(reach, max_component(&pose12.translation));
-        for corner in [a, b, c] {
+        for corner in triangle.corners() {
             size = max(size, max_component(&corner.coords));
         }
         let scale = size.power_of_two_below();
         let shrink = N::ONE / scale;
         let is_plain = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
-        let is_plain = is_plain && pose12.is_finite();
-        let place = |corner: &Point<N, 3>| {
-            pose12.rotation.tr_mul(&((corner.coords - pose12.translation) * shrink))
-        };
-        let corners = [place(a), place(b), place(c)];
-        is_plain.then_some(Self { triangle, pose12, corners, scale, shrink })
+        (is_plain && pose12.is_finite()).then_some((scale, shrink))
     }
 
     /// The directions of the sides and of the front: from the sides as given, which lose nothing to
@@ -104,6 +125,14 @@ impl<'a, N: Real> Fin<'a, N> {
             *side = turn.tr_mul(&(*side * share));
         }
         Edging { sides, front }
+    }
+
+    /// The triangle and the solid.
+    pub(super) fn pair<'b>(&self, solid: Kind<'b, N, 3>) -> Pair<'b, N, 3>
+    where
+        'a: 'b,
+    {
+        Pair { first: Kind::Triangle(self.triangle), second: solid, pose12: *self.pose12 }
     }
 
     /// Beyond the limit by more than rounding.

@@ -20,9 +20,19 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         return general::of_flat_cores(pair, limit);
     };
     let best = best_axis(&fin, cuboid, |gap| fin.is_beyond(gap, limit))?;
-    match fin.answer(*cuboid, &best) {
+    answer(&fin, cuboid, &best, limit)
+}
+
+/// What the direction that leaves the largest gap says.
+pub(super) fn answer<N: Real>(
+    fin: &Fin<'_, N>,
+    cuboid: &Cuboid<N, 3>,
+    best: &Axis<N>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    match fin.answer(cuboid, best) {
         Some(found) => (found.distance <= limit).then_some(found),
-        None => general::of_flat_cores(pair, limit),
+        None => general::of_flat_cores(&fin.pair(Kind::Cuboid(cuboid)), limit),
     }
 }
 
@@ -134,7 +144,7 @@ fn best_edges<N: Real>(
 }
 
 /// The number of the edge of a box along an axis that lies farthest in a direction; see [`Cuboid`].
-fn edge_toward<N: Real>(axis: usize, direction: &Vector<N, 3>) -> u32 {
+pub(super) fn edge_toward<N: Real>(axis: usize, direction: &Vector<N, 3>) -> u32 {
     let is_positive = |axis: usize| u32::from(direction[axis % 3] >= N::ZERO);
     [0, 4, 8][axis] + is_positive(axis + 1) + 2 * is_positive(axis + 2)
 }

@@ -2,7 +2,7 @@
 //! in either: a plane that parts two solids bounds their distance from below, and two of their points
 //! from above.
 
-use super::{general, separation, triangle_cuboid, triangle_polytope};
+use super::{Separations, general, separation, separations3, triangle_cuboid, triangle_polytope};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::{Point, Pose, Real, Vector};
@@ -190,4 +190,41 @@ fn a_box_on_a_face_has_its_normal() {
         assert_eq!((found.distance, found.normal.y), (distance, height.signum()), "at {height}");
         assert_eq!((found.point1.x, found.point1.z), (0.0, 0.0), "below its middle");
     }
+}
+
+/// Many triangles against one box, and each of them alone.
+fn together<N: Real>(rounds: usize) {
+    let (mut noise, mut touching) = (Noise(5), 0);
+    for round in 0..rounds {
+        let half = noise.vector::<N>(1.0).map(|x| if round % 5 == 0 { N::ZERO } else { x.abs() });
+        let (cuboid, mut pose12) = (Cuboid::new(half), noise.pose::<N>(1.5));
+        if round % 7 == 0 {
+            pose12.rotation = Pose::identity().rotation;
+        }
+        let count = 1 + round % 19;
+        let mut triangles: Vec<_> = (0..count).map(|at| noise.triangle::<N>(round + at)).collect();
+        if round % 11 == 0 {
+            let huge = |point: &Point<N, 3>| point * N::MAX.sqrt();
+            let [a, b, c] = triangles[0].corners();
+            triangles[0] = Triangle::new(huge(a), huge(b), huge(c));
+        }
+        for limit in [N::ZERO, N::lit(0.3), N::MAX] {
+            let mut found = Separations::new();
+            assert!(separations3(&triangles, (Kind::Cuboid(&cuboid), &pose12), limit, &mut found));
+            assert_eq!(found.len(), triangles.len());
+            for (found, triangle) in found.iter().zip(&triangles) {
+                let (first, second) = (Kind::Triangle(triangle), Kind::Cuboid(&cuboid));
+                let alone = triangle_cuboid::separation(&Pair { first, second, pose12 }, limit);
+                assert_eq!(*found, alone, "round {round}");
+                touching += usize::from(alone.is_some());
+            }
+        }
+    }
+    assert!(touching > rounds, "{touching} touch");
+}
+
+#[test]
+fn many_triangles_together_have_the_bits_of_each_alone() {
+    together::<f32>(1000);
+    together::<f64>(1000);
 }

@@ -87,7 +87,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
     /// The first corner of a triangle that is at a joint.
     pub(super) fn corner_at(&self, triangle: u32, joint: u32) -> usize {
-        (0..3).find(|&at| self.joint_ends(triangle, at)[0] == joint).unwrap_or(0)
+        (0..3).find(|&at| self.joint_at(triangle, at) == joint).unwrap_or(0)
     }
 
     /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.

@@ -175,8 +175,12 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
     /// The joints at the ends of a side, in the order of the triangle.
     fn joint_ends(&self, triangle: u32, side: usize) -> [u32; 2] {
-        let corners = &self.triangles[triangle as usize];
-        [side, (side + 1) % 3].map(|corner| self.topology.joints.of(corners[corner]))
+        [side, (side + 1) % 3].map(|corner| self.joint_at(triangle, corner))
+    }
+
+    /// The joint at a corner.
+    fn joint_at(&self, triangle: u32, corner: usize) -> u32 {
+        self.topology.joints.of(self.triangles[triangle as usize][corner])
     }
 
     /// The side of a triangle between two joints.

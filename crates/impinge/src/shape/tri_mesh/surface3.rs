@@ -89,12 +89,14 @@ impl<N: Real> TriMesh<N, 3> {
 
     /// No side that leaves the corner rises along the normal, and the faces are not flat there.
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
-        let joint = self.joint_ends(part, corner)[0];
-        let rises = |&triangle: &u32| {
-            let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
+        let joint = self.joint_at(part, corner);
+        // Most are refused by a side of the triangle that is asked.
+        let rises = |triangle: u32, at: usize| {
+            let corners = self.corners(triangle);
             corners.iter().any(|other| leads_up_clearly(&(other - corners[at]), normal))
         };
-        if self.topology.joints.parts(joint).iter().any(rises) {
+        let mut around = self.topology.joints.parts(joint).iter();
+        if rises(part, corner) || around.any(|&other| rises(other, self.corner_at(other, joint))) {
             return false;
         }
         let mut seam = Seam::of_faces(self.normals[part as usize], normal);

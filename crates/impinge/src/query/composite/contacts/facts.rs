@@ -88,20 +88,24 @@ fn noted<N: Space<D>, const D: usize>(
 /// Where the solid that meets a surface comes from, where it is not just its middle.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// What is to be said of two parts; `None` if they are beyond reach or cannot touch.
+/// What is to be said of two parts, whose separation may be known; `None` if they are beyond reach or
+/// cannot touch.
 pub(super) fn finding<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
+    (scene, placed): (&Scene<'_, N, D>, &PartPair<'_, N, D>),
     parts: [u32; 2],
     (reference, request): (&Reference<N, D>, &ManifoldRequest<N>),
+    known: Option<Separation<N, D>>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    let placed = scene.pair(parts);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
-        return plain(&placed, parts, request, notes);
+        return plain(placed, parts, request, notes);
     }
-    let found = (N::tables().separation)(&placed.pair(), request.prediction)?;
+    let found = match known {
+        Some(found) => found,
+        None => (N::tables().separation)(&placed.pair(), request.prediction)?,
+    };
     let centers = placed.centers()?;
     of_surfaces(scene, &Meeting { placed, parts, centers, reference, found }, request, notes)
 }
@@ -125,7 +129,7 @@ fn plain<N: Space<D>, const D: usize>(
 
 /// Two parts, of which one at least belongs to a surface.
 struct Meeting<'a, N: Real, const D: usize> {
-    placed: PartPair<'a, N, D>,
+    placed: &'a PartPair<'a, N, D>,
     parts: [u32; 2],
     /// Of the part of the first shape and of that of the second, as seen by both shapes.
     centers: [[Point<N, D>; 2]; 2],
@@ -179,7 +183,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    let (placed, parts) = (&meeting.placed, meeting.parts);
+    let (placed, parts) = (meeting.placed, meeting.parts);
     let (pair, found) = (placed.pair(), meeting.found);
     if !found.distance.is_finite_number() {
         return None;

@@ -172,9 +172,16 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
     fn findings(&self, parts: &[[u32; 2]], notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
-        let mut findings = Findings::new();
-        for &parts in parts {
-            let found = facts::finding(&scene, parts, (self.reference, self.request), notes);
+        let (mut findings, mut slot) = (Findings::new(), None);
+        let all = scene.separations(parts, self.request.prediction);
+        for (index, &parts) in parts.iter().enumerate() {
+            let known = all.as_ref().map(|all| all[index]);
+            if known.is_some_and(|known| known.is_none()) {
+                continue;
+            }
+            let placed = scene.pair_in(&mut slot, parts);
+            let asked = (self.reference, self.request);
+            let found = facts::finding((&scene, placed), parts, asked, known.flatten(), notes);
             findings.extend(found);
         }
         resolve::resolve(&scene, &mut findings, notes);

@@ -2,12 +2,15 @@
 
 use core::cell::OnceCell;
 
+use smallvec::SmallVec;
+
 use super::super::between::{Between, anchor, recentred};
 use super::around::Around;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::manifold_build::{Piece, Points};
+use crate::query::separation::Separations;
 use crate::query::{Pair, RawManifold};
-use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface, Triangle};
 
 /// Two shapes, one of them a composite at least.
 pub(super) struct Scene<'a, N: Real, const D: usize> {
@@ -68,6 +71,8 @@ pub(super) struct PartPair<'a, N: Real, const D: usize> {
     lying: Lying<N, D>,
     /// The point in the frames of the two shapes.
     origins: [Point<N, D>; 2],
+    /// The part of the second shape lies as those of its [`Scene`] usually do.
+    is_usual: bool,
 }
 
 /// A part seen from another origin. Corners are moved rather than the pose, so that solids that share
@@ -152,6 +157,49 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
     }
 
+    /// The separations of a convex solid from triangles of a surface, if these lie alike and there is an
+    /// algorithm for many of them; `None` for those that are beyond the limit.
+    pub(super) fn separations(&self, parts: &[[u32; 2]], limit: N) -> Option<Separations<N, D>> {
+        let [None, Some(composite)] = self.between.composites() else { return None };
+        let (first, _) = (parts.first()?, self.surfaces[1]?);
+        let usual = match self.part2(composite, first[1]) {
+            part @ Part { solid: PartSolid::Triangle(_), .. } => {
+                self.usual.get_or_init(|| self.usual(&part))
+            }
+            _ => return None,
+        };
+        let mut triangles: SmallVec<[Triangle<N, D>; 16]> = SmallVec::new();
+        for [_, part] in parts {
+            match usual.recentred(&self.part2(composite, *part))? {
+                PartSolid::Triangle(triangle) => triangles.push(triangle),
+                _ => return None,
+            }
+        }
+        let (solid, mut found) = (self.between.pair.first, Separations::new());
+        let placed = (solid, &usual.lying.pose12);
+        (usual.lying.is_turned && (N::tables().separations)(&triangles, placed, limit, &mut found))
+            .then_some(found)
+    }
+
+    /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is
+    /// exchanged.
+    pub(super) fn pair_in<'s>(
+        &self,
+        slot: &'s mut Option<PartPair<'a, N, D>>,
+        parts: [u32; 2],
+    ) -> &'s PartPair<'a, N, D> {
+        let is_exchanged = match (&mut *slot, self.usual.get(), self.between.composites()) {
+            (Some(old), Some(usual), [_, Some(composite)]) if old.is_usual => {
+                old.exchange(usual, &self.part2(composite, parts[1]))
+            }
+            _ => false,
+        };
+        if !is_exchanged {
+            *slot = None;
+        }
+        slot.get_or_insert_with(|| self.pair(parts))
+    }
+
     /// Two parts.
     pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.between.composites();
@@ -188,19 +236,15 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     /// A convex solid and a part that lies like those before: the same pair at less cost. `None` of
     /// others.
     fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PartPair<'a, N, D>> {
-        let is_segment = matches!(part.solid, PartSolid::Segment(_));
         if let PartSolid::Shape(_) = part.solid {
             return None;
         }
         let usual = self.usual.get_or_init(|| self.usual(part));
-        if !usual.pose.is_same(&part.pose) || usual.is_segment != is_segment {
-            return None;
-        }
-        let solid = Solid::Part(recentred(&part.solid, &usual.local)?);
+        let solid = Solid::Part(usual.recentred(part)?);
         let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
         let whole = Solid::Whole(self.between.pair.first);
         let bodies = [Body { pose: Pose::identity(), solid: whole }, Body { pose, solid }];
-        Some(PartPair::of(bodies, usual.lying, usual.origins))
+        Some(PartPair { is_usual: true, ..PartPair::of(bodies, usual.lying, usual.origins) })
     }
 
     fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
@@ -216,6 +260,15 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             origins,
             lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_turned),
         }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Usual<N, D> {
+    /// A part seen from the point; `None` of one that lies otherwise.
+    fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
+        let is_segment = matches!(part.solid, PartSolid::Segment(_));
+        let is_alike = self.pose.is_same(&part.pose) && self.is_segment == is_segment;
+        if is_alike { recentred(&part.solid, &self.local) } else { None }
     }
 }
 
@@ -243,7 +296,16 @@ impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
         origins: [Point<N, D>; 2],
     ) -> Self {
         let bodies = if lying.is_turned { [body2, body1] } else { [body1, body2] };
-        Self { bodies, lying, origins }
+        Self { bodies, lying, origins, is_usual: false }
+    }
+
+    /// Puts another part of the second shape in the place of one that lies as usual; answers whether that
+    /// one does.
+    fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
+        let Some(solid) = usual.recentred(part) else { return false };
+        let at = usize::from(!self.lying.is_turned);
+        self.bodies[at].solid = Solid::Part(solid);
+        true
     }
 }
 
