@@ -25,6 +25,7 @@ use crate::query::separation::{
     parted_in_plane, parted_in_space, separation_in_plane, separation_in_space, separations2,
     separations3, touching_in_world,
 };
+use crate::query::tiles::TiledParts;
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
     Placed, Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
@@ -39,7 +40,7 @@ use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
-    /// That of many triangles from one solid, if there is an algorithm for that.
+    /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) separations: SeparationsFn<N, D>,
     pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
     /// Contacts along the normal of a triangle; answers false where it makes none.
@@ -102,7 +103,7 @@ type WitnessFn<N, const D: usize> =
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type SeparationsFn<N, const D: usize> =
-    fn(&[Triangle<N, D>], (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;
+    fn(&TiledParts<'_, N, D>, (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];

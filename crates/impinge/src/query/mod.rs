@@ -15,6 +15,7 @@ mod proximity;
 mod raw_manifold;
 pub(crate) mod ray;
 pub(crate) mod separation;
+pub(crate) mod tiles;
 mod witness;
 
 pub use crate::bounding_volume::Ray;

@@ -7,6 +7,7 @@ use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
+use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
 
 /// Numbers from -1 to 1.
@@ -208,9 +209,16 @@ fn together<N: Real>(rounds: usize) {
             let [a, b, c] = triangles[0].corners();
             triangles[0] = Triangle::new(huge(a), huge(b), huge(c));
         }
+        let mut tiles = vec![Tiles::blank(); count.div_ceil(LANES)];
+        for lane in 0..tiles.len() * LANES {
+            tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
+        }
+        let mut near = vec![u8::MAX; tiles.len()];
+        *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
+        let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
         for limit in [N::ZERO, N::lit(0.3), N::MAX] {
             let mut found = Separations::new();
-            assert!(separations3(&triangles, (Kind::Cuboid(&cuboid), &pose12), limit, &mut found));
+            assert!(separations3(&parts, (Kind::Cuboid(&cuboid), &pose12), limit, &mut found));
             assert_eq!(found.len(), triangles.len());
             for (found, triangle) in found.iter().zip(&triangles) {
                 let (first, second) = (Kind::Triangle(triangle), Kind::Cuboid(&cuboid));

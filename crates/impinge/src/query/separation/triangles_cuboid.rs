@@ -8,12 +8,10 @@ use super::triangle_axes::{Axis, AxisKind, Fin, THIN, least_sine, noise};
 use super::triangle_cuboid;
 use crate::convex::Separation;
 use crate::math::lanes::{by_axis, cross, dot, either, load, spread};
-use crate::math::{Matrix, Pose, Real, Vector, Wide};
-use crate::query::Pair;
+use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
+use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{Cuboid, Kind, SupportMap, Triangle};
 
-/// How many triangles are treated at once.
-const LANES: usize = 8;
 /// The directions are numbered: that of the triangle, the faces of the box, and for each side of the
 /// triangle one for each axis of the box.
 const KINDS: [f64; 16] =
@@ -24,24 +22,27 @@ const FIRST_EDGES: usize = 7;
 /// What is found of each of some parts; `None` beyond the limit.
 pub(crate) type Separations<N, const D: usize> = SmallVec<[Option<Separation<N, D>>; 16]>;
 
-/// The separations of triangles from a solid, all of which lie at `pose12` in their frame, if there is
-/// an algorithm for many of them; answers whether there is.
+/// The separations of triangles from a solid, all of which lie at `pose12` in the frame of the triangles
+/// as seen from their origin, if there is an algorithm for many of them; answers whether there is.
 pub(crate) fn separations3<N: Real>(
-    triangles: &[Triangle<N, 3>],
+    parts: &TiledParts<'_, N, 3>,
     (solid, pose12): (Kind<'_, N, 3>, &Pose<N, 3>),
     limit: N,
     out: &mut Separations<N, 3>,
 ) -> bool {
     let Kind::Cuboid(cuboid) = solid else { return false };
-    for chunk in triangles.chunks(LANES) {
-        let mut eight = Eight::blank(pose12, cuboid, limit);
-        // The last stands for those that are missing.
-        for lane in 0..LANES {
-            eight.put(lane, &chunk[lane.min(chunk.len() - 1)]);
+    if !pose12.is_finite() {
+        return false;
+    }
+    let question = Question { pose12, cuboid, limit, origin: &parts.origin };
+    for (tiles, near) in parts.tiles.iter().zip(parts.near) {
+        if *near == 0 {
+            continue;
         }
-        let Some(found) = at(Level::new(), &eight) else { return false };
-        for (lane, triangle) in chunk.iter().enumerate() {
-            out.push(eight.answer(lane, triangle, &found));
+        let Some(axes) = at(Level::new(), &question, tiles) else { return false };
+        for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
+            let Some(found) = question.answer(lane, tiles, &axes) else { return false };
+            out.push(found);
         }
     }
     true
@@ -49,7 +50,7 @@ pub(crate) fn separations3<N: Real>(
 
 /// In the plane triangles are filled.
 pub(crate) fn separations2<N: Real>(
-    _: &[Triangle<N, 2>],
+    _: &TiledParts<'_, N, 2>,
     _: (Kind<'_, N, 2>, &Pose<N, 2>),
     _: N,
     _: &mut Separations<N, 2>,
@@ -57,24 +58,21 @@ pub(crate) fn separations2<N: Real>(
     false
 }
 
-/// Eight triangles and the box, in its triangles' frame.
-struct Eight<'a, N: Real> {
+/// What all triangles are asked.
+struct Question<'a, N: Real> {
     pose12: &'a Pose<N, 3>,
     cuboid: &'a Cuboid<N, 3>,
     limit: N,
-    /// By corner and coordinate.
-    corners: [[[N; LANES]; 3]; 3],
-    /// The units of each pair; see [`Fin`].
-    scale: [N; LANES],
-    shrink: [N; LANES],
-    /// A bit for each triangle with which the numbers do not end.
-    plain: u8,
+    origin: &'a Vector<N, 3>,
 }
 
 /// The directions that leave the largest gaps.
 struct Axes<N> {
     /// A bit for each triangle that is beyond the limit.
     beyond: u8,
+    /// The units of each pair; see [`Fin::units`].
+    scale: [N; LANES],
+    shrink: [N; LANES],
     /// In the frame of the box, in units of the pair.
     corners: [[[N; LANES]; 3]; 3],
     normals: [[N; LANES]; 3],
@@ -82,45 +80,28 @@ struct Axes<N> {
     kinds: [N; LANES],
 }
 
-impl<'a, N: Real> Eight<'a, N> {
-    fn blank(pose12: &'a Pose<N, 3>, cuboid: &'a Cuboid<N, 3>, limit: N) -> Self {
-        let (corners, one) = ([[[N::ZERO; LANES]; 3]; 3], [N::ONE; LANES]);
-        Self { pose12, cuboid, limit, corners, scale: one, shrink: one, plain: 0 }
-    }
-
-    fn put(&mut self, lane: usize, triangle: &Triangle<N, 3>) {
-        let units = Fin::units(triangle, self.pose12, self.cuboid.reach());
-        let Some((scale, shrink)) = units else { return };
-        (self.scale[lane], self.shrink[lane]) = (scale, shrink);
-        self.plain |= 1 << lane;
-        for (rows, corner) in self.corners.iter_mut().zip(triangle.corners()) {
-            for (row, value) in rows.iter_mut().zip(corner.iter()) {
-                row[lane] = *value;
-            }
-        }
-    }
-
-    /// What the axis of one triangle says.
+impl<N: Real> Question<'_, N> {
+    /// What the axis of one triangle says; `None` where the numbers end.
+    #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn answer(
         &self,
         lane: usize,
-        triangle: &Triangle<N, 3>,
+        tiles: &Tiles<N, 3>,
         axes: &Axes<N>,
-    ) -> Option<Separation<N, 3>> {
-        if self.plain >> lane & 1 == 0 {
-            let (first, second) = (Kind::Triangle(triangle), Kind::Cuboid(self.cuboid));
-            let pair = Pair { first, second, pose12: *self.pose12 };
-            return triangle_cuboid::separation(&pair, self.limit);
-        }
-        if axes.beyond >> lane & 1 == 1 {
+    ) -> Option<Option<Separation<N, 3>>> {
+        let units = (axes.scale[lane], axes.shrink[lane]);
+        if !(units.0.is_finite_number() && units.1.is_finite_number()) {
             return None;
         }
+        if axes.beyond >> lane & 1 == 1 {
+            return Some(None);
+        }
+        let triangle = &Triangle::of_finite(tiles.corners(lane).map(|corner| corner - self.origin));
         let vector = |rows: &[[N; LANES]; 3]| {
             Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
         };
         let [a, b, c] = &axes.corners;
         let corners = [vector(a), vector(b), vector(c)];
-        let units = (self.scale[lane], self.shrink[lane]);
         let fin = Fin::placed(triangle, self.pose12, corners, units);
         let normal = vector(&axes.normals);
         let kind = match KINDS.iter().position(|&kind| N::lit(kind) == axes.kinds[lane]) {
@@ -134,28 +115,30 @@ impl<'a, N: Real> Eight<'a, N> {
             _ => AxisKind::Triangle,
         };
         let best = Axis { kind, normal, gap: axes.gaps[lane] };
-        triangle_cuboid::answer(&fin, self.cuboid, &best, self.limit)
+        Some(triangle_cuboid::answer(&fin, self.cuboid, &best, self.limit))
     }
 }
 
 /// [`search`] with the vectors of an instruction set; the answers do not depend on it.
-fn at<N: Real>(level: Level, eight: &Eight<'_, N>) -> Option<Axes<N>> {
+fn at<N: Real>(level: Level, question: &Question<'_, N>, tiles: &Tiles<N, 3>) -> Option<Axes<N>> {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = level.as_avx2() {
         Some(simd.vectorize(
             #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, eight),
+            || search::<_, N, N::Lanes<_>>(simd, question, tiles),
         ))
     } else {
         level.as_sse2().map(|simd| {
             simd.vectorize(
                 #[inline(always)]
-                || search::<_, N, N::Lanes<_>>(simd, eight),
+                || search::<_, N, N::Lanes<_>>(simd, question, tiles),
             )
         })
     }
     #[cfg(not(target_arch = "x86_64"))]
-    Some(fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, eight)))
+    Some(
+        fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, tiles)),
+    )
 }
 
 /// The best directions so far.
@@ -174,26 +157,28 @@ struct Lanes<V> {
 }
 
 #[inline(always)]
-fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, eight: &Eight<'_, N>) -> Axes<N> {
-    let (scale, shrink) = (V::load(simd, &eight.scale), V::load(simd, &eight.shrink));
-    let given: [[V; 3]; 3] = [
-        load(simd, &eight.corners[0]),
-        load(simd, &eight.corners[1]),
-        load(simd, &eight.corners[2]),
-    ];
-    let turn = &eight.pose12.rotation;
-    let center: [V; 3] = spread(simd, &eight.pose12.translation);
+fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &Question<'_, N>,
+    tiles: &Tiles<N, 3>,
+) -> Axes<N> {
+    let Question { pose12, cuboid, .. } = question;
+    let given = seen_from_origin::<S, N, V>(simd, question, tiles);
+    let (scales, shrinks) = units(simd, question, &given);
+    let (scale, shrink) = (V::load(simd, &scales), V::load(simd, &shrinks));
+    let turn = &pose12.rotation;
+    let center: [V; 3] = spread(simd, &pose12.translation);
     let mut corners = given;
     for corner in &mut corners {
         *corner = turned(simd, turn, &times(&minus(corner, &center), shrink));
     }
-    let half: [V; 3] = spread(simd, eight.cuboid.half_extents());
+    let half: [V; 3] = spread(simd, cuboid.half_extents());
     let lanes = Lanes { corners, half: times(&half, shrink) };
-    let limit = V::all(simd, eight.limit) + V::all(simd, N::lit(16.0) * noise::<N>()) * scale;
+    let limit = V::all(simd, question.limit) + V::all(simd, N::lit(16.0) * noise::<N>()) * scale;
     let best = best_of_box(simd, &lanes);
     let beyond = (best.gap * scale).simd_gt(limit);
     if low_byte(beyond.to_bitmask()) == u8::MAX {
-        return stored(&lanes, &best, beyond.to_bitmask());
+        return stored((scales, shrinks), &lanes, &best, beyond.to_bitmask());
     }
     let ways = [
         times(&minus(&given[1], &given[0]), shrink),
@@ -204,11 +189,54 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, eight: &Eight<'_, N
     let best = best_face(simd, &lanes, (&front, has_front), best);
     let beyond = beyond | (best.gap * scale).simd_gt(limit);
     let best = best_edges(simd, &lanes, &sides, best);
-    stored(&lanes, &best, (beyond | (best.gap * scale).simd_gt(limit)).to_bitmask())
+    let beyond = beyond | (best.gap * scale).simd_gt(limit);
+    stored((scales, shrinks), &lanes, &best, beyond.to_bitmask())
+}
+
+/// The corners of the triangles, seen from the common origin.
+#[inline(always)]
+fn seen_from_origin<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &Question<'_, N>,
+    tiles: &Tiles<N, 3>,
+) -> [[V; 3]; 3] {
+    let origin: [V; 3] = spread(simd, question.origin);
+    let corner = [
+        load::<S, N, V, 3, LANES>(simd, &tiles.corners[0]),
+        load(simd, &tiles.corners[1]),
+        load(simd, &tiles.corners[2]),
+    ];
+    [minus(&corner[0], &origin), minus(&corner[1], &origin), minus(&corner[2], &origin)]
+}
+
+/// The units of each pair and their inverses; no numbers where there are none.
+#[inline(always)]
+fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &Question<'_, N>,
+    corners: &[[V; 3]; 3],
+) -> ([N; LANES], [N; LANES]) {
+    let own = max(question.cuboid.reach(), max_component(&question.pose12.translation));
+    let mut most = V::all(simd, own);
+    for corner in corners {
+        for value in corner {
+            most = value.abs().larger(most);
+        }
+    }
+    let (mut sizes, mut shrinks) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
+    most.store(&mut sizes);
+    for (size, shrink) in sizes.iter_mut().zip(&mut shrinks) {
+        let is_plain = *size > N::ZERO && size.is_finite_number();
+        let scale = size.power_of_two_below();
+        *shrink = if is_plain { N::ONE / scale } else { N::INFINITY };
+        *size = scale;
+    }
+    (sizes, shrinks)
 }
 
 #[inline(always)]
 fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    (scale, shrink): ([N; LANES], [N; LANES]),
     lanes: &Lanes<V>,
     best: &Best<V>,
     beyond: u64,
@@ -226,7 +254,7 @@ fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best.gap.store(&mut gaps);
     let mut kinds = blank;
     best.kind.store(&mut kinds);
-    Axes { beyond: low_byte(beyond), corners, normals, gaps, kinds }
+    Axes { beyond: low_byte(beyond), scale, shrink, corners, normals, gaps, kinds }
 }
 
 fn low_byte(bits: u64) -> u8 {

@@ -2,9 +2,9 @@
 
 use smallvec::SmallVec;
 
-use super::tiles::{LANES, Tiles};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangle};
 
 /// More parts than this are not kept.

@@ -6,18 +6,23 @@ use super::super::between::Between;
 use super::super::bounds::{aabb_of, enclosing};
 use super::around::Around;
 use super::near::Probe;
-use super::tiles::LANES;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, min};
+use crate::query::tiles::LANES;
 use crate::shape::CompositeShape;
 
 /// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
+/// A bit for each part of tiles.
+pub(super) type Near = SmallVec<[u8; 8]>;
+
 /// What of two shapes may be within reach of each other.
 pub(super) struct Nearby<N: Real> {
     /// In order.
     pub(super) parts: PartPairs,
+    /// The same as bits for each of the tiles that are kept; empty if there are none.
+    pub(super) near: Near,
     /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
     /// nothing is known.
     pub(super) clearance: N,
@@ -35,7 +40,8 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
 ) -> Nearby<N> {
     let ([None, Some(parts2)], Some(probe)) = (between.composites(), Probe::new(between, reach))
     else {
-        return Nearby { parts: candidates(between, is_self, reach), clearance: N::ZERO };
+        let parts = candidates(between, is_self, reach);
+        return Nearby { parts, near: Near::new(), clearance: N::ZERO };
     };
     let aabb = search_box(between, reach);
     if let Some(around) = around
@@ -51,7 +57,7 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
         !bound.is_beyond
     });
     parts.sort_unstable();
-    Nearby { parts, clearance }
+    Nearby { parts, near: Near::new(), clearance }
 }
 
 /// Of the parts that are kept those that may be within reach.
@@ -62,11 +68,14 @@ fn near_kept<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
 ) -> Nearby<N> {
     let sight = probe.sight(around, aabb);
-    let (mut parts, mut clearance) = (PartPairs::new(), depth_in(aabb, probe.center()));
+    let (mut parts, mut near) = (PartPairs::new(), Near::new());
+    let mut clearance = depth_in(aabb, probe.center());
     for (block, kept) in around.parts().chunks(LANES).enumerate() {
-        let bounds = around.tiles().get(block).and_then(|tiles| tiles.bounds(&sight));
+        let bounds = around.tiles().get(block).and_then(|tiles| sight.bounds(tiles));
         if let Some(bounds) = bounds {
             clearance = min(clearance, bounds.from_middle);
+            // Beyond the last part are copies of it.
+            near.push(bounds.near & (u8::MAX >> (LANES - kept.len())));
             let is_near = |lane: &usize| bounds.near >> lane & 1 == 1;
             for lane in (0..kept.len()).filter(is_near) {
                 parts.push([0, kept[lane]]);
@@ -81,7 +90,7 @@ fn near_kept<N: Space<D>, const D: usize>(
             }
         }
     }
-    Nearby { parts, clearance }
+    Nearby { parts, near, clearance }
 }
 
 /// A box in the frame of the second shape around all that is within `reach` of the first.

@@ -19,12 +19,13 @@ mod near;
 mod over;
 mod resolve;
 mod scene;
-mod tiles;
+mod sight;
 mod view;
 
 use smallvec::SmallVec;
 
 use self::around::Around;
+use self::candidates::Nearby;
 use self::facts::{Finding, Notes, Reference, Standing};
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
@@ -102,7 +103,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
-        let findings = query.findings(&nearby.parts, &mut notes);
+        let findings = query.findings(&nearby, &mut notes);
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
         let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
@@ -170,11 +171,11 @@ type Findings<N, const D: usize> = SmallVec<[Finding<N, D>; 8]>;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
-    fn findings(&self, parts: &[[u32; 2]], notes: &mut Notes<N, D>) -> Findings<N, D> {
+    fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut findings, mut slot) = (Findings::new(), None);
-        let all = scene.separations(parts, self.request.prediction);
-        for (index, &parts) in parts.iter().enumerate() {
+        let all = scene.separations(nearby, self.request.prediction);
+        for (index, &parts) in nearby.parts.iter().enumerate() {
             let known = all.as_ref().map(|all| all[index]);
             if known.is_some_and(|known| known.is_none()) {
                 continue;
@@ -260,7 +261,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
     let query = Query { between, around: None, reference: &reference, request: &request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
     let mut notes = Notes::default();
-    let findings = query.findings(&nearby.parts, &mut notes);
+    let findings = query.findings(&nearby, &mut notes);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
     let points = kept.flat_map(|Finding { piece, .. }| {
         notes.points[piece.points.clone()].iter().map(|point| (piece.normal, *point))

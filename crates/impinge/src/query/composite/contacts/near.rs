@@ -6,7 +6,7 @@
 
 use super::super::between::Between;
 use super::around::Around;
-use super::tiles::Sight;
+use super::sight::Sight;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;

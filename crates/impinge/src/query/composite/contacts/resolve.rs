@@ -36,7 +36,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     let is_asked =
         |finding: &Finding<N, D>| matches!(finding.standing, Standing::Snapped | Standing::Beyond);
     if findings.iter().any(is_asked) {
-        leave_explained(scene, findings);
+        leave_explained(scene, findings, notes);
     }
     keep_one(findings, notes);
 }
@@ -45,6 +45,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
+    notes: &Notes<N, D>,
 ) {
     let mut ways = Ways::new();
     for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
@@ -52,7 +53,7 @@ fn leave_explained<N: Space<D>, const D: usize>(
     }
     for standing in [Standing::Snapped, Standing::Beyond] {
         for index in shallowest_first(findings, standing) {
-            if is_explained(scene, &findings[index], &ways) {
+            if is_explained(scene, &findings[index], &ways, notes) {
                 findings[index].standing = Standing::Left;
             } else {
                 note(&mut ways, &findings[index]);
@@ -90,6 +91,7 @@ fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     finding: &Finding<N, D>,
     ways: &[Way<N, D>],
+    notes: &Notes<N, D>,
 ) -> bool {
     let (normal, depth) = (finding.piece.normal, -finding.lowest);
     if depth <= finding.tolerance {
@@ -104,9 +106,19 @@ fn is_explained<N: Space<D>, const D: usize>(
     let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
     let (mut asked, room) = (ways.iter().filter(is_asked), -finding.tolerance);
     asked.clone().any(|way| rest(way) > room) || {
-        let placed = asked.clone().next().map(|_| scene.pair(finding.parts()));
-        placed.is_some_and(|placed| {
-            asked.any(|way| placed.is_parted(&(way.normal * way.depth), finding.tolerance))
+        let points = &notes.points[finding.piece.points.clone()];
+        let mut placed = None;
+        asked.any(|way| {
+            let shift = way.normal * way.depth;
+            // A point of the part that is still well within the solid says that they are not parted.
+            let is_held = points.iter().any(|point| {
+                let moved = point.point1 + normal * point.distance + shift;
+                scene.is_within(&moved, N::TWO * finding.tolerance)
+            });
+            !is_held && {
+                let placed = placed.get_or_insert_with(|| scene.pair(finding.parts()));
+                placed.is_parted(&shift, finding.tolerance)
+            }
         })
     }
 }

@@ -2,15 +2,15 @@
 
 use core::cell::OnceCell;
 
-use smallvec::SmallVec;
-
 use super::super::between::{Between, anchor, recentred};
 use super::around::Around;
+use super::candidates::Nearby;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::manifold_build::{Piece, Points};
 use crate::query::separation::Separations;
+use crate::query::tiles::TiledParts;
 use crate::query::{Pair, RawManifold};
-use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface, Triangle};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
 /// Two shapes, one of them a composite at least.
 pub(super) struct Scene<'a, N: Real, const D: usize> {
@@ -127,6 +127,16 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
+    /// A point of the first shape's frame lies in that shape by more than a depth: no plane parts the two
+    /// by less than that. False of composites.
+    pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
+        let first = self.between.pair.first;
+        Geometry(first).as_support_map().is_some() && {
+            let found = (N::tables().surface_point)(first, point);
+            found.is_inside && (found.point - point).norm() > depth
+        }
+    }
+
     /// Two parts of the second shape hang together.
     pub(super) fn are_adjacent(&self, part: u32, other: u32) -> bool {
         let [_, composite] = self.between.composites();
@@ -157,28 +167,22 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
     }
 
-    /// The separations of a convex solid from triangles of a surface, if these lie alike and there is an
-    /// algorithm for many of them; `None` for those that are beyond the limit.
-    pub(super) fn separations(&self, parts: &[[u32; 2]], limit: N) -> Option<Separations<N, D>> {
-        let [None, Some(composite)] = self.between.composites() else { return None };
-        let (first, _) = (parts.first()?, self.surfaces[1]?);
-        let usual = match self.part2(composite, first[1]) {
-            part @ Part { solid: PartSolid::Triangle(_), .. } => {
-                self.usual.get_or_init(|| self.usual(&part))
-            }
-            _ => return None,
+    /// The separations of a convex solid from triangles of a surface that are kept side by side, if there
+    /// is an algorithm for many of them; `None` for those that are beyond the limit.
+    pub(super) fn separations(&self, nearby: &Nearby<N>, limit: N) -> Option<Separations<N, D>> {
+        let (around, first, _) = (self.around?, nearby.parts.first()?, self.surfaces[1]?);
+        let part @ Part { solid: PartSolid::Triangle(_), .. } = around.part(first[1])? else {
+            return None;
         };
-        let mut triangles: SmallVec<[Triangle<N, D>; 16]> = SmallVec::new();
-        for [_, part] in parts {
-            match usual.recentred(&self.part2(composite, *part))? {
-                PartSolid::Triangle(triangle) => triangles.push(triangle),
-                _ => return None,
-            }
+        let usual = self.usual.get_or_init(|| self.usual(&part));
+        if !usual.lying.is_turned || nearby.near.len() != around.tiles().len() {
+            return None;
         }
-        let (solid, mut found) = (self.between.pair.first, Separations::new());
-        let placed = (solid, &usual.lying.pose12);
-        (usual.lying.is_turned && (N::tables().separations)(&triangles, placed, limit, &mut found))
-            .then_some(found)
+        let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
+        let (placed, mut found) =
+            ((self.between.pair.first, &usual.lying.pose12), Separations::new());
+        let parts = TiledParts { tiles, near, origin };
+        (N::tables().separations)(&parts, placed, limit, &mut found).then_some(found)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is

@@ -7,17 +7,8 @@ use fearless_simd::{Level, Select, Simd, SimdMask};
 
 use super::near::{least_length, relative_slack};
 use crate::math::lanes::{by_axis, dot, either, lit, load, norm, spread};
-use crate::math::{Matrix, Point, Real, Vector, Wide, min};
-
-/// How many parts are looked at together.
-pub(super) const LANES: usize = 8;
-
-/// The corners of eight parts in the frame of their composite. A segment has its second end twice; where
-/// there are fewer parts the last stands for the rest.
-#[derive(Clone, Debug)]
-pub(super) struct Tiles<N, const D: usize> {
-    corners: [[[N; LANES]; D]; 3],
-}
+use crate::math::{Matrix, Real, Vector, Wide, min};
+use crate::query::tiles::{LANES, Tiles};
 
 /// A convex solid as a composite sees it.
 pub(super) struct Sight<N: Real, const D: usize> {
@@ -44,29 +35,10 @@ pub(super) struct Bounds<N> {
     pub(super) from_middle: N,
 }
 
-impl<N: Real, const D: usize> Tiles<N, D> {
-    pub(super) fn blank() -> Self {
-        Self { corners: [[[N::ZERO; LANES]; D]; 3] }
-    }
-
-    pub(super) fn put(&mut self, lane: usize, corners: &[Point<N, D>; 3]) {
-        for (rows, corner) in self.corners.iter_mut().zip(corners) {
-            for (row, value) in rows.iter_mut().zip(corner.iter()) {
-                row[lane] = *value;
-            }
-        }
-    }
-
-    pub(super) fn corners(&self, lane: usize) -> [Point<N, D>; 3] {
-        let corner = |at: usize| {
-            Point::from(Vector::<N, D>::from_fn(|axis, _| self.corners[at][axis][lane]))
-        };
-        [corner(0), corner(1), corner(2)]
-    }
-
-    /// What a solid sees of the parts; `None` without vectors.
-    pub(super) fn bounds(&self, sight: &Sight<N, D>) -> Option<Bounds<N>> {
-        at(Level::new(), self, sight)
+impl<N: Real, const D: usize> Sight<N, D> {
+    /// What the solid sees of eight parts; `None` without vectors.
+    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> Option<Bounds<N>> {
+        at(Level::new(), tiles, self)
     }
 }
 
