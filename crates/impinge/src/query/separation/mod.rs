@@ -45,7 +45,7 @@ mod triangle_cuboid;
 mod triangle_polytope;
 #[cfg(test)]
 mod triangle_tests;
-mod triangles_cuboid;
+mod triangles;
 mod world;
 
 use crate::convex::Separation;
@@ -56,7 +56,7 @@ use crate::shape::{Geometry, ShapeKind};
 pub(crate) use overlap::certainly_overlap;
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
-pub(crate) use triangles_cuboid::{Separations, separations2, separations3};
+pub(crate) use triangles::{Separations, separations2, separations3};
 pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.

@@ -28,14 +28,40 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let Some(fin) = fin(triangle, hull, &pair.pose12) else {
         return general::of_flat_cores(pair, limit);
     };
-    let best = match best_axis(&fin, hull, |gap| fin.is_beyond(gap, limit)) {
+    let best = best_axis(&fin, hull, |gap| fin.is_beyond(gap, limit));
+    settled(&fin, hull, &best, limit)
+}
+
+/// What the direction that leaves the largest gap says, which is not yet held against the limit if it is
+/// that of two edges.
+pub(super) fn answer<N: Real>(
+    fin: &Fin<'_, N>,
+    hull: &Polytope<N, 3>,
+    axis: Axis<N>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let best = match axis.kind {
+        AxisKind::Edges(..) if !is_sound(fin, hull, &axis) => Best::Unclear,
+        AxisKind::Edges(..) if fin.is_beyond(axis.gap, limit) => Best::Beyond,
+        _ => Best::Axis(axis),
+    };
+    settled(fin, hull, &best, limit)
+}
+
+fn settled<N: Real>(
+    fin: &Fin<'_, N>,
+    hull: &Polytope<N, 3>,
+    best: &Best<N>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let found = match best {
         Best::Beyond => return None,
-        Best::Axis(best) => fin.answer(*hull, &best),
+        Best::Axis(best) => fin.answer(hull, best),
         Best::Unclear => None,
     };
-    match best {
+    match found {
         Some(found) => (found.distance <= limit).then_some(found),
-        None => general::of_flat_cores(pair, limit),
+        None => general::of_flat_cores(&fin.pair(Kind::Polytope(hull)), limit),
     }
 }
 
@@ -60,9 +86,12 @@ fn fin<'a, N: Real>(
     hull: &Polytope<N, 3>,
     pose12: &'a Pose<N, 3>,
 ) -> Option<Fin<'a, N>> {
-    // A hull without edges, or with faces back to back alone, is no solid.
-    let is_usual = hull.edges().len() <= MOST_EDGES && hull.faces().len() > 2;
-    is_usual.then(|| Fin::new(triangle, pose12, hull.reach()))?
+    is_usual(hull).then(|| Fin::new(triangle, pose12, hull.reach()))?
+}
+
+/// The hull is a solid of few edges. One without edges, or with faces back to back alone, is no solid.
+pub(super) fn is_usual<N: Real>(hull: &Polytope<N, 3>) -> bool {
+    hull.edges().len() <= MOST_EDGES && hull.faces().len() > 2
 }
 
 /// What the directions say.

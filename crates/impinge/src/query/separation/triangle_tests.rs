@@ -193,12 +193,14 @@ fn a_box_on_a_face_has_its_normal() {
     }
 }
 
-/// Many triangles against one box, and each of them alone.
+/// Many triangles against one solid, and each of them alone.
 fn together<N: Real>(rounds: usize) {
     let (mut noise, mut touching) = (Noise(5), 0);
     for round in 0..rounds {
         let half = noise.vector::<N>(1.0).map(|x| if round % 5 == 0 { N::ZERO } else { x.abs() });
-        let (cuboid, mut pose12) = (Cuboid::new(half), noise.pose::<N>(1.5));
+        let points: Vec<_> = (0..4 + round % 9).map(|_| Point::from(noise.vector(1.0))).collect();
+        let (cuboid, hull) = (Cuboid::new(half), ConvexHull::from_points(&points));
+        let mut pose12 = noise.pose::<N>(1.5);
         if round % 7 == 0 {
             pose12.rotation = Pose::identity().rotation;
         }
@@ -209,26 +211,42 @@ fn together<N: Real>(rounds: usize) {
             let [a, b, c] = triangles[0].corners();
             triangles[0] = Triangle::new(huge(a), huge(b), huge(c));
         }
-        let mut tiles = vec![Tiles::blank(); count.div_ceil(LANES)];
-        for lane in 0..tiles.len() * LANES {
-            tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
-        }
-        let mut near = vec![u8::MAX; tiles.len()];
-        *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
-        let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
         for limit in [N::ZERO, N::lit(0.3), N::MAX] {
-            let mut found = Separations::new();
-            assert!(separations3(&parts, (Kind::Cuboid(&cuboid), &pose12), limit, &mut found));
-            assert_eq!(found.len(), triangles.len());
-            for (found, triangle) in found.iter().zip(&triangles) {
-                let (first, second) = (Kind::Triangle(triangle), Kind::Cuboid(&cuboid));
-                let alone = triangle_cuboid::separation(&Pair { first, second, pose12 }, limit);
-                assert_eq!(*found, alone, "round {round}");
-                touching += usize::from(alone.is_some());
+            for solid in [Kind::Cuboid(&cuboid), hull.geometry().0] {
+                touching += check_together((&triangles, solid, &pose12), limit, round);
             }
         }
     }
     assert!(touching > rounds, "{touching} touch");
+}
+
+/// Answers how many are within the limit.
+fn check_together<N: Real>(
+    (triangles, solid, pose12): (&[Triangle<N, 3>], Kind<'_, N, 3>, &Pose<N, 3>),
+    limit: N,
+    round: usize,
+) -> usize {
+    let count = triangles.len();
+    let mut tiles = vec![Tiles::blank(); count.div_ceil(LANES)];
+    for lane in 0..tiles.len() * LANES {
+        tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
+    }
+    let mut near = vec![u8::MAX; tiles.len()];
+    *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
+    let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
+    let mut found = Separations::new();
+    assert!(separations3(&parts, (solid, pose12), limit, &mut found), "round {round}");
+    assert_eq!(found.len(), count);
+    for (found, triangle) in found.iter().zip(triangles) {
+        let (first, pose12) = (Kind::Triangle(triangle), *pose12);
+        let pair = Pair { first, second: solid, pose12 };
+        let alone = match solid {
+            Kind::Cuboid(_) => triangle_cuboid::separation(&pair, limit),
+            _ => triangle_polytope::separation(&pair, limit),
+        };
+        assert_eq!(*found, alone, "round {round}");
+    }
+    found.iter().filter(|found| found.is_some()).count()
 }
 
 #[test]

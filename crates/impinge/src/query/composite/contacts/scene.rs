@@ -130,10 +130,18 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     /// A point of the first shape's frame lies in that shape by more than a depth: no plane parts the two
     /// by less than that. False of composites.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
-        let first = self.between.pair.first;
-        Geometry(first).as_support_map().is_some() && {
-            let found = (N::tables().surface_point)(first, point);
-            found.is_inside && (found.point - point).norm() > depth
+        match self.between.pair.first {
+            Kind::Composite(_) | Kind::Plane(_) => false,
+            // A hull without faces is a segment or a point.
+            Kind::Polytope(hull) => {
+                let mut faces = hull.faces().iter();
+                !hull.faces().is_empty()
+                    && faces.all(|face| face.offset - face.normal.dot(&point.coords) > depth)
+            }
+            first => {
+                let found = (N::tables().surface_point)(first, point);
+                found.is_inside && (found.point - point).norm() > depth
+            }
         }
     }
 
