@@ -10,24 +10,21 @@ use crate::shape::{FeatureId, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
-        let front = self.front_of(&self.corners(part));
+        let own = Face::of(self, self.corners(part));
         if self.keeps_internal_edges {
-            return !self.is_one_sided || front.dot(normal) >= -slack::<N>();
+            return !self.is_one_sided || own.front.dot(normal) >= -slack::<N>();
         }
-        let own = self.snapped(part, normal);
-        own.is_some_and(|own| max_component(&(own - normal)) <= slack())
+        let snapped = self.snapped_to(&own.front, normal);
+        snapped.is_some_and(|snapped| max_component(&(snapped - normal)) <= slack())
             || match feature {
-                FeatureId::Face(_) => own.is_none(),
-                FeatureId::Edge(side) => self.edge_admits(part, side as usize, normal),
-                FeatureId::Vertex(corner) => self.vertex_admits(part, corner as usize, normal),
+                FeatureId::Face(_) => snapped.is_none(),
+                FeatureId::Edge(side) => self.edge_admits(&own, side as usize, normal),
+                FeatureId::Vertex(corner) => self.vertex_admits(&own, corner as usize, normal),
             }
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
-        let front = self.front_of(&self.corners(part));
-        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
-        let own = if is_front { front } else { -front };
-        (front != Vector::<N, 3>::zeros()).then_some(own)
+        self.snapped_to(&self.front_of(&self.corners(part)), normal)
     }
 
     fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
@@ -36,6 +33,27 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         let is_behind =
             || self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO;
         !(self.is_one_sided && is_behind())
+    }
+}
+
+/// A triangle of a field.
+struct Face<N: Real> {
+    corners: [GridPoint; 3],
+    points: [Point<N, 3>; 3],
+    /// The unit normal on the front; zero without area.
+    front: Vector<N, 3>,
+}
+
+impl<N: Real> Face<N> {
+    fn of(field: &HeightField<N, 3>, corners: [GridPoint; 3]) -> Self {
+        let points = field.points_of(&corners);
+        Self { corners, points, front: normal_of(&points) }
+    }
+
+    /// The corner that is none of two, which are the ends of a side.
+    fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
+        let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
+        Some(self.points[at])
     }
 }
 
@@ -49,56 +67,75 @@ impl<N: Real> HeightField<N, 3> {
         normal_of(&self.points_of(corners))
     }
 
-    /// The corners of the triangles around a point of the grid: eight at most, without the holes.
-    fn around_point(&self, [row, column]: GridPoint) -> impl Iterator<Item = [GridPoint; 3]> + '_ {
+    fn snapped_to(&self, front: &Vector<N, 3>, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        let own = if is_front { *front } else { -front };
+        (*front != Vector::<N, 3>::zeros()).then_some(own)
+    }
+
+    /// The triangles of some cells, given by their rows and columns plus one, without the holes.
+    fn in_cells(
+        &self,
+        cells: impl Iterator<Item = GridPoint>,
+    ) -> impl Iterator<Item = [GridPoint; 3]> {
         let [rows, columns] = self.pyramid.cells();
-        // One cell before and one after, of those that there are.
-        let cells = [(1, 1), (1, 0), (0, 1), (0, 0)].into_iter().filter_map(move |(up, left)| {
-            let cell = (row.checked_sub(up)?, column.checked_sub(left)?);
+        let cells = cells.filter_map(move |[row, column]| {
+            let cell = (row.checked_sub(1)?, column.checked_sub(1)?);
             Some(cell).filter(|&(row, column)| row < rows && column < columns)
         });
         let parts = cells.flat_map(|(row, column)| [(row, column, 0), (row, column, 1)]);
         let rest = parts.filter(|&(row, column, k)| !self.is_hole_in(row, column, k));
-        let corners = rest.map(|(row, column, k)| self.corners_in(row, column, k));
-        corners.filter(move |corners| corners.contains(&[row, column]))
+        rest.map(|(row, column, k)| self.corners_in(row, column, k))
     }
 
-    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        let own = self.corners(part);
-        let (a, b, c) = (own[side % 3], own[(side + 1) % 3], own[(side + 2) % 3]);
-        let [start, end] = [a, b].map(|[row, column]| self.grid.point(row, column));
-        let others = || self.around_point(a).filter(|other| other.contains(&b) && *other != own);
-        if let (Some(other), None) = (others().next(), others().nth(1)) {
-            let points = [own, other].map(|corners| self.points_of(&corners));
-            let bend = Bend::new(points.each_ref(), points.each_ref().map(normal_of));
-            if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
-                return answer;
-            }
+    /// The corners of the triangles around a point of the grid: eight at most.
+    fn around_point(&self, at: GridPoint) -> impl Iterator<Item = [GridPoint; 3]> + '_ {
+        let [row, column] = at;
+        // One cell before and one after, of those that there are.
+        let cells = [[row, column], [row, column + 1], [row + 1, column], [row + 1, column + 1]];
+        self.in_cells(cells.into_iter()).filter(move |corners| corners.contains(&at))
+    }
+
+    /// The triangle on the other side of a side.
+    fn across(&self, own: &[GridPoint; 3], [a, b]: [GridPoint; 2]) -> Option<[GridPoint; 3]> {
+        let (row, column) = (a[0].min(b[0]), a[1].min(b[1]));
+        // That of a side along a row or column lies in the cell before or after, that of a diagonal in
+        // the cell itself.
+        let before = [row + usize::from(a[0] != b[0]), column + usize::from(a[1] != b[1])];
+        let cells = [before, [row + 1, column + 1]];
+        self.in_cells(cells.into_iter())
+            .find(|other| other.contains(&a) && other.contains(&b) && other != own)
+    }
+
+    fn edge_admits(&self, own: &Face<N>, side: usize, normal: &Vector<N, 3>) -> bool {
+        let ends = [own.corners[side % 3], own.corners[(side + 1) % 3]];
+        let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
+        let other = self.across(&own.corners, ends).map(|corners| Face::of(self, corners));
+        let bend = other
+            .as_ref()
+            .and_then(|other| Bend::new([&own.points, &other.points], [own.front, other.front]));
+        if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
+            return answer;
         }
-        let mut seam = Seam::of_faces(self.front_of(&own), normal);
-        let mut add = |corners: &[GridPoint; 3], [row, column]: GridPoint| {
-            if let Some(inward) = inward_of(&[start, end, self.grid.point(row, column)]) {
-                seam.add_face(inward.dot(normal), &self.front_of(corners));
-            }
-        };
-        add(&own, c);
-        for other in others() {
-            if let Some(&opposite) = other.iter().find(|corner| **corner != a && **corner != b) {
-                add(&other, opposite);
+        let mut seam = Seam::of_faces(own.front, normal);
+        for face in [Some(own), other.as_ref()].into_iter().flatten() {
+            let inward = face.beyond(&ends).and_then(|tip| inward_of(&[start, end, tip]));
+            if let Some(inward) = inward {
+                seam.add_face(inward.dot(normal), &face.front);
             }
         }
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
-    fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
-        let own = self.corners(part);
-        let at = own[corner % 3];
-        let point = |[row, column]: GridPoint| self.grid.point(row, column);
-        let rises = |other: &GridPoint| leads_up_clearly(&(point(*other) - point(at)), normal);
-        if self.around_point(at).any(|corners| corners.iter().any(rises)) {
+    fn vertex_admits(&self, own: &Face<N>, corner: usize, normal: &Vector<N, 3>) -> bool {
+        let (at, point) = (own.corners[corner % 3], own.points[corner % 3]);
+        let leads_up = |other: &Point<N, 3>| leads_up_clearly(&(other - point), normal);
+        let rises = |corners: [GridPoint; 3]| self.points_of(&corners).iter().any(leads_up);
+        // Most are refused by a side of the triangle that is asked.
+        if own.points.iter().any(leads_up) || self.around_point(at).any(rises) {
             return false;
         }
-        let mut seam = Seam::of_faces(self.front_of(&own), normal);
+        let mut seam = Seam::of_faces(own.front, normal);
         for corners in self.around_point(at) {
             seam.add_face(self.rise_from(at, &corners, normal), &self.front_of(&corners));
         }
