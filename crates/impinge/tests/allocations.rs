@@ -4,7 +4,9 @@ use impinge::dim2::shape::ConvexPolygon;
 use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle};
+use impinge::shape::{
+    Ball, Capsule, ConvexHull, Cuboid, Cylinder, HeightField, Polyline, ShapeHandle, TriMesh,
+};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
 /// Steps after which everything is where it was.
@@ -124,4 +126,63 @@ fn a_lively_step_takes_no_memory() {
     takes_nothing::<f64, 2>();
     takes_nothing::<f32, 3>();
     takes_nothing::<f64, 3>();
+}
+
+/// A solid slides to and fro over hilly ground.
+fn slides_without_memory<const D: usize>(ground: ShapeHandle<f32, D>, solid: ShapeHandle<f32, D>)
+where
+    f32: Stage<D>,
+{
+    let mut world = CollisionWorld::<f32, D, ()>::new(0.02);
+    let query = GeometricQueryType::Contacts(0.01, 0.0);
+    let place = |step: u32| {
+        let mut at = Vector::<f32, D>::zeros();
+        at[0] = step.min(PERIOD - step) as f32 * 0.05;
+        at[1] = 0.4;
+        <f32 as Stage<D>>::place(at, 0.0)
+    };
+    let origin = <f32 as Stage<D>>::place(Vector::<f32, D>::zeros(), 0.0);
+    world.add(origin, ground, CollisionGroups::new(), query, ());
+    let handle = world.add(place(0), solid, CollisionGroups::new(), query, ());
+    let mut slide = || {
+        let mut contacts = 0;
+        for step in 0..PERIOD {
+            world.set_position(handle, place(step));
+            world.update();
+            contacts += world.contact_views().map(|(_, _, view)| view.len()).sum::<usize>();
+        }
+        contacts
+    };
+    slide();
+    slide();
+    let mut contacts = 0;
+    let used = allocation_counter::measure(|| contacts = slide());
+    assert!(contacts >= PERIOD as usize, "{contacts} contacts");
+    // The iterator over the views is a box: one for each step.
+    assert_eq!(used.count_total, u64::from(PERIOD), "{used:?}");
+}
+
+#[test]
+fn sliding_over_composites_takes_no_memory() {
+    let height = |n: usize| if n.is_multiple_of(2) { 0.0_f32 } else { 0.05 };
+    let heights: Vec<f32> = (0..9).map(height).collect();
+    let line = (0..9).map(|n| Point::<f32, 2>::new(n as f32 * 0.5 - 2.0, height(n))).collect();
+    let polyline = ShapeHandle::new(Polyline::open(line));
+    let field =
+        ShapeHandle::new(HeightField::<f32, 2>::new(heights, Vector::<f32, 2>::new(4.0, 1.0)));
+    let (ball, half) = (Ball::new(0.4), Vector::<f32, 2>::repeat(0.4));
+    for ground in [polyline, field] {
+        slides_without_memory(ground.clone(), ShapeHandle::new(ball));
+        slides_without_memory(ground, ShapeHandle::new(Cuboid::new(half)));
+    }
+    let heights: Vec<f32> = (0..81).map(|n| height(n / 9 + n % 9)).collect();
+    let at = |n: usize| [(n % 9) as f32 * 0.5 - 2.0, heights[n], (n / 9) as f32 * 0.5 - 2.0];
+    let vertices = (0..81).map(|n| Point::<f32, 3>::from(Vector::<f32, 3>::from(at(n)))).collect();
+    let cells = (0..64_u32).map(|cell| cell / 8 * 9 + cell % 8);
+    let triangles = cells.flat_map(|n| [[n, n + 9, n + 10], [n, n + 10, n + 1]]).collect();
+    let mesh = ShapeHandle::new(TriMesh::new(vertices, triangles));
+    let extents = Vector::<f32, 3>::new(4.0, 1.0, 4.0);
+    let field = ShapeHandle::new(HeightField::<f32, 3>::new(9, 9, heights, extents));
+    slides_without_memory(mesh, ShapeHandle::new(ball));
+    slides_without_memory(field, ShapeHandle::new(ball));
 }

@@ -7,6 +7,8 @@
 //! in a valley; or the first is in front of the second, but the second behind the first. Then no solid
 //! is in front of both, and what lies behind is hidden.
 
+use smallvec::SmallVec;
+
 use super::facts::{Finding, Standing};
 use super::scene::Scene;
 use crate::math::{Space, Vector, max};
@@ -40,9 +42,9 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
         return;
     }
     let faces = findings.iter().enumerate();
-    let faces: Vec<(usize, Vector<N, D>)> =
+    let faces: SmallVec<[(usize, Vector<N, D>); 8]> =
         faces.filter_map(|(index, finding)| Some((index, finding.face?))).collect();
-    let mut hidden = Vec::new();
+    let mut hidden: SmallVec<[usize; 8]> = SmallVec::new();
     for &(back, normal) in &faces {
         let hides = |&(front, other): &(usize, Vector<N, D>)| {
             !is_alike(&normal, &other)

@@ -215,15 +215,24 @@ mod tests {
         shares.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// The bound that a solid at the origin has of a mesh of one triangle.
-    fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], reach: f64) -> Bound<f64> {
+    /// The bounds that a solid at the origin has of a mesh of one triangle: that of the triangle alone,
+    /// and that of eight side by side.
+    fn bounds(solid: &dyn Shape<f64, 3>, corners: [P3; 3], reach: f64) -> [Bound<f64>; 2] {
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let geometries = (solid.geometry(), mesh.geometry());
         let pose12 = Pose::identity();
         let pair = Pair { first: geometries.0.0, second: geometries.1.0, pose12 };
         let between = Between::of_pair(&pair);
         let probe = Probe::new(&between, reach).expect("a convex solid");
-        probe.bound(&mesh, 0, None).expect("no box is given")
+        let everywhere = Aabb::new(P3::from([-9.0; 3]), P3::from([9.0; 3]));
+        let mut around = Around::default();
+        assert!(around.reaches(&mesh, &everywhere), "one triangle is kept");
+        let sight = probe.sight(&mut around, &everywhere);
+        let found = sight.bounds(&around.tiles()[0]).expect("there are vectors");
+        let is_beyond = found.near & 1 == 0;
+        assert_eq!(found.near == u8::MAX, !is_beyond, "the one stands for all eight");
+        let together = Bound { from_middle: found.from_middle, is_beyond };
+        [probe.bound(&mesh, 0, None).expect("no box is given"), together]
     }
 
     #[test]
@@ -235,24 +244,29 @@ mod tests {
             let mut corner = || P3::from([0, 1, 2].map(|_| 2.0 * noise(&mut state)));
             let [a, b, mut c] = [corner(), corner(), corner()];
             c = a + (b - a) * 0.3 + (c - a) * thin;
-            let (found, truth) =
-                (bound(&Ball::new(0.25), [a, b, c], 0.1), sampled(&[a, b, c], &origin));
-            assert!(found.from_middle <= truth, "{a} {b} {c}: {} {truth}", found.from_middle);
-            assert!(!found.is_beyond || truth > 0.35, "{a} {b} {c}: {truth}");
-            close +=
-                u32::from(found.from_middle > 0.95 * truth && found.is_beyond == (truth > 0.36));
+            let truth = sampled(&[a, b, c], &origin);
+            for found in bounds(&Ball::new(0.25), [a, b, c], 0.1) {
+                let bound = found.from_middle;
+                assert!(bound <= truth, "{a} {b} {c}: {bound} {truth}");
+                assert!(!found.is_beyond || truth > 0.35, "{a} {b} {c}: {truth}");
+                close += u32::from(bound > 0.95 * truth && found.is_beyond == (truth > 0.36));
+            }
         }
-        assert!(close > 350, "close in {close} cases of 400");
+        assert!(close > 700, "close in {close} cases of 800");
     }
 
     #[test]
     fn a_box_is_told_from_triangles_below_it() {
         let below = |y: f64| [P3::new(-3.0, y, -3.0), P3::new(3.0, y, -3.0), P3::new(0.0, y, 4.0)];
         let cuboid = Cuboid::new(Vector::<f64, 3>::new(0.5, 0.5, 0.5));
-        let near = bound(&cuboid, below(-0.6), 0.2);
-        assert!(!near.is_beyond && (near.from_middle - 0.6).abs() < 1e-6, "within reach");
-        assert!(bound(&cuboid, below(-0.8), 0.2).is_beyond, "out of reach");
-        let through = bound(&cuboid, below(0.0), 0.2);
-        assert!(!through.is_beyond && through.from_middle == 0.0, "through the middle");
+        for near in bounds(&cuboid, below(-0.6), 0.2) {
+            assert!(!near.is_beyond && (near.from_middle - 0.6).abs() < 1e-6, "within reach");
+        }
+        for far in bounds(&cuboid, below(-0.8), 0.2) {
+            assert!(far.is_beyond, "out of reach");
+        }
+        for through in bounds(&cuboid, below(0.0), 0.2) {
+            assert!(!through.is_beyond && through.from_middle == 0.0, "through the middle");
+        }
     }
 }
