@@ -18,10 +18,11 @@ use crate::narrow_phase::{
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
+use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, certainly_overlap, distance_in_world, in_world, parted_in_plane,
+    Algorithm, PartedFn, certainly_overlap, certainly_overlap_in_plane, distance_in_world, in_world, parted_in_plane,
     parted_in_space, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
@@ -43,6 +44,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) on_face: OnFaceFn<N, D>,
     /// Whether two convex solids are farther apart than a limit of less than zero.
     pub(crate) parted: PartedFn<N, D>,
+    /// Two shapes are certainly farther apart than a limit.
+    pub(crate) are_beyond: fn(&Apart<'_, N, D>, N) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -221,7 +224,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
-        certainly_overlap,
+        certainly_overlap: certainly_overlap_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
@@ -264,6 +267,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             certainly_overlap: particular.certainly_overlap,
+            are_beyond,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,
@@ -319,10 +323,12 @@ static PLANE_F64: Tables<f64, 2> = Tables::around(&Particular::IN_PLANE);
 static SPACE_F64: Tables<f64, 3> = Tables::around(&Particular::IN_SPACE);
 
 impl Compiled for f32 {
+    #[inline]
     fn plane() -> &'static Tables<Self, 2> {
         &PLANE_F32
     }
 
+    #[inline]
     fn space() -> &'static Tables<Self, 3> {
         &SPACE_F32
     }
@@ -330,10 +336,12 @@ impl Compiled for f32 {
 
 #[cfg(feature = "f64")]
 impl Compiled for f64 {
+    #[inline]
     fn plane() -> &'static Tables<Self, 2> {
         &PLANE_F64
     }
 
+    #[inline]
     fn space() -> &'static Tables<Self, 3> {
         &SPACE_F64
     }

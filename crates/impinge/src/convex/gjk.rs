@@ -32,6 +32,8 @@ enum Outcome {
     Overlap,
     /// The nearest point is found, or the arithmetic comes no closer.
     Apart,
+    /// A point is as near as was asked for.
+    Near,
 }
 
 struct Search<N: Real, const D: usize> {
@@ -47,6 +49,8 @@ struct Search<N: Real, const D: usize> {
     /// The lower bound that counts is that of the last normal, across which the points lie, not that
     /// of the best.
     for_points: bool,
+    /// A point nearer than this ends the search.
+    near: N,
 }
 
 /// The signed distance of the difference from the origin, starting with the unit vector `start`, in
@@ -73,23 +77,35 @@ where
     match outcome {
         Outcome::Beyond => None,
         Outcome::Overlap => Some(search.finish_overlap(difference)),
-        Outcome::Apart => Some(search.finish(difference)),
+        // No search for a distance has something that is near enough.
+        Outcome::Apart | Outcome::Near => Some(search.finish(difference)),
     }
 }
 
-/// Whether the origin certainly lies in the difference, found by a simplex that holds a ball around it.
-pub(super) fn overlaps<N, S, const D: usize>(difference: &S, start: &Vector<N, D>) -> bool
+/// Whether the difference, swollen by a rounding, certainly holds the origin: found by a simplex that holds
+/// a ball around it, or by a point nearer than the rounding.
+pub(super) fn overlaps<N, S, const D: usize>(
+    difference: &S,
+    start: &Vector<N, D>,
+    rounding: N,
+) -> bool
 where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
     let mut search = Search::new(Candidate::along(difference, *start));
-    let is_apart = search.best.height > N::ZERO;
-    if is_apart || !matches!(search.run(difference, N::ZERO), Outcome::Overlap) {
+    search.near = rounding - N::lit(CLEAR);
+    if search.best.height > rounding {
         return false;
     }
-    let points = search.simplex.points();
-    N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
+    match search.run(difference, rounding) {
+        Outcome::Near => true,
+        Outcome::Overlap => {
+            let points = search.simplex.points();
+            N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
+        }
+        Outcome::Beyond | Outcome::Apart => false,
+    }
 }
 
 /// The normal of the nearest point of a difference that lies well away from the origin.
@@ -123,6 +139,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             upper: N::INFINITY,
             gap: gap(),
             for_points: true,
+            near: N::ZERO,
         }
     }
 
@@ -135,6 +152,9 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
                 return Outcome::Overlap;
             }
             self.upper = nearest.squared.sqrt();
+            if self.upper < self.near {
+                return Outcome::Near;
+            }
             let candidate = Candidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
             self.last = candidate;

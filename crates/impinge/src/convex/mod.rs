@@ -91,19 +91,21 @@ where
     of_pair(&pair, (a.rounding(), b.rounding()), limit)
 }
 
-/// Whether the cores of two solids certainly overlap: points of their difference span a simplex that holds
-/// a ball around the origin, of a size that no rounding comes near. `false` says nothing.
+/// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
+/// a ball around the origin, of a size that no rounding comes near, or points of the cores are nearer to each
+/// other than their rounding by as much. `false` says nothing.
 ///
 /// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
 /// find a separating plane or such a simplex, about four.
-pub(crate) fn cores_overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>) -> bool
+pub(crate) fn overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>) -> bool
 where
     N: Simplicial<D>,
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12);
-    pair.is_some_and(|pair| gjk::overlaps(&pair, &pair.start()))
+    let Some(pair) = Pair::new(a, b, pose12) else { return false };
+    let rounding = (a.rounding() + b.rounding()) / pair.scale();
+    gjk::overlaps(&pair, &pair.start(), rounding)
 }
 
 fn of_pair<N, A, B, const D: usize>(

@@ -6,6 +6,7 @@ use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
 };
 use crate::math::{Real, Space};
+use crate::query::far::Apart;
 use crate::query::{ContactManifold, ManifoldRequest};
 use crate::shape::Shape;
 
@@ -63,11 +64,20 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         prediction: &ContactPrediction<N>,
         ids: &mut IdAllocator,
     ) -> bool {
+        let number = *self.number.get_or_insert_with(|| ids.allocate());
+        let apart = Apart {
+            shapes: [a.geometry(), b.geometry()],
+            between: N::translation(mb) - N::translation(ma),
+        };
+        if (N::tables().are_beyond)(&apart, prediction.linear()) {
+            self.state.clear();
+            self.manifolds.clear();
+            return true;
+        }
         let (pose1, pose2) = (N::pose(ma), N::pose(mb));
         let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b, is_self: false };
         let angle = prediction.angular1() + prediction.angular2();
         let request = ManifoldRequest::new(prediction.linear(), angle, self.max_points);
-        let number = *self.number.get_or_insert_with(|| ids.allocate());
         let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);
         if posed.has_composite() {

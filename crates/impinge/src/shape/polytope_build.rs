@@ -32,6 +32,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         Self {
             reach: Self::reach_of(&vertices),
             blocks: Self::blocks_of(&vertices),
+            quartets: Self::blocks_of(&vertices),
             vertices,
             faces: Vec::new(),
             planes: Vec::new(),

@@ -52,7 +52,7 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
-pub(crate) use overlap::certainly_overlap;
+pub(crate) use overlap::{certainly_overlap, certainly_overlap_in_plane};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
 pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};

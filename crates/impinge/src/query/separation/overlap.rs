@@ -7,7 +7,7 @@ use crate::query::Pair;
 use crate::shape::{Geometry, Kind};
 
 /// Whether two solids certainly overlap, clearly more than rounding decides: then their distance is zero
-/// and need not be known. `false` says nothing.
+/// and need not be known. `false` says nothing. Of rounded solids the cores need not overlap.
 ///
 /// Pays where solids lie deep in one another, and the depth would have to be searched for. Costs a few
 /// support points of each solid; where they are apart these are for nothing.
@@ -16,22 +16,34 @@ pub(crate) fn certainly_overlap<N: Simplicial<D>, const D: usize>(pair: &Pair<'_
         return false;
     }
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
-        return convex::cores_overlap(&map1, &map2, &pair.pose12);
+        return convex::overlap(&map1, &map2, &pair.pose12);
     }
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     match (first.as_support_map(), second.as_support_map()) {
-        (Some(map1), Some(map2)) => convex::cores_overlap(map1, map2, &pair.pose12),
+        (Some(map1), Some(map2)) => convex::overlap(map1, map2, &pair.pose12),
         _ => false,
     }
+}
+
+/// [`certainly_overlap`] in the plane, where segments, boxes and polygons have their depth sooner.
+pub(crate) fn certainly_overlap_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> bool {
+    let is_flat = |kind| FlatCore::of(inner(kind)).is_some();
+    let are_flat = is_flat(pair.first) && is_flat(pair.second);
+    !are_flat && certainly_overlap(pair)
+}
+
+/// What is rounded; a solid that is not is itself.
+fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
+    if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
 }
 
 /// Whether a depth takes longer than the search for an overlap: not where there is a formula, nor between
 /// two boxes.
 fn is_searched<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
-    let has_formula = |kind| matches!(kind, Kind::Ball(_) | Kind::Plane(_) | Kind::Rounded(_));
+    let has_formula = |kind| matches!(kind, Kind::Ball(_) | Kind::Plane(_));
     let is_line = |kind| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));
     let is_cuboid = |kind| matches!(kind, Kind::Cuboid(_));
-    let kinds = [pair.first, pair.second];
+    let kinds = [inner(pair.first), inner(pair.second)];
     let is_simple = kinds.into_iter().any(has_formula)
         || kinds.into_iter().all(is_line)
         || kinds.into_iter().all(is_cuboid);

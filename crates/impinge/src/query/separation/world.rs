@@ -3,8 +3,9 @@
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
+use crate::query::far::Apart;
 use crate::query::pair::{Ordered, Pair, Placed};
-use crate::shape::Shape;
+use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
@@ -108,6 +109,30 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         isometry: &Isometry<N, R, D>,
         shape: &'a dyn Shape<N, D>,
     ) -> Self {
-        Self { pose: Pose::from_isometry(isometry), shape: shape.geometry() }
+        Self::at(isometry, shape.geometry())
+    }
+
+    #[inline]
+    fn at<R: AbstractRotation<N, D>>(
+        isometry: &Isometry<N, R, D>,
+        shape: Geometry<'a, N, D>,
+    ) -> Self {
+        Self { pose: Pose::from_isometry(isometry), shape }
+    }
+
+    /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than
+    /// `limit`.
+    #[inline]
+    pub(crate) fn within<R: AbstractRotation<N, D>>(
+        (isometry1, shape1): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        (isometry2, shape2): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        limit: N,
+    ) -> Option<[Self; 2]> {
+        let shapes = [shape1.geometry(), shape2.geometry()];
+        let between = isometry2.translation.vector - isometry1.translation.vector;
+        if (N::tables().are_beyond)(&Apart { shapes, between }, limit) {
+            return None;
+        }
+        Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])
     }
 }
