@@ -83,11 +83,12 @@ where
 }
 
 /// Whether the difference, swollen by a rounding, certainly holds the origin: found by a simplex that holds
-/// a ball around it, or by a point nearer than the rounding.
+/// a ball around it, or by a point nearer than the rounding. Not looked for where the way out along `start`
+/// is shorter than `least`.
 pub(super) fn overlaps<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
-    rounding: N,
+    (rounding, least): (N, N),
 ) -> bool
 where
     N: Simplicial<D>,
@@ -95,7 +96,7 @@ where
 {
     let mut search = Search::new(Candidate::along(difference, *start));
     search.near = rounding - N::lit(CLEAR);
-    if search.best.height > rounding {
+    if search.best.height > rounding - least {
         return false;
     }
     match search.run(difference, rounding) {

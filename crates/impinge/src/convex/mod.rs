@@ -93,11 +93,17 @@ where
 
 /// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
 /// a ball around the origin, of a size that no rounding comes near, or points of the cores are nearer to each
-/// other than their rounding by as much. `false` says nothing.
+/// other than their rounding by as much. `false` says nothing, and is the answer where the way out along the
+/// line of their middles is shorter than `least`, in units of the pair.
 ///
 /// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
 /// find a separating plane or such a simplex, about four.
-pub(crate) fn overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>) -> bool
+pub(crate) fn overlap<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    least: N,
+) -> bool
 where
     N: Simplicial<D>,
     A: SupportMap<N, D> + ?Sized,
@@ -105,7 +111,7 @@ where
 {
     let Some(pair) = Pair::new(a, b, pose12) else { return false };
     let rounding = (a.rounding() + b.rounding()) / pair.scale();
-    gjk::overlaps(&pair, &pair.start(), rounding)
+    gjk::overlaps(&pair, &pair.start(), (rounding, least))
 }
 
 fn of_pair<N, A, B, const D: usize>(

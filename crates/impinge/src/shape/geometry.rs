@@ -121,6 +121,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
 
     /// The radius of a ball around the origin of the frame that holds the solid, up to rounding: infinite
     /// for a half-space, and where it is not known at once.
+    #[inline]
     pub(crate) fn extent(&self) -> N {
         let squared = |point: &Point<N, D>| point.coords.norm_squared();
         let of = |segment: &Segment<N, D>| max(squared(segment.a()), squared(segment.b())).sqrt();

@@ -6,6 +6,9 @@ use crate::math::Real;
 use crate::query::Pair;
 use crate::shape::{Geometry, Kind};
 
+/// See [`least_depth`].
+const DEEP: f64 = 1.0 / 8.0;
+
 /// Whether two solids certainly overlap, clearly more than rounding decides: then their distance is zero
 /// and need not be known. `false` says nothing. Of rounded solids the cores need not overlap.
 ///
@@ -16,11 +19,11 @@ pub(crate) fn certainly_overlap<N: Simplicial<D>, const D: usize>(pair: &Pair<'_
         return false;
     }
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
-        return convex::overlap(&map1, &map2, &pair.pose12);
+        return convex::overlap(&map1, &map2, &pair.pose12, least_depth(pair));
     }
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     match (first.as_support_map(), second.as_support_map()) {
-        (Some(map1), Some(map2)) => convex::overlap(map1, map2, &pair.pose12),
+        (Some(map1), Some(map2)) => convex::overlap(map1, map2, &pair.pose12, N::ZERO),
         _ => false,
     }
 }
@@ -30,6 +33,14 @@ pub(crate) fn certainly_overlap_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> bool
     let is_flat = |kind| FlatCore::of(inner(kind)).is_some();
     let are_flat = is_flat(pair.first) && is_flat(pair.second);
     !are_flat && certainly_overlap(pair)
+}
+
+/// The depth, in units of the pair, from which on the search for an overlap pays: separating axes need not
+/// search for theirs, and tell as much unless it is deep.
+fn least_depth<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+    let has_axes = |kind| matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_));
+    let kinds = [pair.first, pair.second];
+    if kinds.into_iter().all(has_axes) { N::lit(DEEP) } else { N::ZERO }
 }
 
 /// What is rounded; a solid that is not is itself.
