@@ -22,8 +22,8 @@ use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, certainly_overlap, certainly_overlap_in_plane, distance_in_world, in_world, parted_in_plane,
-    parted_in_space, separation_in_plane, separation_in_space, touching_in_world,
+    Algorithm, PartedFn, distance_in_plane, distance_in_space, distance_in_world, in_world,
+    parted_in_plane, parted_in_space, separation_in_plane, separation_in_space, touching_in_world,
 };
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
@@ -39,7 +39,8 @@ use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
 pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
-    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
+    /// Its distance, and any that is not positive of solids that overlap clearly.
+    pub(crate) distance: DistanceFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
     /// Whether two convex solids are farther apart than a limit of less than zero.
@@ -97,6 +98,7 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type DistanceInWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<N>;
+type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
@@ -205,7 +207,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
-    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
+    distance: DistanceFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
@@ -224,7 +226,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
-        certainly_overlap: certainly_overlap_in_plane,
+        distance: distance_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
@@ -244,7 +246,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
-        certainly_overlap,
+        distance: distance_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
@@ -266,7 +268,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
-            certainly_overlap: particular.certainly_overlap,
+            distance: particular.distance,
             are_beyond,
             separation_in_world: in_world,
             contact_in_world,

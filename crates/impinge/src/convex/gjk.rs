@@ -53,6 +53,13 @@ struct Search<N: Real, const D: usize> {
     near: N,
 }
 
+/// What is known of two cores.
+pub(super) enum Answer<N: Real, const D: usize> {
+    Signed(Separation<N, D>),
+    /// Swollen they certainly overlap; how deep was not asked.
+    Overlap,
+}
+
 /// The signed distance of the difference from the origin, starting with the unit vector `start`, in
 /// units of the pair; `None` if it is above `limit`.
 pub(super) fn solve<N, S, const D: usize>(
@@ -64,22 +71,47 @@ where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
+    match answer(difference, start, limit, None)? {
+        Answer::Signed(found) => Some(found),
+        Answer::Overlap => unreachable!("nobody was content with an overlap"),
+    }
+}
+
+/// As [`solve`], but if a rounding is given, content with a certain overlap of what is swollen by it: see
+/// [`overlaps`]. What is apart is found by the same steps.
+pub(super) fn answer<N, S, const D: usize>(
+    difference: &S,
+    start: &Vector<N, D>,
+    limit: N,
+    rounding: Option<N>,
+) -> Option<Answer<N, D>>
+where
+    N: Simplicial<D>,
+    S: Difference<N, D>,
+{
     let mut search = Search::new(Candidate::along(difference, *start));
     search.gap = if difference.is_flat() { gap() } else { rough_gap() };
+    search.near = rounding.map_or(N::ZERO, near);
     let mut outcome = search.run(difference, limit);
     if matches!(outcome, Outcome::Apart) && !difference.is_flat() {
         if let Some(polished) = search.polished(difference) {
-            return Some(polished);
+            return Some(Answer::Signed(polished));
         }
         search.gap = gap();
         outcome = search.run(difference, limit);
     }
     match outcome {
         Outcome::Beyond => None,
-        Outcome::Overlap => Some(search.finish_overlap(difference)),
-        // No search for a distance has something that is near enough.
-        Outcome::Apart | Outcome::Near => Some(search.finish(difference)),
+        Outcome::Near => Some(Answer::Overlap),
+        Outcome::Overlap if rounding.is_some() && search.is_clear() => Some(Answer::Overlap),
+        Outcome::Overlap => Some(Answer::Signed(search.finish_overlap(difference))),
+        Outcome::Apart => Some(Answer::Signed(search.finish(difference))),
     }
+}
+
+/// Points of two cores that are nearer than this prove that the rounded solids overlap.
+fn near<N: Real>(rounding: N) -> N {
+    rounding - N::lit(CLEAR)
 }
 
 /// Whether the difference, swollen by a rounding, certainly holds the origin: found by a simplex that holds
@@ -95,16 +127,13 @@ where
     S: Difference<N, D>,
 {
     let mut search = Search::new(Candidate::along(difference, *start));
-    search.near = rounding - N::lit(CLEAR);
+    search.near = near(rounding);
     if search.best.height > rounding - least {
         return false;
     }
     match search.run(difference, rounding) {
         Outcome::Near => true,
-        Outcome::Overlap => {
-            let points = search.simplex.points();
-            N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
-        }
+        Outcome::Overlap => search.is_clear(),
         Outcome::Beyond | Outcome::Apart => false,
     }
 }
@@ -142,6 +171,12 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             for_points: true,
             near: N::ZERO,
         }
+    }
+
+    /// The simplex holds a ball around the origin.
+    fn is_clear(&self) -> bool {
+        let points = self.simplex.points();
+        N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
     }
 
     fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {

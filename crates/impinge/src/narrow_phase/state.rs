@@ -268,7 +268,7 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
         None
     } else {
         let (pair, _) = posed.canonical();
-        (N::tables().separation)(&pair, margin).map(|found| found.distance)
+        (N::tables().distance)(&pair, margin)
     };
     match found {
         None => Proximity::Disjoint,

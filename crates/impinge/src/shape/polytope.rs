@@ -44,7 +44,7 @@ pub struct Polytope<N: Real, const D: usize> {
 /// How many vertices or faces are looked at side by side.
 const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
-const QUARTET: usize = 4;
+pub(super) const QUARTET: usize = 4;
 
 /// The planes of some faces side by side, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,9 +173,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// What [`Self::blocks`] and `quartets` hold.
-    pub(super) fn blocks_of<const COUNT: usize>(
-        vertices: &[Point<N, D>],
-    ) -> Vec<[[N; COUNT]; D]> {
+    pub(super) fn blocks_of<const COUNT: usize>(vertices: &[Point<N, D>]) -> Vec<[[N; COUNT]; D]> {
         let block = |some: &[Point<N, D>]| {
             let last = some.len() - 1;
             from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))

@@ -25,13 +25,9 @@ use crate::shape::Kind;
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     let known = known_axis(pair);
     let found = match (Polygon::of(&pair.first), Polygon::of(&pair.second)) {
-        (Some(polygon1), Some(polygon2)) => polygon_lanes::between(
-            Level::new(),
-            [&polygon1, &polygon2],
-            &pair.pose12,
-            known,
-            limit,
-        ),
+        (Some(polygon1), Some(polygon2)) => {
+            polygon_lanes::between(Level::new(), [&polygon1, &polygon2], &pair.pose12, known, limit)
+        }
         _ => Verdict::Undecided,
     };
     match found {
@@ -298,7 +294,7 @@ mod tests {
             }
             let shapes = kinds.map(|kind| solid_of::<N>(random, kind));
             let turn = random.turn::<N>().rotation;
-            let size = [1.0, 1e-3, 1e3][round % 3];
+            let size = [1.0_f64, 1e-3, 1e3][round % 3];
             let angle = Vector::<N, 2>::new(turn.m11, turn.m21);
             let (cosine, sine) = (angle.normalize().x, angle.normalize().y);
             let rotation = Matrix::<N, 2>::new(cosine, -sine, sine, cosine);

@@ -4,7 +4,7 @@ use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
 use crate::query::far::Apart;
-use crate::query::pair::{Ordered, Pair, Placed};
+use crate::query::pair::{Ordered, Placed};
 use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
@@ -17,8 +17,16 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let ordered = Ordered::new(placed1, placed2);
-    let found = in_first(&ordered, limit, Wanted::Deepest)?;
+    of_ordered(&Ordered::new(placed1, placed2), limit)
+}
+
+/// [`in_world`] of two whose canonical order is known.
+#[inline]
+pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let found = in_first(ordered, limit, Wanted::Deepest)?;
     Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
@@ -44,11 +52,11 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     if ordered.has_composite() {
         return of_composites(&ordered, limit, Wanted::Touching).map(|found| found.distance);
     }
-    let pair = finite(&ordered)?;
-    if limit >= N::ZERO && (N::tables().certainly_overlap)(&pair) {
-        return Some(N::ZERO);
+    let pair = ordered.pair();
+    if !pair.pose12.is_finite() {
+        return None;
     }
-    super::separation(&pair, limit).map(|found| found.distance)
+    (N::tables().distance)(&pair, limit)
 }
 
 /// The separation in the frame of the first; `None` also if a pose is not finite.
@@ -61,15 +69,8 @@ fn in_first<N: Space<D>, const D: usize>(
     if ordered.has_composite() {
         return of_composites(ordered, limit, wanted);
     }
-    super::separation(&finite(ordered)?, limit)
-}
-
-/// Two convex solids; `None` if a pose is not finite.
-#[inline]
-fn finite<'a, N: Space<D>, const D: usize>(
-    ordered: &Ordered<'_, 'a, N, D>,
-) -> Option<Pair<'a, N, D>> {
-    Some(ordered.pair()).filter(|pair| pair.pose12.is_finite())
+    let pair = ordered.pair();
+    if pair.pose12.is_finite() { super::separation(&pair, limit) } else { None }
 }
 
 /// [`in_first`], where one is a composite.

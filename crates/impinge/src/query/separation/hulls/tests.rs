@@ -11,7 +11,7 @@ use crate::query::separation::general;
 use crate::shape::{ConvexHull, Cuboid, Shape};
 
 /// Numbers between −1 and 1 by splitmix64.
-pub(in super::super) struct Random(pub(in super::super) u64);
+pub(in crate::query) struct Random(pub(in crate::query) u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
@@ -23,7 +23,7 @@ impl Random {
         f64::from(bits) / f64::from(1_u32 << 31) - 1.0
     }
 
-    pub(in super::super) fn vector<N: Real>(&mut self) -> Vector<N, 3> {
+    pub(in crate::query) fn vector<N: Real>(&mut self) -> Vector<N, 3> {
         Vector::from([0; 3].map(|_: i32| N::lit(self.next())))
     }
 
