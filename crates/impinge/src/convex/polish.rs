@@ -117,13 +117,8 @@ fn active<N: Simplicial<D>, const D: usize>(
     vertices: &[Vertex<N, D>],
 ) -> Option<[Side<N, D>; 2]> {
     let mut sides = [Branches::new(), Branches::new()];
-    let all = || vertices.iter().chain([&best.vertex]).map(|vertex| [vertex.on1, vertex.on2]);
-    for (number, points) in all().enumerate() {
-        for (index, on) in points.iter().enumerate() {
-            // Of one point there is one branch.
-            if all().take(number).any(|before| before[index] == *on) {
-                continue;
-            }
+    for vertex in vertices.iter().chain([&best.vertex]) {
+        for (index, on) in [vertex.on1, vertex.on2].iter().enumerate() {
             let branch = difference.branch(index == 1, on, &best.normal);
             if !sides[index].iter().any(|known| known.on == branch.on) {
                 sides[index].push(branch);

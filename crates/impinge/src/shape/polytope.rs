@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 use core::ops::Range;
+use std::sync::Arc;
 
 use super::FeatureId;
 use super::segment::length_of;
@@ -39,6 +40,8 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
+    /// Shared by copies, and by nothing else: a solid never changes once it is made.
+    pub(super) identity: Arc<()>,
 }
 
 /// How many vertices or faces are looked at side by side.
@@ -103,6 +106,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
+    }
+
+    /// What copies share. Whoever holds it knows them again: no other solid gets the same.
+    pub(crate) fn identity(&self) -> &Arc<()> {
+        &self.identity
     }
 
     /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.
