@@ -18,12 +18,13 @@ use crate::narrow_phase::{
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
+use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, Separations, certainly_overlap, distance_in_world, in_world,
-    parted_in_plane, parted_in_space, separation_in_plane, separation_in_space, separations2,
-    separations3, touching_in_world,
+    Algorithm, PartedFn, Separations, distance_in_plane, distance_in_space, distance_in_world,
+    in_world, parted_in_plane, parted_in_space, separation_in_plane, separation_in_space,
+    separations2, separations3, touching_in_world,
 };
 use crate::query::tiles::TiledParts;
 use crate::query::{
@@ -42,11 +43,14 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) separations: SeparationsFn<N, D>,
-    pub(crate) certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
+    /// Its distance, and any that is not positive of solids that overlap clearly.
+    pub(crate) distance: DistanceFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
     /// Whether two convex solids are farther apart than a limit of less than zero.
     pub(crate) parted: PartedFn<N, D>,
+    /// Two shapes are certainly farther apart than a limit.
+    pub(crate) are_beyond: fn(&Apart<'_, N, D>, N) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
     pub(crate) contact_in_world: InWorldFn<N, D>,
     /// The same, but content with any overlap of parts.
@@ -98,6 +102,7 @@ type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type DistanceInWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<N>;
+type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
@@ -209,7 +214,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     separations: SeparationsFn<N, D>,
-    certainly_overlap: fn(&Pair<'_, N, D>) -> bool,
+    distance: DistanceFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
@@ -229,7 +234,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         separations: separations2,
-        certainly_overlap,
+        distance: distance_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
@@ -250,7 +255,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         separations: separations3,
-        certainly_overlap,
+        distance: distance_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
@@ -273,7 +278,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separations: particular.separations,
-            certainly_overlap: particular.certainly_overlap,
+            distance: particular.distance,
+            are_beyond,
             separation_in_world: in_world,
             contact_in_world,
             touching_in_world,
@@ -329,10 +335,12 @@ static PLANE_F64: Tables<f64, 2> = Tables::around(&Particular::IN_PLANE);
 static SPACE_F64: Tables<f64, 3> = Tables::around(&Particular::IN_SPACE);
 
 impl Compiled for f32 {
+    #[inline]
     fn plane() -> &'static Tables<Self, 2> {
         &PLANE_F32
     }
 
+    #[inline]
     fn space() -> &'static Tables<Self, 3> {
         &SPACE_F32
     }
@@ -340,10 +348,12 @@ impl Compiled for f32 {
 
 #[cfg(feature = "f64")]
 impl Compiled for f64 {
+    #[inline]
     fn plane() -> &'static Tables<Self, 2> {
         &PLANE_F64
     }
 
+    #[inline]
     fn space() -> &'static Tables<Self, 3> {
         &SPACE_F64
     }

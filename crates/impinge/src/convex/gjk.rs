@@ -32,6 +32,8 @@ enum Outcome {
     Overlap,
     /// The nearest point is found, or the arithmetic comes no closer.
     Apart,
+    /// A point is as near as was asked for.
+    Near,
 }
 
 struct Search<N: Real, const D: usize> {
@@ -47,6 +49,15 @@ struct Search<N: Real, const D: usize> {
     /// The lower bound that counts is that of the last normal, across which the points lie, not that
     /// of the best.
     for_points: bool,
+    /// A point nearer than this ends the search.
+    near: N,
+}
+
+/// What is known of two cores.
+pub(super) enum Answer<N: Real, const D: usize> {
+    Signed(Separation<N, D>),
+    /// Swollen they certainly overlap; how deep was not asked.
+    Overlap,
 }
 
 /// The signed distance of the difference from the origin, starting with the unit vector `start`, in
@@ -60,36 +71,71 @@ where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
+    match answer(difference, start, limit, None)? {
+        Answer::Signed(found) => Some(found),
+        Answer::Overlap => unreachable!("nobody was content with an overlap"),
+    }
+}
+
+/// As [`solve`], but if a rounding is given, content with a certain overlap of what is swollen by it: see
+/// [`overlaps`]. What is apart is found by the same steps.
+pub(super) fn answer<N, S, const D: usize>(
+    difference: &S,
+    start: &Vector<N, D>,
+    limit: N,
+    rounding: Option<N>,
+) -> Option<Answer<N, D>>
+where
+    N: Simplicial<D>,
+    S: Difference<N, D>,
+{
     let mut search = Search::new(Candidate::along(difference, *start));
     search.gap = if difference.is_flat() { gap() } else { rough_gap() };
+    search.near = rounding.map_or(N::ZERO, near);
     let mut outcome = search.run(difference, limit);
     if matches!(outcome, Outcome::Apart) && !difference.is_flat() {
         if let Some(polished) = search.polished(difference) {
-            return Some(polished);
+            return Some(Answer::Signed(polished));
         }
         search.gap = gap();
         outcome = search.run(difference, limit);
     }
     match outcome {
         Outcome::Beyond => None,
-        Outcome::Overlap => Some(search.finish_overlap(difference)),
-        Outcome::Apart => Some(search.finish(difference)),
+        Outcome::Near => Some(Answer::Overlap),
+        Outcome::Overlap if rounding.is_some() && search.is_clear() => Some(Answer::Overlap),
+        Outcome::Overlap => Some(Answer::Signed(search.finish_overlap(difference))),
+        Outcome::Apart => Some(Answer::Signed(search.finish(difference))),
     }
 }
 
-/// Whether the origin certainly lies in the difference, found by a simplex that holds a ball around it.
-pub(super) fn overlaps<N, S, const D: usize>(difference: &S, start: &Vector<N, D>) -> bool
+/// Points of two cores that are nearer than this prove that the rounded solids overlap.
+fn near<N: Real>(rounding: N) -> N {
+    rounding - N::lit(CLEAR)
+}
+
+/// Whether the difference, swollen by a rounding, certainly holds the origin: found by a simplex that holds
+/// a ball around it, or by a point nearer than the rounding. Not looked for where the way out along `start`
+/// is shorter than `least`.
+pub(super) fn overlaps<N, S, const D: usize>(
+    difference: &S,
+    start: &Vector<N, D>,
+    (rounding, least): (N, N),
+) -> bool
 where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
     let mut search = Search::new(Candidate::along(difference, *start));
-    let is_apart = search.best.height > N::ZERO;
-    if is_apart || !matches!(search.run(difference, N::ZERO), Outcome::Overlap) {
+    search.near = near(rounding);
+    if search.best.height > rounding - least {
         return false;
     }
-    let points = search.simplex.points();
-    N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
+    match search.run(difference, rounding) {
+        Outcome::Near => true,
+        Outcome::Overlap => search.is_clear(),
+        Outcome::Beyond | Outcome::Apart => false,
+    }
 }
 
 /// The normal of the nearest point of a difference that lies well away from the origin.
@@ -123,7 +169,14 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
             upper: N::INFINITY,
             gap: gap(),
             for_points: true,
+            near: N::ZERO,
         }
+    }
+
+    /// The simplex holds a ball around the origin.
+    fn is_clear(&self) -> bool {
+        let points = self.simplex.points();
+        N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
     }
 
     fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {
@@ -135,6 +188,9 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
                 return Outcome::Overlap;
             }
             self.upper = nearest.squared.sqrt();
+            if self.upper < self.near {
+                return Outcome::Near;
+            }
             let candidate = Candidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
             self.last = candidate;

@@ -39,6 +39,7 @@ pub(crate) use units::Units;
 use crate::math::Pose;
 use crate::shape::SupportMap;
 use difference::{Pair, noise};
+use gjk::Answer;
 
 /// The signed distance of two rounded solids, its normal and the points it lies between, in the
 /// frame of the first; `pose12` is the pose of the second in that frame.
@@ -91,24 +92,51 @@ where
     of_pair(&pair, (a.rounding(), b.rounding()), limit)
 }
 
-/// Whether the cores of two solids certainly overlap: points of their difference span a simplex that holds
-/// a ball around the origin, of a size that no rounding comes near. `false` says nothing.
+/// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
+/// a ball around the origin, of a size that no rounding comes near, or points of the cores are nearer to each
+/// other than their rounding by as much. `false` says nothing, and is the answer where the way out along the
+/// line of their middles is shorter than `least`, in units of the pair.
 ///
 /// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
 /// find a separating plane or such a simplex, about four.
-pub(crate) fn cores_overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>) -> bool
+pub(crate) fn overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>, least: N) -> bool
 where
     N: Simplicial<D>,
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12);
-    pair.is_some_and(|pair| gjk::overlaps(&pair, &pair.start()))
+    let Some(pair) = Pair::new(a, b, pose12) else { return false };
+    let rounding = (a.rounding() + b.rounding()) / pair.scale();
+    gjk::overlaps(&pair, &pair.start(), (rounding, least))
+}
+
+/// The distance in [`separation`] of two solids, or zero if they certainly overlap, as [`overlap`] finds it on
+/// the way. Both cores are hulls of points if `is_flat`.
+pub(crate) fn distance<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    (limit, is_flat): (N, bool),
+) -> Option<N>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12)?;
+    let pair = if is_flat { pair.between_flat_cores() } else { pair };
+    let roundings = (a.rounding(), b.rounding());
+    let rounding = (roundings.0 + roundings.1) / pair.scale();
+    let limit = limit_of_cores(&pair, roundings, limit);
+    Some(match gjk::answer(&pair, &pair.start(), limit, Some(rounding))? {
+        Answer::Overlap => N::ZERO,
+        Answer::Signed(found) => pair.restored(&found).rounded(roundings.0, roundings.1).distance,
+    })
 }
 
 fn of_pair<N, A, B, const D: usize>(
     pair: &Pair<'_, N, A, B, D>,
-    (rounding1, rounding2): (N, N),
+    roundings: (N, N),
     limit: N,
 ) -> Option<Separation<N, D>>
 where
@@ -116,8 +144,22 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
+    let found = gjk::solve(pair, &pair.start(), limit_of_cores(pair, roundings, limit))?;
+    Some(pair.restored(&found).rounded(roundings.0, roundings.1))
+}
+
+/// A limit of the solids as one of their cores, in units of the pair.
+fn limit_of_cores<N, A, B, const D: usize>(
+    pair: &Pair<'_, N, A, B, D>,
+    (rounding1, rounding2): (N, N),
+    limit: N,
+) -> N
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
     let core_limit = (limit + rounding1 + rounding2) / pair.scale();
     let slack = noise::<N>() * (N::ONE + core_limit.abs());
-    let found = gjk::solve(pair, &pair.start(), core_limit + slack)?;
-    Some(pair.restored(&found).rounded(rounding1, rounding2))
+    core_limit + slack
 }

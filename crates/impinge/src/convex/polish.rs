@@ -27,8 +27,10 @@ const SLACK: f64 = 8.0;
 /// The longest step: Newton's method is of no use farther away.
 const LONGEST: f64 = 0.25;
 /// The unknowns of three dimensions: `n`, `λ`, and a weight for each active point but the first of
-/// each core; and the right side.
-const COLUMNS: usize = 7;
+/// each core; the right side; and one column more, so that whole registers are treated.
+const COLUMNS: usize = 8;
+/// No more equations than that.
+const ROWS: usize = 6;
 
 /// Points of one core that are, or move to be, equally extreme.
 type Branches<N, const D: usize> = SmallVec<[Branch<N, D>; 4]>;
@@ -251,7 +253,7 @@ fn step<N: Simplicial<D>, const D: usize>(
     let ways: SmallVec<[Vector<N, D>; 4]> =
         ways.chain(second.branches[1..].iter().map(|b| b.on - second.branches[0].on)).collect();
     let count = D + 1 + ways.len();
-    let mut rows = [[N::ZERO; COLUMNS]; COLUMNS - 1];
+    let mut rows = [[N::ZERO; COLUMNS]; ROWS];
     for i in 0..D {
         for j in 0..D {
             rows[i][j] = -bend[(i, j)];
@@ -282,7 +284,7 @@ fn step<N: Simplicial<D>, const D: usize>(
 
 /// Solves the first `count` equations, each with its right side in the column `count`, by elimination
 /// with row pivoting; `None` if they are dependent.
-fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option<[N; COLUMNS - 1]> {
+fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; ROWS]> {
     for column in 0..count {
         let mut pivot = column;
         for row in column + 1..count {
@@ -290,24 +292,27 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; COLUMNS - 1], count: usize) -> Option
                 pivot = row;
             }
         }
-        rows.swap(column, pivot);
-        let usable = rows[column][column].abs() > noise::<N>() * noise();
+        if pivot != column {
+            rows.swap(column, pivot);
+        }
+        let above = rows[column];
+        let usable = above[column].abs() > noise::<N>() * noise();
         if !usable {
             return None;
         }
-        for row in column + 1..count {
-            let factor = rows[row][column] / rows[column][column];
-            let above = rows[column];
-            for (entry, above) in rows[row].iter_mut().zip(above).skip(column) {
-                *entry -= factor * above;
+        for row in &mut rows[column + 1..count] {
+            let factor = row[column] / above[column];
+            // What is to the left is not looked at again: whole rows are quicker than their rests.
+            for (entry, above) in row.iter_mut().zip(&above) {
+                *entry -= factor * *above;
             }
         }
     }
-    let mut solution = [N::ZERO; COLUMNS - 1];
+    let mut solution = [N::ZERO; ROWS];
     for row in (0..count).rev() {
         let mut value = rows[row][count];
-        for k in row + 1..count {
-            value -= rows[row][k] * solution[k];
+        for (entry, known) in rows[row][row + 1..count].iter().zip(&solution[row + 1..count]) {
+            value -= *entry * *known;
         }
         solution[row] = value / rows[row][row];
     }

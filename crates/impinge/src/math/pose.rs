@@ -111,9 +111,17 @@ impl<N: Real, const D: usize> Pose<N, D> {
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // Nearly always all are: looking at every number at once is cheaper than stopping early.
-        let rotation = self.rotation.iter().fold(true, |all, x| all & x.is_finite_number());
-        self.translation.iter().fold(rotation, |all, x| all & x.is_finite_number())
+        // Nearly always all are, so no early end. A number times zero is zero, but for infinities and NaN,
+        // of which it makes NaN: that no sum loses.
+        let mut sum = N::ZERO;
+        for row in 0..D {
+            let mut in_row = self.translation[row] * N::ZERO;
+            for column in 0..D {
+                in_row += self.rotation[(row, column)] * N::ZERO;
+            }
+            sum += in_row;
+        }
+        sum == N::ZERO
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is particular to the plane and to space, behind one bound.
 
 use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
-use super::{Isometry2, Isometry3, Pose, Real};
+use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
 use crate::tables::Tables;
 use core::fmt::Debug;
 
@@ -15,6 +15,13 @@ pub trait Space<const D: usize>: Real {
 
     /// The pose that an isometry describes.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
+
+    /// Where an isometry takes the origin.
+    fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
+
+    /// The numbers of an isometry in a row, filled up with zeros.
+    #[doc(hidden)]
+    fn numbers(isometry: &Self::Isometry) -> [Self; 7];
 
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
@@ -32,12 +39,24 @@ impl<N: Real> Space<2> for N {
         Pose::from_isometry(isometry)
     }
 
+    #[inline]
+    fn translation(isometry: &Isometry2<N>) -> Vector<N, 2> {
+        isometry.translation.vector
+    }
+
+    #[inline]
+    fn numbers(isometry: &Isometry2<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation);
+        [t.x, t.y, r.re, r.im, N::ZERO, N::ZERO, N::ZERO]
+    }
+
     fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
         let rotation = Rotation2::from_matrix_unchecked(pose.rotation);
         let rotation = UnitComplex::from_rotation_matrix(&rotation);
         Isometry2::from_parts(pose.translation.into(), rotation)
     }
 
+    #[inline]
     fn tables() -> &'static Tables<N, 2> {
         N::plane()
     }
@@ -48,7 +67,19 @@ impl<N: Real> Space<3> for N {
 
     #[inline]
     fn pose(isometry: &Isometry3<N>) -> Pose<N, 3> {
-        Pose::from_isometry(isometry)
+        let rotation = matrix_of(&isometry.rotation);
+        Pose { rotation, translation: isometry.translation.vector }
+    }
+
+    #[inline]
+    fn translation(isometry: &Isometry3<N>) -> Vector<N, 3> {
+        isometry.translation.vector
+    }
+
+    #[inline]
+    fn numbers(isometry: &Isometry3<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation.coords);
+        [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
     }
 
     fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {
@@ -57,7 +88,82 @@ impl<N: Real> Space<3> for N {
         Isometry3::from_parts(pose.translation.into(), rotation)
     }
 
+    #[inline]
     fn tables() -> &'static Tables<N, 3> {
         N::space()
+    }
+}
+
+/// The matrix of a rotation of space: its columns are the turned axes, bit for bit, without the products
+/// with zero in these.
+#[inline]
+fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
+    let q = rotation.coords;
+    let (x, y, z, w) = (q.x, q.y, q.z, q.w);
+    let (x2, y2, z2) = (x * N::TWO, y * N::TWO, z * N::TWO);
+    let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+    let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+    let (wx, wy, wz) = (x2 * w, y2 * w, z2 * w);
+    // Zeros are positive, as they are after the addition of a component of the axis.
+    let zero = N::ZERO;
+    Matrix::<N, 3>::new(
+        (-yy - zz) + N::ONE,
+        (-wz + xy) + zero,
+        (wy + xz) + zero,
+        (wz + xy) + zero,
+        (-zz - xx) + N::ONE,
+        (-wx + yz) + zero,
+        (-wy + xz) + zero,
+        (wx + yz) + zero,
+        (-xx - yy) + N::ONE,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::na::Quaternion;
+    use super::*;
+
+    fn check<N: Real>(coordinates: [N; 4]) {
+        let [x, y, z, w] = coordinates;
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+        let turned = Pose::from_isometry(&Isometry3::from_parts(Default::default(), rotation));
+        let found = matrix_of(&rotation);
+        for (number, expected) in found.iter().zip(turned.rotation.iter()) {
+            assert_eq!(number.bits(), expected.bits(), "{found} of {rotation}");
+        }
+    }
+
+    fn rotations<N: Real>(tiny: f64) {
+        let numbers = [0.0, -0.0, 1.0, -1.0, 0.3, -0.7, 0.123_456_789, tiny, -tiny].map(N::lit);
+        for x in numbers {
+            for y in numbers {
+                for z in numbers {
+                    for w in numbers {
+                        check([x, y, z, w]);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn matrices_have_the_bits_of_turned_axes() {
+        rotations::<f32>(1e-23);
+        rotations::<f64>(1e-162);
+    }
+
+    #[test]
+    fn what_is_no_rotation_gives_no_finite_matrix() {
+        for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
+            for index in 0..4 {
+                let mut q = [0.5_f32, 0.0, -0.5, 0.5];
+                q[index] = bad;
+                let [x, y, z, w] = q;
+                let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+                let is_finite = matrix_of(&rotation).iter().all(|number| number.is_finite());
+                assert!(!is_finite, "{bad} at {index}");
+            }
+        }
     }
 }

@@ -1,11 +1,13 @@
 //! The library's own contact algorithm as an object, for use alone.
 
 use super::IdAllocator;
+use super::likeness::{Asked, Question};
 use super::state::{CompositeState, ContactState, Posed};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
 };
 use crate::math::{Real, Space};
+use crate::query::far::Apart;
 use crate::query::{ContactManifold, ManifoldRequest};
 use crate::shape::Shape;
 
@@ -29,6 +31,8 @@ pub struct PairManifoldGenerator<N: Real, const D: usize> {
     max_points: usize,
     /// As of the last update; all hold a contact.
     manifolds: Vec<ContactManifold<N, D>>,
+    /// What the last update was about, if it can be known again.
+    asked: Option<Asked<N>>,
 }
 
 impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
@@ -42,6 +46,7 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
             number: None,
             max_points: max_points.max(1),
             manifolds: Vec::new(),
+            asked: None,
         }
     }
 }
@@ -63,11 +68,21 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         prediction: &ContactPrediction<N>,
         ids: &mut IdAllocator,
     ) -> bool {
-        let (pose1, pose2) = (N::pose(ma), N::pose(mb));
-        let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b, is_self: false };
+        let number = *self.number.get_or_insert_with(|| ids.allocate());
+        let (positions, shapes) = ([N::numbers(ma), N::numbers(mb)], [a.geometry(), b.geometry()]);
         let angle = prediction.angular1() + prediction.angular2();
         let request = ManifoldRequest::new(prediction.linear(), angle, self.max_points);
-        let number = *self.number.get_or_insert_with(|| ids.allocate());
+        if Asked::note(&mut self.asked, &Question { positions, shapes, request }) {
+            return true;
+        }
+        let apart = Apart { shapes, between: N::translation(mb) - N::translation(ma) };
+        if (N::tables().are_beyond)(&apart, prediction.linear()) {
+            self.state.clear();
+            self.manifolds.clear();
+            return true;
+        }
+        let (pose1, pose2) = (N::pose(ma), N::pose(mb));
+        let posed = Posed { pose1: &pose1, shape1: a, pose2: &pose2, shape2: b, is_self: false };
         let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);
         if posed.has_composite() {
@@ -77,9 +92,13 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
             self.manifolds = (tables.composite_manifolds)(&self.composite, &posed, number, old);
         } else {
             (tables.update_contacts)(&mut self.state, &posed, &request);
-            let old = old.pop().unwrap_or_default();
-            let manifold = (tables.public_manifold)(&self.state, &posed, number, old);
-            self.manifolds.extend(Some(manifold).filter(|manifold| !manifold.is_empty()));
+            let manifold = old.pop().unwrap_or_default();
+            let manifold = (tables.public_manifold)(&self.state, &posed, number, manifold);
+            old.clear();
+            if !manifold.is_empty() {
+                old.push(manifold);
+            }
+            self.manifolds = old;
         }
         true
     }
@@ -130,5 +149,71 @@ impl<N: Space<D>, const D: usize> ContactDispatcher<N, D> for DefaultContactDisp
 
     fn built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> Option<usize> {
         Some(self.max_points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Isometry2;
+    use crate::math::{Point, Vector};
+    use crate::shape::{Ball, ConvexPolygon, Cuboid};
+
+    struct Asker {
+        generator: PairManifoldGenerator<f64, 2>,
+        ids: IdAllocator,
+    }
+
+    impl Asker {
+        /// The depths of the contacts of two solids, the second of which stands at `x`.
+        fn depths(
+            &mut self,
+            first: &dyn Shape<f64, 2>,
+            second: &dyn Shape<f64, 2>,
+            x: f64,
+        ) -> Vec<f64> {
+            let dispatcher = DefaultContactDispatcher::<2>::new();
+            let prediction = ContactPrediction::new(0.25, 0.0, 0.0);
+            let (here, there) = (Isometry2::identity(), Isometry2::translation(x, 0.0));
+            let able = self.generator.update(
+                &dispatcher,
+                &here,
+                first,
+                &there,
+                second,
+                &prediction,
+                &mut self.ids,
+            );
+            assert!(able, "the library's own solids");
+            let mut manifolds = Vec::new();
+            self.generator.contacts(&mut manifolds);
+            let contacts = manifolds.iter().flat_map(|manifold| manifold.contacts());
+            contacts.map(|tracked| tracked.contact.depth).collect()
+        }
+    }
+
+    #[test]
+    fn other_solids_are_noticed_whatever_was_asked_before() {
+        let mut asker =
+            Asker { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() };
+        let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0));
+        let mut ball = Ball::new(1.0);
+        for _ in 0..2 {
+            assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.5], "asked twice");
+        }
+        ball = Ball::new(0.75);
+        assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "another ball at its address");
+        for _ in 0..2 {
+            assert_eq!(asker.depths(&cuboid, &ball, 9.0), [], "far away, asked twice");
+        }
+        assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "back again");
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let polygon = |size: f64| {
+            ConvexPolygon::new(&corners.map(|(x, y)| Point::<f64, 2>::new(x, y) * size))
+        };
+        for (size, depth) in [(1.0, 0.5), (1.0, 0.5), (0.75, 0.25)] {
+            let found = asker.depths(&cuboid, &polygon(size), 1.5);
+            assert_eq!(found, [depth; 2], "a square of {size}");
+        }
     }
 }

@@ -14,6 +14,7 @@ mod group;
 mod handle;
 mod ids;
 mod lanes;
+mod likeness;
 mod objects;
 mod query_type;
 mod state;

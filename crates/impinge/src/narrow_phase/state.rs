@@ -2,6 +2,7 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
+use crate::query::far::Apart;
 use crate::query::pair::is_swapped;
 use crate::query::{
     BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
@@ -30,6 +31,13 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     fn placed(&self) -> [Placed<'a, N, D>; 2] {
         [(self.pose1, self.shape1), (self.pose2, self.shape2)]
             .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
+    }
+
+    /// The solids are certainly farther apart than `limit`.
+    fn are_beyond(&self, limit: N) -> bool {
+        let shapes = [self.shape1.geometry(), self.shape2.geometry()];
+        let between = self.pose2.translation - self.pose1.translation;
+        Apart { shapes, between }.is_beyond(limit)
     }
 
     /// The two poses.
@@ -110,6 +118,9 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
     }
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
+        if posed.are_beyond(request.prediction) {
+            return self.clear();
+        }
         let (pair, swapped) = posed.canonical();
         self.kept.turn(swapped, RawManifold::flip_names);
         (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
@@ -128,6 +139,13 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         let (pair, is_swapped) = posed.canonical();
         let placement = Placement::new(posed.poses(), pair_number, is_swapped);
         materialise(&pair, raw, &placement, old)
+    }
+}
+
+impl<N: Real, const D: usize> ContactState<N, D> {
+    /// There are no contacts.
+    pub(super) fn clear(&mut self) {
+        self.kept.contacts.points.clear();
     }
 }
 
@@ -246,9 +264,11 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     } else if posed.has_composite() {
         let [placed1, placed2] = posed.placed();
         (N::tables().distance_in_world)(&placed1, &placed2, margin)
+    } else if posed.are_beyond(margin) {
+        None
     } else {
         let (pair, _) = posed.canonical();
-        (N::tables().separation)(&pair, margin).map(|found| found.distance)
+        (N::tables().distance)(&pair, margin)
     };
     match found {
         None => Proximity::Disjoint,

@@ -40,8 +40,10 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> ClosestPoints<N, D> {
-    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
     let limit = max(max_distance, N::ZERO);
+    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
+        return ClosestPoints::Disjoint;
+    };
     match (N::tables().touching_in_world)(&placed1, &placed2, limit) {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,

@@ -4,6 +4,7 @@ mod closest_points;
 pub(crate) mod composite;
 mod contact;
 mod distance;
+pub(crate) mod far;
 mod impact;
 mod kinematic;
 mod manifold;

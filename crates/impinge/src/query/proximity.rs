@@ -29,8 +29,11 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     margin: N,
 ) -> Proximity {
-    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
-    match (N::tables().distance_in_world)(&placed1, &placed2, max(margin, N::ZERO)) {
+    let limit = max(margin, N::ZERO);
+    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
+        return Proximity::Disjoint;
+    };
+    match (N::tables().distance_in_world)(&placed1, &placed2, limit) {
         None => Proximity::Disjoint,
         Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,

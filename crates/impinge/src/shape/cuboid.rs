@@ -6,7 +6,7 @@ use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
-    ShapeHandle, SupportMap,
+    ShapeHandle, Shown, SupportMap,
 };
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
@@ -394,6 +394,21 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
             Some(part) if part.dimension() == dimension => part,
             _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
         }
+    }
+}
+
+impl<N: Real> Cuboid<N, 2> {
+    /// See [`Shown::of`]; `None` where the box is flat along the side.
+    pub(super) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+        let part = Part::<2>::facing(direction, Tilt::usual());
+        let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
+        let FeatureId::Face(index) = part.name() else {
+            let (id, point) = named(part.corner);
+            return Some(Shown::vertex(id, point));
+        };
+        let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
+        let [from, to, ..] = Part::<2>::FACES[index as usize].0.corners;
+        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
     }
 }
 

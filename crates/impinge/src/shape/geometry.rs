@@ -7,7 +7,7 @@ use super::{
     Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
     SupportMap, TaperedCapsule, Triangle,
 };
-use crate::math::Real;
+use crate::math::{Point, Real, max};
 
 /// The kinds of solid that the pair table knows, in the order in which pairs are named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -117,6 +117,32 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => map,
             Kind::Plane(_) | Kind::Composite(_) => return None,
         })
+    }
+
+    /// The radius of a ball around the origin of the frame that holds the solid, up to rounding: infinite
+    /// for a half-space, and where it is not known at once.
+    #[inline]
+    pub(crate) fn extent(&self) -> N {
+        let squared = |point: &Point<N, D>| point.coords.norm_squared();
+        let of = |segment: &Segment<N, D>| max(squared(segment.a()), squared(segment.b())).sqrt();
+        let of_round = |height: N, radius: N| (height * height + radius * radius).sqrt();
+        match self.0 {
+            Kind::Ball(ball) => ball.radius(),
+            Kind::Segment(segment) => of(segment),
+            Kind::Capsule(capsule) => of(capsule.segment()) + capsule.radius(),
+            Kind::Triangle(triangle) => {
+                let [a, b, c] = triangle.corners();
+                max(max(squared(a), squared(b)), squared(c)).sqrt()
+            }
+            Kind::Cuboid(cuboid) => cuboid.half_extents().norm(),
+            Kind::Polytope(polytope) => polytope.reach(),
+            Kind::Cylinder(cylinder, _) => of_round(cylinder.half_height(), cylinder.radius()),
+            Kind::Cone(cone, _) => of_round(cone.half_height(), cone.radius()),
+            Kind::Ellipsoid(ellipsoid) => ellipsoid.reach(),
+            Kind::TaperedCapsule(capsule) => capsule.reach() + capsule.rounding(),
+            Kind::Rounded(solid) => solid.inner().extent() + solid.swelling(),
+            Kind::SupportMap(_) | Kind::Plane(_) | Kind::Composite(_) => N::INFINITY,
+        }
     }
 
     /// The parts of a composite; `None` for a convex solid.

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 use core::ops::Range;
+use std::sync::Arc;
 
 use super::FeatureId;
 use super::segment::length_of;
@@ -18,8 +19,10 @@ use crate::math::{Point, Real, Vector, max, unit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(super) vertices: Vec<Point<N, D>>,
-    /// The vertices again, some at a time, coordinate by coordinate; the last one fills the rest.
+    /// The vertices again, eight at a time, coordinate by coordinate; the last one fills the rest.
     pub(super) blocks: Vec<[[N; LANES]; D]>,
+    /// The same by four, for code without vectors.
+    pub(super) quartets: Vec<[[N; QUARTET]; D]>,
     pub(super) faces: Vec<PolytopeFace<N, D>>,
     /// The planes of the faces again, as the vertices in `blocks`.
     pub(super) planes: Vec<Planes<N, D>>,
@@ -37,12 +40,14 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
+    /// Shared by copies, and by nothing else: a solid never changes once it is made.
+    pub(super) identity: Arc<()>,
 }
 
 /// How many vertices or faces are looked at side by side.
 const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
-const QUARTET: usize = 4;
+pub(super) const QUARTET: usize = 4;
 
 /// The planes of some faces side by side, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +108,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.loop_sides[first..first + face.len as usize]
     }
 
+    /// What copies share. Whoever holds it knows them again: no other solid gets the same.
+    pub(crate) fn identity(&self) -> &Arc<()> {
+        &self.identity
+    }
+
     /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.
     pub(crate) fn blocks(&self) -> &[[[N; LANES]; D]] {
         &self.blocks
@@ -152,10 +162,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     ///
     /// Written for the compiler to keep each array in one register.
     pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
-        let (mut heights, mut places) = (heights(&self.blocks[0], 0, direction), [0_u32; QUARTET]);
-        let quartets = self.blocks.iter().flat_map(|block| [(block, 0), (block, QUARTET)]);
-        for (place, (block, first)) in (1_u32..).zip(quartets.skip(1)) {
-            let candidates = self::heights(block, first, direction);
+        let (mut heights, mut places) = (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
+        for (place, quartet) in (1_u32..).zip(&self.quartets[1..]) {
+            let candidates = self::heights(quartet, direction);
             for lane in 0..QUARTET {
                 let is_higher = candidates[lane] > heights[lane];
                 heights[lane] = if is_higher { candidates[lane] } else { heights[lane] };
@@ -171,13 +180,13 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             .1
     }
 
-    /// What [`Self::blocks`] holds.
-    pub(super) fn blocks_of(vertices: &[Point<N, D>]) -> Vec<[[N; LANES]; D]> {
+    /// What [`Self::blocks`] and `quartets` hold.
+    pub(super) fn blocks_of<const COUNT: usize>(vertices: &[Point<N, D>]) -> Vec<[[N; COUNT]; D]> {
         let block = |some: &[Point<N, D>]| {
             let last = some.len() - 1;
             from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
         };
-        vertices.chunks(LANES).map(block).collect()
+        vertices.chunks(COUNT).map(block).collect()
     }
 
     /// What [`Self::planes`] holds.
@@ -216,17 +225,16 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// How far four vertices of a block, from lane `first` on, reach along a direction.
+/// How far four vertices reach along a direction.
 #[inline]
 fn heights<N: Real, const D: usize>(
-    block: &[[N; LANES]; D],
-    first: usize,
+    quartet: &[[N; QUARTET]; D],
     direction: &Vector<N, D>,
 ) -> [N; QUARTET] {
-    let mut sums = from_fn(|lane| block[0][first + lane] * direction[0]);
-    for axis in 1..D {
-        for lane in 0..QUARTET {
-            sums[lane] += block[axis][first + lane] * direction[axis];
+    let mut sums = quartet[0].map(|x| x * direction[0]);
+    for (axis, coordinates) in quartet.iter().enumerate().skip(1) {
+        for (sum, coordinate) in sums.iter_mut().zip(coordinates) {
+            *sum += *coordinate * direction[axis];
         }
     }
     sums

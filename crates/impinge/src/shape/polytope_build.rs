@@ -1,5 +1,7 @@
 //! How polytopes are put together from what is already known to be convex.
 
+use std::sync::Arc;
+
 use super::polytope::count32;
 use super::{Polytope, PolytopeEdge, PolytopeFace};
 use crate::math::{Point, Real, Vector, max, perp, unit};
@@ -32,6 +34,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         Self {
             reach: Self::reach_of(&vertices),
             blocks: Self::blocks_of(&vertices),
+            quartets: Self::blocks_of(&vertices),
+            identity: Arc::new(()),
             vertices,
             faces: Vec::new(),
             planes: Vec::new(),

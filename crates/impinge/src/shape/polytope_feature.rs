@@ -2,7 +2,7 @@
 
 use super::polytope::count32;
 use super::tilt::Tilt;
-use super::{ConvexPolyhedron, Feature, FeatureId, Polytope, SupportMap};
+use super::{ConvexPolyhedron, Feature, FeatureId, Polytope, Shown, SupportMap};
 use crate::math::{Point, Real, Vector, unit_or};
 
 /// What faces a direction: the indices of a face, a side or a vertex.
@@ -115,6 +115,22 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         out.normal = Some(face.normal);
     }
 
+    /// What [`Self::fill`] says of a part of no more than two vertices.
+    fn ends_of(&self, part: Part) -> Option<(FeatureId, [(FeatureId, Point<N, D>); 2])> {
+        match part {
+            Part::Side(side) => Some((Self::side_id(side), self.ends(side))),
+            Part::Face(face) => {
+                let [from, to] = *self.face_vertices(&self.faces[face as usize]) else {
+                    return None;
+                };
+                let named =
+                    |vertex: u32| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
+                Some((FeatureId::Face(face), [named(from), named(to)]))
+            }
+            Part::Vertex(_) => None,
+        }
+    }
+
     fn ends(&self, side: u32) -> [(FeatureId, Point<N, D>); 2] {
         let ends = self.side(side).vertices;
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
@@ -140,6 +156,18 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     fn side_place(&self, id: FeatureId) -> u32 {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
         Self::place(id, 1, count)
+    }
+}
+
+impl<N: Real> Polytope<N, 2> {
+    /// See [`Shown::of`].
+    pub(super) fn shown(&self, direction: &Vector<N, 2>) -> Shown<N> {
+        let part = self.part_toward(direction, Tilt::usual());
+        if let Some((id, ends)) = self.ends_of(part) {
+            return Shown::side(id, ends);
+        }
+        let vertex = if let Part::Vertex(vertex) = part { vertex } else { 0 };
+        Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 }
 

@@ -120,6 +120,16 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         enclosing(&own.solid.as_shape().aabb(&pose.compose(&own.pose)), pose)
     }
 
+    /// The boxes around two composites are farther apart than a limit, seen from one of the two.
+    pub(super) fn are_boxes_beyond(&self, limit: N) -> bool {
+        let [Some(parts1), Some(parts2)] = self.composites() else { return false };
+        let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
+            let bounds = parts.search().bounds();
+            bounds.distance_to_aabb(&self.whole_in_other(other)) > limit
+        };
+        is_beyond(parts1, 1) || is_beyond(parts2, 0)
+    }
+
     fn seen_by_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
         let Pair { first, second, pose12 } = &self.pair;
         if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }

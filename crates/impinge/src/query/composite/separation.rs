@@ -88,8 +88,11 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
         parts2: &dyn CompositeShape<N, D>,
     ) -> Option<PartSeparation<N, D>> {
         let (which, fewer, more) = by_number(parts1, parts2);
-        let aabb = self.between.whole_in_other(1 - which);
         let bound = self.bound();
+        if self.between.are_boxes_beyond(bound) {
+            return None;
+        }
+        let aabb = self.between.whole_in_other(1 - which);
         fewer.search().nearest(&aabb, bound, &mut |part, _| {
             self.each_near(which, part, more);
             self.bound()

@@ -16,6 +16,7 @@ pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::composite::{Between, first_arrival};
+use super::far::Apart;
 use super::pair::{Ordered, Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
@@ -242,6 +243,9 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
+    if are_parted(moving1, moving2, options) {
+        return None;
+    }
     let ordered = Ordered::new(placed1, placed2);
     let mirrored = indistinguishable(placed1, placed2);
     if mirrored && is_later(moving1, moving2) {
@@ -271,6 +275,19 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     let found = toi.is_finite_number().then(|| first.impact(&arrival, toi))?;
     let found = Impact { part1: parts[0], part2: parts[1], ..found };
     Some(if swapped { found.flipped() } else { found })
+}
+
+/// The solids are certainly farther apart than the target distance, all the way.
+fn are_parted<N: Real, const D: usize>(
+    moving1: &Moving<'_, N, D>,
+    moving2: &Moving<'_, N, D>,
+    options: &ImpactOptions<N>,
+) -> bool {
+    let (placed1, placed2) = (&moving1.placed, &moving2.placed);
+    let between = placed2.pose.translation - placed1.pose.translation;
+    let apart = Apart { shapes: [placed1.shape, placed2.shape], between };
+    let velocity = moving2.velocity - moving1.velocity;
+    apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
 /// Of two that nothing else tells apart: the first comes after the second by its velocity.

@@ -59,7 +59,7 @@ pub(super) fn build_in_general<N: Space<D>, const D: usize>(
     if candidates.is_empty() {
         return out.points.clear();
     }
-    choose(candidates, (lowest, tolerance), request.max_points, out);
+    choose(&mut candidates, (lowest, tolerance), request.max_points, out);
 }
 
 /// The candidates along a normal; answers what counts as rounding.

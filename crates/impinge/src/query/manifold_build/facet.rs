@@ -383,7 +383,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
 
 impl Which {
     /// The direction in which this solid faces the other.
-    fn outward<N: Real, const D: usize>(self, frame: &Frame<N, D>) -> Vector<N, D> {
+    pub(super) fn outward<N: Real, const D: usize>(self, frame: &Frame<N, D>) -> Vector<N, D> {
         match self {
             Self::First => frame.normal(),
             Self::Second => -frame.normal(),

@@ -100,6 +100,12 @@ impl<N: Real, const D: usize> Frame<N, D> {
         (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
     }
 
+    /// The largest distance that [`Self::admit`] admits anywhere.
+    #[inline]
+    pub(super) fn most(&self) -> N {
+        if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }
+    }
+
     /// The candidate at a pair of surface points of which the first is given.
     #[inline]
     pub(super) fn candidate(

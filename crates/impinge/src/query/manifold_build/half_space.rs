@@ -21,9 +21,15 @@ pub(super) fn candidates<N: Real, const D: usize>(
     frame: &Frame<N, D>,
     out: &mut Candidates<N, D>,
 ) {
+    let most = frame.most();
     let mut push = |id: FeatureId, point: Point<N, D>| {
         let distance = frame.witness.distance - frame.height(&point);
-        out.extend(frame.candidate(point, distance, [id, BOUNDARY]));
+        if distance > most {
+            return;
+        }
+        if let Some(found) = frame.candidate(point, distance, [id, BOUNDARY]) {
+            out.push(found);
+        }
     };
     match kind {
         Kind::Cuboid(cuboid) => cuboid_vertices(cuboid).for_each(|(id, point)| push(id, point)),

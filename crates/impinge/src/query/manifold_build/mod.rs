@@ -25,6 +25,7 @@ mod overlap;
 mod patch;
 mod reduce;
 mod segments;
+mod stretch;
 #[cfg(test)]
 pub(super) mod tests;
 mod triangle_face;
@@ -62,7 +63,10 @@ pub(crate) fn build2<N: Real>(
     out: &mut RawManifold<N, 2>,
 ) {
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
-    build(pair, &frame, (request, request.max_points.min(2)), out);
+    let limits = (request, request.max_points.min(2));
+    if !stretch::build(pair, &frame, limits, out) {
+        build(pair, &frame, limits, out);
+    }
 }
 
 /// Builds the manifold of two solids in space: at most `request.max_points` points.
@@ -152,23 +156,23 @@ fn build<N: Real, const D: usize>(
     }
     let mut candidates = Candidates::new();
     fill(pair, frame, &mut candidates);
-    choose(candidates, (distance, frame.tolerance), limit, out);
+    choose(&mut candidates, (distance, frame.tolerance), limit, out);
 }
 
 /// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. The
 /// nearest stands for the witness and takes the separation's `distance`, which it has but for
 /// rounding.
 fn choose<N: Real, const D: usize>(
-    mut candidates: Candidates<N, D>,
+    candidates: &mut [Candidate<N, D>],
     (distance, tolerance): (N, N),
     limit: usize,
     out: &mut RawManifold<N, D>,
 ) {
-    names::inherit(&out.points, &mut candidates);
-    let deepest = deepest(&candidates, distance + tolerance);
+    names::inherit(&out.points, candidates);
+    let deepest = deepest(candidates, distance + tolerance);
     candidates[deepest].distance = distance;
-    let chosen = reduce::chosen(&candidates, deepest, limit.max(1), tolerance);
-    names::settle(&candidates, &chosen, out);
+    let chosen = reduce::chosen(candidates, deepest, limit.max(1), tolerance);
+    names::settle(candidates, &chosen, out);
 }
 
 /// [`choose`] for a fused algorithm, whose candidates are not yet held against the separation's
@@ -189,7 +193,7 @@ fn choose_admitted<N: Real, const D: usize>(
         candidate.distance = min(no_nearer, prediction);
         no_nearer <= prediction + tolerance
     });
-    choose(candidates, (distance, tolerance), limit, out);
+    choose(&mut candidates, (distance, tolerance), limit, out);
     true
 }
 

@@ -57,3 +57,22 @@ pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened);
     found.filter(|found| found.distance <= limit)
 }
+
+/// The distance in [`separation`], or zero if the solids certainly overlap.
+pub(super) fn distance<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<N> {
+    let found = match (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
+        (Some(map1), Some(map2)) => {
+            let loosened = loosened(&map1, &map2, &pair.pose12, limit);
+            convex::distance(&map1, &map2, &pair.pose12, (loosened, true))
+        }
+        _ => {
+            let (map1, map2) = maps(pair);
+            let loosened = loosened(map1, map2, &pair.pose12, limit);
+            convex::distance(map1, map2, &pair.pose12, (loosened, false))
+        }
+    };
+    found.filter(|distance| *distance <= limit)
+}

@@ -25,11 +25,11 @@ mod cuboid_cylinder;
 mod cylinder_cylinder;
 mod flat_core;
 mod general;
-mod hulls;
+pub(super) mod hulls;
 mod outline;
-mod outline_lanes;
 mod overlap;
 mod plane_any;
+mod polygon_lanes;
 mod polygon_polygon;
 pub(super) mod projection;
 pub(super) mod rectangle_axes;
@@ -53,11 +53,11 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
-pub(crate) use overlap::certainly_overlap;
+pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
 pub(crate) use triangles::{Separations, separations2, separations3};
-pub(crate) use world::{distance_in_world, in_world, placed, touching_in_world};
+pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;

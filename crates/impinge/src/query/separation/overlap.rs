@@ -1,41 +1,106 @@
-//! Whether two solids overlap, without asking how deep.
+//! The distance of two solids, of which an overlap need not be measured.
 
 use super::flat_core::FlatCore;
+use super::general;
 use crate::convex::{self, Simplicial};
-use crate::math::Real;
+use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, Kind};
 
-/// Whether two solids certainly overlap, clearly more than rounding decides: then their distance is zero
-/// and need not be known. `false` says nothing.
-///
-/// Pays where solids lie deep in one another, and the depth would have to be searched for. Costs a few
-/// support points of each solid; where they are apart these are for nothing.
-pub(crate) fn certainly_overlap<N: Simplicial<D>, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
-    if !is_searched(pair) {
-        return false;
+/// Solids with separating axes are searched for an overlap where the way out along the line of their middles
+/// is longer than this, in units of the pair: axes tell as soon that they are apart.
+const DEEP: f64 = 1.0 / 8.0;
+
+/// How the separation of a pair is found.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Nothing is saved if the depth is not asked for.
+    Formula,
+    /// By formulas for features; depths take longer than the proof that there is one.
+    Features,
+    /// The same by separating axes.
+    Axes,
+    /// By the general algorithm.
+    Search,
+}
+
+/// The signed distance of two solids of space, at most `limit`; where they overlap any number that is not
+/// positive, so that clear overlaps need not be measured.
+pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    distance(pair, limit, way_in_space(pair))
+}
+
+/// [`distance_in_space`], in the plane.
+pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+    distance(pair, limit, way_in_plane(pair))
+}
+
+fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+    way: Way,
+) -> Option<N> {
+    if limit >= N::ZERO {
+        let is_rounded = |kind| matches!(kind, Kind::Rounded(_));
+        let are_bare = !is_rounded(pair.first) && !is_rounded(pair.second);
+        if way == Way::Search && are_bare {
+            return general::distance(pair, limit);
+        }
+        if way != Way::Formula && certainly_overlap(pair, way) {
+            return Some(N::ZERO);
+        }
     }
+    super::separation(pair, limit).map(|found| found.distance)
+}
+
+/// Whether two solids certainly overlap, clearly more than rounding decides. `false` says nothing. Of rounded
+/// solids the cores need not overlap.
+///
+/// Costs a few support points of each solid; where they are apart these are for nothing.
+fn certainly_overlap<N: Simplicial<D>, const D: usize>(pair: &Pair<'_, N, D>, way: Way) -> bool {
+    let least = if way == Way::Axes { N::lit(DEEP) } else { N::ZERO };
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
-        return convex::cores_overlap(&map1, &map2, &pair.pose12);
+        return convex::overlap(&map1, &map2, &pair.pose12, least);
     }
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     match (first.as_support_map(), second.as_support_map()) {
-        (Some(map1), Some(map2)) => convex::cores_overlap(map1, map2, &pair.pose12),
+        (Some(map1), Some(map2)) => convex::overlap(map1, map2, &pair.pose12, least),
         _ => false,
     }
 }
 
-/// Whether a depth takes longer than the search for an overlap: not where there is a formula, nor between
-/// two boxes.
-fn is_searched<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
-    let has_formula = |kind| matches!(kind, Kind::Ball(_) | Kind::Plane(_) | Kind::Rounded(_));
-    let is_line = |kind| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));
-    let is_cuboid = |kind| matches!(kind, Kind::Cuboid(_));
-    let kinds = [pair.first, pair.second];
-    let is_simple = kinds.into_iter().any(has_formula)
-        || kinds.into_iter().all(is_line)
-        || kinds.into_iter().all(is_cuboid);
-    !is_simple
+/// What is rounded; a solid that is not is itself.
+fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
+    if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
+}
+
+/// Of the kinds in their order: see the table of space.
+fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
+    use Kind::{Ball, Capsule, Composite, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle};
+    match (inner(pair.first), inner(pair.second)) {
+        (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
+            Way::Formula
+        }
+        (Segment(_) | Capsule(_), Segment(_) | Capsule(_)) => Way::Formula,
+        (Cuboid(_), Cuboid(_)) => Way::Formula,
+        (Triangle(_), Triangle(_)) => Way::Search,
+        (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,
+        (Cuboid(_) | Cylinder(..), Cylinder(..)) => Way::Features,
+        _ => Way::Search,
+    }
+}
+
+/// Of the kinds in their order: see the table of the plane.
+fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> Way {
+    use Kind::{Ball, Composite, Plane};
+    let (first, second) = (inner(pair.first), inner(pair.second));
+    match (first, second) {
+        (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
+            Way::Formula
+        }
+        _ if FlatCore::of(first).is_some() && FlatCore::of(second).is_some() => Way::Formula,
+        _ => Way::Search,
+    }
 }
 
 #[cfg(test)]
@@ -52,15 +117,20 @@ mod tests {
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
+        way: fn(&Pair<'_, N, D>) -> Way,
     ) -> (usize, usize) {
         let (mut found, mut overlapping) = (0, 0);
         for (first, second) in solids.iter().flat_map(|a| solids.iter().map(move |b| (a, b))) {
             for &pose12 in poses {
                 let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
-                let is_deep = separation(&pair, N::INFINITY).expect("finite").distance < N::ZERO;
-                let is_found = certainly_overlap(&pair);
+                let depth = separation(&pair, N::INFINITY).expect("finite").distance;
+                let is_deep = depth < N::ZERO;
+                let is_searched = way(&pair) != Way::Formula;
+                let is_found = is_searched && certainly_overlap(&pair, Way::Features);
                 assert!(is_deep || !is_found, "they are apart at {pose12:?}");
-                overlapping += usize::from(is_deep && is_searched(&pair));
+                let known = distance(&pair, N::INFINITY, way(&pair)).expect("finite");
+                assert_eq!(known <= N::ZERO, depth <= N::ZERO, "apart or not at {pose12:?}");
+                overlapping += usize::from(is_deep && is_searched);
                 found += usize::from(is_found);
             }
         }
@@ -108,7 +178,7 @@ mod tests {
                 [straight, Pose { rotation, ..straight }]
             })
             .collect();
-        let (found, overlapping) = found(&solids, &poses);
+        let (found, overlapping) = found(&solids, &poses, way_in_space);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in space");
     }
 
@@ -129,7 +199,7 @@ mod tests {
             .flat_map(|(x, y)| steps(Vector::<N, 2>::new(N::lit(x), N::lit(y)), size))
             .map(Pose::from_translation)
             .collect();
-        let (found, overlapping) = found(&solids, &poses);
+        let (found, overlapping) = found(&solids, &poses, way_in_plane);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in the plane");
     }
 
@@ -148,6 +218,8 @@ mod tests {
         let cone = Cone::new(1.0_f32, 1.0);
         let pose12 = Pose::from_translation(Vector::<f32, 3>::new(f32::NAN, 0.0, 0.0));
         let (first, second) = (cone.geometry().0, cone.geometry().0);
-        assert!(!certainly_overlap(&Pair { first, second, pose12 }), "not a number");
+        let pair = Pair { first, second, pose12 };
+        assert!(!certainly_overlap(&pair, Way::Features), "not a number");
+        assert_eq!(distance_in_space(&pair, f32::INFINITY), None, "not a number");
     }
 }

@@ -6,8 +6,10 @@
 //! while it is positive, so that the nearest points are ends of, or lie on, the sides next to the
 //! best normal.
 
+use fearless_simd::Level;
+
 use super::outline::{Outline, Reach};
-use super::outline_lanes::best_side;
+use super::polygon_lanes::{self, Polygon, Verdict};
 use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
@@ -21,18 +23,41 @@ use crate::shape::Kind;
 /// at one place are parted along the first axis of the first solid's frame. Cost: the product of
 /// the numbers of vertices.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+    let known = known_axis(pair);
+    let found = match (Polygon::of(&pair.first), Polygon::of(&pair.second)) {
+        (Some(polygon1), Some(polygon2)) => {
+            polygon_lanes::between(Level::new(), [&polygon1, &polygon2], &pair.pose12, known, limit)
+        }
+        _ => Verdict::Undecided,
+    };
+    match found {
+        Verdict::Beyond => None,
+        Verdict::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        Verdict::Undecided => of_outlines(pair, known, limit),
+    }
+}
+
+/// The best axis of two boxes, which have their own way to it.
+fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
+    let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
+        return None;
+    };
+    let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
+    let best = Rectangles { half1, half2, pose12: pair.pose12 }.best_axis();
+    Some(Axis { gap: best.gap, normal: best.normal })
+}
+
+/// [`separation`] of any outlines; the best axis may be known.
+fn of_outlines<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    known: Option<Axis<N>>,
+    limit: N,
+) -> Option<Separation<N, 2>> {
     let outline1 = Outline::of(pair, &pair.first);
     let outline2 = Outline::of(pair, &pair.second).placed(&pair.pose12);
     let rounding = outline1.rounding + outline2.rounding;
     let noise = N::lit(4.0) * N::EPSILON * max(outline1.reach(), outline2.reach());
-    let best = match (&pair.first, &pair.second) {
-        (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) => {
-            let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
-            let best = Rectangles { half1, half2, pose12: pair.pose12 }.best_axis();
-            Axis { gap: best.gap, normal: best.normal }
-        }
-        _ => best_axis(&outline1, &outline2),
-    };
+    let best = known.unwrap_or_else(|| best_axis(&outline1, &outline2));
     // A lower bound: what it rejects by more than rounding is out of reach.
     if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
         return None;
@@ -47,10 +72,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
 }
 
 /// A direction from the first outline to the second and the gap that it leaves between them.
-#[derive(Clone, Copy)]
-struct Axis<N: Real> {
-    gap: N,
-    normal: Vector<N, 2>,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis<N: Real> {
+    pub(super) gap: N,
+    pub(super) normal: Vector<N, 2>,
 }
 
 /// The gap between two outlines along a direction.
@@ -60,14 +85,6 @@ fn axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>, normal: Vector<N,
 
 /// The direction of the largest gap among the normals of all sides and the tips.
 fn best_axis<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
-    match best_side(outline1, outline2) {
-        Some((gap, normal)) => Axis { gap, normal },
-        None => best_of_all(outline1, outline2),
-    }
-}
-
-/// [`best_axis`] of any outlines.
-fn best_of_all<N: Real>(outline1: &Outline<N>, outline2: &Outline<N>) -> Axis<N> {
     let (reach1, reach2) = (Reach::of(outline1), Reach::of(outline2));
     let mut best: Option<Axis<N>> = None;
     let mut attempt = |normal: Vector<N, 2>| {
@@ -96,7 +113,17 @@ fn overlapping<N: Real>(
     let tangent = perp(&best.normal);
     let [low1, high1] = outline1.feature(&best.normal, &tangent, noise);
     let [low2, high2] = outline2.feature(&-best.normal, &tangent, noise);
-    let middle = (max(low1.0, low2.0) + min(high1.0, high2.0)) * N::HALF;
+    in_middle([low1, high1], [low2.0, high2.0], best)
+}
+
+/// The points in the middle of what two features have in common: the lowest and highest vertices of the
+/// first, and where along the tangent those of the second are.
+pub(super) fn in_middle<N: Real>(
+    [low1, high1]: [(N, Point<N, 2>); 2],
+    [low2, high2]: [N; 2],
+    best: &Axis<N>,
+) -> Separation<N, 2> {
+    let middle = (max(low1.0, low2) + min(high1.0, high2)) * N::HALF;
     let length = high1.0 - low1.0;
     let share = if length > N::ZERO { (middle - low1.0) / length } else { N::ZERO };
     let point1 = low1.1 + (high1.1 - low1.1) * max(min(share, N::ONE), N::ZERO);
@@ -178,7 +205,7 @@ fn direct_axis<N: Real>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Pose;
+    use crate::math::{Matrix, Pose};
     use crate::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Segment, Shape, Triangle};
 
     fn p(x: f64, y: f64) -> Point<f64, 2> {
@@ -255,34 +282,98 @@ mod tests {
         assert!((inside.distance - expected).abs() < 1e-15, "to a side and beyond");
     }
 
-    #[test]
-    fn sides_eight_at_a_time_are_the_same() {
-        use crate::query::separation::hulls::tests::Random;
-        let random = &mut Random(7);
-        let mut in_lanes = 0;
-        for count in (3..9).cycle().take(600) {
-            let outlines = [(); 2].map(|()| {
-                // Vertices around a circle: few corners are tips.
-                let mut place = || {
-                    let away = random.vector::<f64>().xy().try_normalize(1e-3);
-                    Point::from(away.unwrap_or_else(Vector::<f64, 2>::x))
-                };
-                let points: Vec<_> = (0..count).map(|_| place()).collect();
-                let at = random.vector::<f64>().xy() * 2.0;
-                let polygon = ConvexPolygon::try_from_points(&points).ok()?;
-                let Kind::Polytope(polygon) = polygon.geometry().0 else { return None };
-                let placed = Pose::from_translation(at);
-                let kind = Kind::Polytope(polygon);
-                let pair = Pair { first: kind, second: kind, pose12: placed };
-                Some(Outline::of(&pair, &kind).placed(&placed))
-            });
-            let [Some(outline1), Some(outline2)] = outlines else { continue };
-            let Some(found) = best_side(&outline1, &outline2) else { continue };
-            let axis = best_of_all(&outline1, &outline2);
-            assert_eq!(found, (axis.gap, axis.normal), "the best axis");
-            in_lanes += 1;
+    /// Pairs of all kinds in the lanes of each instruction set, against one number after the other.
+    fn eight_at_a_time<N: Real>(seed: u64) {
+        use crate::query::separation::hulls::tests::{Random, levels};
+        let random = &mut Random(seed);
+        let (mut decided, mut overlapping, mut count) = (0, 0, 0);
+        for round in 0..3000 {
+            let kinds = [random.pick(6), random.pick(6)];
+            if kinds == [0, 0] {
+                continue;
+            }
+            let shapes = kinds.map(|kind| solid_of::<N>(random, kind));
+            let turn = random.turn::<N>().rotation;
+            let size = [1.0_f64, 1e-3, 1e3][round % 3];
+            let angle = Vector::<N, 2>::new(turn.m11, turn.m21);
+            let (cosine, sine) = (angle.normalize().x, angle.normalize().y);
+            let rotation = Matrix::<N, 2>::new(cosine, -sine, sine, cosine);
+            let translation = random.vector::<N>().xy() * N::lit(1.5 * size.min(1.0));
+            let pose12 = Pose { rotation, translation };
+            let [first, second] = [&shapes[0], &shapes[1]].map(|shape| shape.geometry().0);
+            let pair = Pair { first, second, pose12 };
+            let expected = of_outlines(&pair, known_axis(&pair), N::INFINITY);
+            let expected = expected.expect("nothing is beyond infinity");
+            let polygons = [first, second].map(|kind| Polygon::of(&kind).expect("eight at most"));
+            for level in levels() {
+                let [polygon1, polygon2] = &polygons;
+                let found = polygon_lanes::between(
+                    level,
+                    [polygon1, polygon2],
+                    &pose12,
+                    known_axis(&pair),
+                    N::INFINITY,
+                );
+                count += 1;
+                if let Verdict::Found(found) = found {
+                    assert_eq!(found, expected, "{kinds:?} {pose12:?} in round {round}");
+                    decided += 1;
+                    overlapping += usize::from(found.distance < N::ZERO);
+                }
+            }
         }
-        assert!(in_lanes > 50, "{in_lanes} pairs have neither tips nor too many vertices");
+        assert!(decided * 10 > count * 9, "{decided} of {count} are usual");
+        assert!(overlapping * 4 > decided, "{overlapping} of {decided} overlap");
+    }
+
+    /// A ball, a segment, a capsule, a triangle, a box or a polygon.
+    fn solid_of<N: Real>(
+        random: &mut crate::query::separation::hulls::tests::Random,
+        kind: usize,
+    ) -> Box<dyn Shape<N, 2>> {
+        let half = random.vector::<N>().xy().abs();
+        // On a grid in half of the cases: parallel sides, and ties.
+        let on_grid = random.pick(2) == 0;
+        let mut point = || {
+            let point = random.vector::<N>().xy();
+            let rounded = point.map(|x| (x * N::lit(4.0)).round() * N::lit(0.25));
+            Point::from(if on_grid { rounded } else { point })
+        };
+        let [a, b, c] = [point(), point(), point()];
+        match kind {
+            0 => Box::new(Ball::new(half.x)),
+            1 => Box::new(Segment::new(a, b)),
+            2 => Box::new(Capsule::<N, 2>::new(half.x, half.y)),
+            3 => Box::new(Triangle::new(a, b, c)),
+            4 => Box::new(Cuboid::new(half)),
+            _ => {
+                let points: Vec<_> = (0..8).map(|_| point()).collect();
+                match ConvexPolygon::try_from_points(&points) {
+                    Ok(polygon) => Box::new(polygon),
+                    Err(_) => Box::new(Cuboid::new(half)),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_vertices_at_once_are_the_same() {
+        eight_at_a_time::<f32>(7);
+        eight_at_a_time::<f64>(8);
+    }
+
+    #[test]
+    fn numbers_that_end_are_left_to_one_after_the_other() {
+        let cuboid = Cuboid::new(Vector::<f32, 2>::new(1.0, 1.0));
+        for bad in [f32::NAN, f32::INFINITY] {
+            let mut pose12 = Pose::<f32, 2>::identity();
+            pose12.translation.x = bad;
+            let kind = cuboid.geometry().0;
+            let pair = Pair { first: kind, second: kind, pose12 };
+            let expected = of_outlines(&pair, known_axis(&pair), 1.0);
+            let found = separation(&pair, 1.0);
+            assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{bad}");
+        }
     }
 
     #[test]

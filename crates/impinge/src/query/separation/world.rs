@@ -3,8 +3,9 @@
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
-use crate::query::pair::{Ordered, Pair, Placed};
-use crate::shape::Shape;
+use crate::query::far::Apart;
+use crate::query::pair::{Ordered, Placed};
+use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
@@ -16,8 +17,16 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let ordered = Ordered::new(placed1, placed2);
-    let found = in_first(&ordered, limit, Wanted::Deepest)?;
+    of_ordered(&Ordered::new(placed1, placed2), limit)
+}
+
+/// [`in_world`] of two whose canonical order is known.
+#[inline]
+pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let found = in_first(ordered, limit, Wanted::Deepest)?;
     Some(placed(&found, &ordered.first.pose, ordered.swapped))
 }
 
@@ -43,11 +52,11 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     if ordered.has_composite() {
         return of_composites(&ordered, limit, Wanted::Touching).map(|found| found.distance);
     }
-    let pair = finite(&ordered)?;
-    if limit >= N::ZERO && (N::tables().certainly_overlap)(&pair) {
-        return Some(N::ZERO);
+    let pair = ordered.pair();
+    if !pair.pose12.is_finite() {
+        return None;
     }
-    super::separation(&pair, limit).map(|found| found.distance)
+    (N::tables().distance)(&pair, limit)
 }
 
 /// The separation in the frame of the first; `None` also if a pose is not finite.
@@ -60,15 +69,8 @@ fn in_first<N: Space<D>, const D: usize>(
     if ordered.has_composite() {
         return of_composites(ordered, limit, wanted);
     }
-    super::separation(&finite(ordered)?, limit)
-}
-
-/// Two convex solids; `None` if a pose is not finite.
-#[inline]
-fn finite<'a, N: Space<D>, const D: usize>(
-    ordered: &Ordered<'_, 'a, N, D>,
-) -> Option<Pair<'a, N, D>> {
-    Some(ordered.pair()).filter(|pair| pair.pose12.is_finite())
+    let pair = ordered.pair();
+    if pair.pose12.is_finite() { super::separation(&pair, limit) } else { None }
 }
 
 /// [`in_first`], where one is a composite.
@@ -108,6 +110,30 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         isometry: &Isometry<N, R, D>,
         shape: &'a dyn Shape<N, D>,
     ) -> Self {
-        Self { pose: Pose::from_isometry(isometry), shape: shape.geometry() }
+        Self::at(isometry, shape.geometry())
+    }
+
+    #[inline]
+    fn at<R: AbstractRotation<N, D>>(
+        isometry: &Isometry<N, R, D>,
+        shape: Geometry<'a, N, D>,
+    ) -> Self {
+        Self { pose: Pose::from_isometry(isometry), shape }
+    }
+
+    /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than
+    /// `limit`.
+    #[inline]
+    pub(crate) fn within<R: AbstractRotation<N, D>>(
+        (isometry1, shape1): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        (isometry2, shape2): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        limit: N,
+    ) -> Option<[Self; 2]> {
+        let shapes = [shape1.geometry(), shape2.geometry()];
+        let between = isometry2.translation.vector - isometry1.translation.vector;
+        if (N::tables().are_beyond)(&Apart { shapes, between }, limit) {
+            return None;
+        }
+        Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])
     }
 }

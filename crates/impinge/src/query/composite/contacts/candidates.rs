@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::super::between::Between;
-use super::super::bounds::{aabb_of, enclosing};
+use super::super::bounds::{aabb_of, enclosing, loosened};
 use super::around::Around;
 use super::near::Probe;
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -137,6 +137,9 @@ fn of_two<N: Space<D>, const D: usize>(
     reach: N,
     found: &mut PartPairs,
 ) {
+    if between.are_boxes_beyond(loosened(reach)) {
+        return;
+    }
     let poses = [&between.pose21, &between.pair.pose12];
     let is_first = parts1.num_parts() <= parts2.num_parts();
     let (fewer, more) = if is_first { (parts1, parts2) } else { (parts2, parts1) };

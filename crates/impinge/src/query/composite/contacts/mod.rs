@@ -37,7 +37,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, Piece, merge};
 use crate::query::pair::{Ordered, Placed};
-use crate::query::separation::placed;
+use crate::query::separation::{of_ordered, placed};
 use crate::query::{ManifoldRequest, Pair, PairIds};
 use crate::shape::{Geometry, Kind, SupportMap};
 
@@ -217,8 +217,8 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let nearest = (N::tables().separation_in_world)(placed1, placed2, limit)?;
     let ordered = Ordered::new(placed1, placed2);
+    let nearest = of_ordered(&ordered, limit)?;
     if !ordered.has_composite() {
         return Some(nearest);
     }

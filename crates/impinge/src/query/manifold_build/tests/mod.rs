@@ -6,3 +6,4 @@ mod overlap;
 mod properties;
 mod resting;
 pub(in crate::query) mod scene;
+mod stretch;

@@ -77,10 +77,13 @@ impl<N: Real> Meeting<'_, '_, N> {
         ]
     }
 
+    #[inline(always)]
     fn ends(side: &Side<'_, '_, N>, index: usize) -> [Vector<N, 3>; 2] {
-        side.solid.edges[index].vertices.map(|vertex| side.cloud.at(vertex as usize))
+        let [from, to] = side.solid.edges[index].vertices;
+        [side.cloud.at(from as usize), side.cloud.at(to as usize)]
     }
 
+    #[inline(always)]
     fn edge(&self, index: usize) -> Edge<N> {
         let [from, to] = Self::ends(&self.own, index);
         let along = to - from;
@@ -139,9 +142,9 @@ impl<N: Real> Meeting<'_, '_, N> {
             let edges2 = self.edges::<S, V>(simd, eight, true);
             for &index in chosen1.indices() {
                 let edge1 = self.edge(usize::from(index));
-                let normals1 = self.own.solid.edges[edge1.index]
-                    .faces
-                    .map(|face| self.own.solid.normal(face as usize));
+                let [face1, face2] = self.own.solid.edges[edge1.index].faces;
+                let (face1, face2) = (face1 as usize, face2 as usize);
+                let normals1 = [self.own.solid.normal(face1), self.own.solid.normal(face2)];
                 let heights = heights::<S, N, V>(simd, (&edge1, &normals1), &edges2);
                 let Some(heights) = heights else { continue };
                 let highest = highest_lane(heights);
@@ -246,14 +249,12 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let zero = V::all(simd, N::ZERO);
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
-    let is_left1 = |side: usize| dot(&along2, &spread(simd, &normals1[side])).simd_lt(zero);
-    let is_left2 = |side: usize| {
-        dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[side])).simd_lt(zero)
-    };
     // The arcs between the normals of each edge cross on the sphere of normals, those of the second
     // solid turned round.
-    let ([left1, right1], [left2, right2]) =
-        ([is_left1(0), is_left1(1)], [is_left2(0), is_left2(1)]);
+    let left1 = dot(&along2, &spread(simd, &normals1[0])).simd_lt(zero);
+    let right1 = dot(&along2, &spread(simd, &normals1[1])).simd_lt(zero);
+    let left2 = dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[0])).simd_lt(zero);
+    let right2 = dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[1])).simd_lt(zero);
     let is_face = (left1 ^ right1) & (left2 ^ right2) & (left2 ^ right1);
     if is_face.to_bitmask() == 0 {
         return None;

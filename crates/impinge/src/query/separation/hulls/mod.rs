@@ -14,7 +14,7 @@ mod edges;
 mod face;
 mod solid;
 #[cfg(test)]
-pub(super) mod tests;
+pub(in crate::query) mod tests;
 
 use fearless_simd::{Level, Simd};
 

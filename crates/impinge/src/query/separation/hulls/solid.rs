@@ -61,8 +61,9 @@ impl<'a, N: Real> Flat<'a, N> {
     /// The outward unit normal of a face.
     #[inline(always)]
     pub(super) fn normal(&self, face: usize) -> Vector<N, 3> {
-        let normals = &self.planes[face / LANES].normals;
-        Vector::from(from_fn(|axis| normals[axis][face % LANES]))
+        let [x, y, z] = &self.planes[face / LANES].normals;
+        let lane = face % LANES;
+        Vector::<N, 3>::new(x[lane], y[lane], z[lane])
     }
 
     /// How far from the origin the plane of a face lies.

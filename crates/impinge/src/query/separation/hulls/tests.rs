@@ -11,7 +11,7 @@ use crate::query::separation::general;
 use crate::shape::{ConvexHull, Cuboid, Shape};
 
 /// Numbers between −1 and 1 by splitmix64.
-pub(in super::super) struct Random(pub(in super::super) u64);
+pub(in crate::query) struct Random(pub(in crate::query) u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
@@ -23,7 +23,7 @@ impl Random {
         f64::from(bits) / f64::from(1_u32 << 31) - 1.0
     }
 
-    pub(in super::super) fn vector<N: Real>(&mut self) -> Vector<N, 3> {
+    pub(in crate::query) fn vector<N: Real>(&mut self) -> Vector<N, 3> {
         Vector::from([0; 3].map(|_: i32| N::lit(self.next())))
     }
 
@@ -88,7 +88,7 @@ fn verdict<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> Verdict<N>
     at(level, [&flat(0), &flat(1)], &pair.pose12, limit)
 }
 
-fn levels() -> Vec<Level> {
+pub(in super::super) fn levels() -> Vec<Level> {
     let level = Level::new();
     let mut all = vec![level];
     #[cfg(target_arch = "x86_64")]

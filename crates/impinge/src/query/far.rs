@@ -1,0 +1,216 @@
+//! Shapes that are certainly too far apart, told before anything is turned.
+//!
+//! A ball around the origin of its frame holds a solid however it is turned. So the balls of two solids,
+//! whose radii are known at once, and the difference of the positions tell most pairs apart that the
+//! algorithms need not look at: without a rotation, an order of the two, or a feature.
+//!
+//! What is told here is what the algorithms would have answered. They are off by some hundred rounding
+//! errors of the lengths of the pair, and all of these are at most twice the distance of the origins
+//! where the balls do not meet. The squares are compared with a factor of 1 + 2⁻⁶: the balls of solids
+//! that are told apart are farther from each other than the limit by 2⁻⁸ of that distance, which is
+//! 2¹⁵ rounding errors of `f32`.
+
+use crate::math::{Real, Vector, max, max_component, min};
+use crate::shape::Geometry;
+
+/// By how much the square of a distance must exceed that of the lengths it is held against.
+const ROOM: f64 = 1.0 + 1.0 / 64.0;
+
+/// Two shapes and the way from the origin of the first to that of the second, in any frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Apart<'a, N: Real, const D: usize> {
+    pub(crate) shapes: [Geometry<'a, N, D>; 2],
+    pub(crate) between: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Apart<'_, N, D> {
+    /// The shapes are certainly farther apart than `limit`; a negative limit and NaN count as zero.
+    ///
+    /// `false` says nothing; it is the answer for half-spaces, composites and support maps of users, of
+    /// which no ball is known.
+    pub(crate) fn is_beyond(&self, limit: N) -> bool {
+        self.is_clear(self.between.norm_squared(), self.reach(limit))
+    }
+
+    /// The same at all times up to `end`, zero included, while the second shape moves with `velocity`
+    /// against the first.
+    pub(crate) fn stays_beyond(&self, limit: N, velocity: &Vector<N, D>, end: N) -> bool {
+        let speed_squared = velocity.norm_squared();
+        // A speed whose square is no number of the type says nothing about when they are nearest.
+        let is_still = max_component(velocity) <= N::ZERO;
+        if !is_still && speed_squared <= N::MIN_POSITIVE {
+            return false;
+        }
+        let nearest = if is_still { N::ZERO } else { -self.between.dot(velocity) / speed_squared };
+        let way = self.between + velocity * max(min(nearest, end), N::ZERO);
+        // The way is off by some rounding errors of the distance that it began with.
+        let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
+        self.is_clear(way.norm_squared(), self.reach(limit) + rounding)
+    }
+
+    /// How far apart the origins are at most where the shapes are no farther apart than `limit`.
+    fn reach(&self, limit: N) -> N {
+        self.shapes[0].extent() + self.shapes[1].extent() + max(limit, N::ZERO)
+    }
+
+    /// Squares that are subnormal numbers are not precise, which they are beside one that is not. NaN
+    /// and infinities on the right are never exceeded; one on the left is too large for its type.
+    #[inline]
+    fn is_clear(&self, squared: N, reach: N) -> bool {
+        squared > reach * reach * N::lit(ROOM) && squared > N::MIN_POSITIVE
+    }
+}
+
+/// [`Apart::is_beyond`], to be reached from elsewhere.
+pub(crate) fn are_beyond<N: Real, const D: usize>(apart: &Apart<'_, N, D>, limit: N) -> bool {
+    apart.is_beyond(limit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
+    use crate::math::{Point, Pose, Space};
+    use crate::query::Pair;
+    use crate::query::separation::hulls::tests::Random;
+    use crate::query::separation::separation;
+    use crate::shape::{
+        Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Rounded,
+        Segment, Shape, TaperedCapsule, Triangle,
+    };
+
+    /// A solid of any kind that has a ball, with sizes between nothing and one.
+    type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
+
+    fn of_plane<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
+        let mut point = || Point::from(random.vector::<N>().xy());
+        let [a, b, c] = [point(), point(), point()];
+        let (one, other) = (a.x.abs(), a.y.abs());
+        match kind {
+            0 => Box::new(Ball::new(one)),
+            1 => Box::new(Segment::new(a, b)),
+            2 => Box::new(Capsule::<N, 2>::new(one, other)),
+            3 => Box::new(Triangle::new(a, b, c)),
+            4 => Box::new(Cuboid::new(a.coords.abs())),
+            5 => Box::new(Rounded::new(Cuboid::new(a.coords.abs()), b.x.abs())),
+            6 => Box::new(Ellipsoid::new(a.coords.abs().map(|x| x + N::EPSILON))),
+            7 => Box::new(TaperedCapsule::<N, 2>::new(one, other, b.x.abs())),
+            _ => match ConvexPolygon::try_from_points(&[a, b, c, point()]) {
+                Ok(polygon) => Box::new(polygon),
+                Err(_) => Box::new(Ball::new(one)),
+            },
+        }
+    }
+
+    fn of_space<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 3>> {
+        let mut point = || Point::from(random.vector::<N>());
+        let [a, b, c] = [point(), point(), point()];
+        let (one, other) = (a.x.abs(), a.y.abs());
+        match kind {
+            0 => Box::new(Ball::new(one)),
+            1 => Box::new(Segment::new(a, b)),
+            2 => Box::new(Capsule::<N, 3>::new(one, other)),
+            3 => Box::new(Triangle::new(a, b, c)),
+            4 => Box::new(Cuboid::new(a.coords.abs())),
+            5 => Box::new(Rounded::new(Cylinder::new(one, other), b.x.abs())),
+            6 => Box::new(Ellipsoid::new(a.coords.abs().map(|x| x + N::EPSILON))),
+            7 => Box::new(TaperedCapsule::<N, 3>::new(one, other, b.x.abs())),
+            8 => Box::new(Cylinder::new(one, other)),
+            9 => Box::new(Cone::new(one, other)),
+            _ => match ConvexHull::try_from_points(&[a, b, c, point(), point()]) {
+                Ok(hull) => Box::new(hull),
+                Err(_) => Box::new(Ball::new(one)),
+            },
+        }
+    }
+
+    /// Whatever is told to be beyond is so for the algorithms: close to where it begins to be told, at all
+    /// scales, and where the world's numbers are coarse.
+    fn tells_no_more<N: Space<D>, const D: usize>(
+        (draw, kinds): (Draw<N, D>, usize),
+        turn: fn(&mut Random) -> Pose<N, D>,
+    ) {
+        let random = &mut Random(11);
+        let (mut told, mut moved) = (0, 0);
+        for round in 0..4000 {
+            let shapes = [draw(random, round % kinds), draw(random, round / kinds % kinds)];
+            let shapes = [shapes[0].geometry(), shapes[1].geometry()];
+            let apart = Apart { shapes, between: Vector::<N, D>::zeros() };
+            let limit = N::lit([0.0, 0.25, -0.1][round % 3]);
+            let reach = apart.reach(limit);
+            let pose12 = turn(random);
+            let share =
+                N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
+            let away = pose12.translation.normalize() * (reach * share);
+            // As positions in a world would give it that far from its origin.
+            let far = Vector::<N, D>::repeat(N::lit([0.0, 1e6][round % 2]));
+            let between = (far + away) - far;
+            let pair = Pair {
+                first: shapes[0].0,
+                second: shapes[1].0,
+                pose12: Pose { translation: between, ..pose12 },
+            };
+            if (Apart { between, ..apart }).is_beyond(limit) {
+                told += 1;
+                assert!(
+                    separation(&pair, limit).is_none(),
+                    "in round {round}: {pair_poses:?}",
+                    pair_poses = pair.pose12
+                );
+            }
+            let velocity = turn(random).translation;
+            if (Apart { between, ..apart }).stays_beyond(limit, &velocity, N::TWO) {
+                moved += 1;
+                for step in 0..=16 {
+                    let mut pair = pair;
+                    let time = N::TWO * N::lit(f64::from(step) / 16.0);
+                    pair.pose12.translation += velocity * time;
+                    assert!(separation(&pair, limit).is_none(), "in round {round} at {time}");
+                }
+            }
+        }
+        assert!(told > 500 && told < 3500, "{told} pairs are told apart");
+        assert!(moved > 100 && moved < 3500, "{moved} pairs stay apart");
+    }
+
+    fn turn2<N: Real>(random: &mut Random) -> Pose<N, 2> {
+        let v = random.vector::<N>();
+        let rotation = Rotation2::from(UnitComplex::from_angle(v.z * N::lit(3.0))).into_inner();
+        Pose { rotation, translation: v.xy() }
+    }
+
+    fn turn3<N: Real>(random: &mut Random) -> Pose<N, 3> {
+        let (axis, translation) = (random.vector::<N>(), random.vector::<N>());
+        let turn = UnitQuaternion::from_scaled_axis(axis * N::lit(3.0));
+        Pose { rotation: Rotation3::from(turn).into_inner(), translation }
+    }
+
+    #[test]
+    fn what_is_told_is_what_the_algorithms_say() {
+        tells_no_more::<f32, 2>((of_plane, 9), turn2);
+        tells_no_more::<f64, 2>((of_plane, 9), turn2);
+        tells_no_more::<f32, 3>((of_space, 11), turn3);
+        tells_no_more::<f64, 3>((of_space, 11), turn3);
+    }
+
+    #[test]
+    fn numbers_near_both_ends_of_the_range_are_not_told() {
+        let (small, large) = (Ball::new(1e-23_f32), Ball::new(1.8e19_f32));
+        let apart = |ball, x: f32| Apart {
+            shapes: [Shape::<f32, 3>::geometry(ball); 2],
+            between: Vector::<f32, 3>::new(x, 0.0, 0.0),
+        };
+        assert!(!apart(&small, 2.2e-23).is_beyond(0.0), "squares that vanish say nothing");
+        assert!(apart(&small, 1e-18).is_beyond(0.0), "these are numbers");
+        assert!(!apart(&large, 3.7e19).is_beyond(0.0), "squares that overflow on both sides");
+        assert!(!apart(&small, f32::NAN).is_beyond(0.0), "NaN");
+        assert!(!apart(&small, 1.0).is_beyond(f32::INFINITY), "no limit");
+        assert!(apart(&small, 1.0).is_beyond(f32::NAN), "nothing is within NaN");
+        let creeps = Vector::<f32, 3>::new(-1e-25, 0.0, 0.0);
+        let (unit, forever) = (Ball::new(0.25), f32::INFINITY);
+        assert!(!apart(&unit, 1.0).stays_beyond(0.0, &creeps, forever), "it may arrive");
+        let still = Vector::<f32, 3>::zeros();
+        assert!(apart(&unit, 1.0).stays_beyond(0.0, &still, forever), "it stays");
+        assert!(apart(&unit, 1.0).stays_beyond(0.0, &(-creeps * 1e25), forever), "it leaves");
+    }
+}

@@ -1,0 +1,245 @@
+//! Two solids of the plane: the stretch that two sides share, in no more room than that takes.
+//!
+//! The same as [`Facet`](super::facet::Facet) and [`Overlap`](super::overlap::Overlap), which define it, bit
+//! for bit: in the plane a facet is a side or a point, two sides are parallel seen along the normal, and
+//! a place along the line of contact is one number.
+
+use super::facet::{Corner, Which};
+use super::frame::{Candidate, Frame};
+use super::overlap::Candidates;
+use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
+use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
+use crate::shape::{FeatureId, Geometry, Kind, Shown};
+
+/// Sides that lean more than 60° count as their nearest end.
+const LEAST_COSINE: f64 = 0.5;
+
+/// Builds the manifold of two solids; answers whether it did: balls and half-spaces are left to others.
+pub(super) fn build<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    frame: &Frame<N, 2>,
+    (request, limit): (&ManifoldRequest<N>, usize),
+    out: &mut RawManifold<N, 2>,
+) -> bool {
+    if matches!(pair.first, Kind::Ball(_)) {
+        return false;
+    }
+    let distance = frame.witness.distance;
+    if !(distance <= request.prediction && distance.is_finite_number()) {
+        out.points.clear();
+        return true;
+    }
+    let first = Stretch::of((Which::First, pair.first), None, frame);
+    let second = Stretch::of((Which::Second, pair.second), Some(&pair.pose12), frame);
+    let (Some(first), Some(second)) = (first, second) else { return false };
+    out.normal = frame.normal();
+    let mut candidates = Candidates::new();
+    if first.is_side && second.is_side {
+        Shared { frame, first: &first, second: &second }.candidates(&mut candidates);
+    }
+    let level = distance + frame.tolerance;
+    if !candidates.iter().any(|candidate| candidate.distance <= level) {
+        add_witness(frame, [first.at_witness(frame), second.at_witness(frame)], &mut candidates);
+    }
+    choose(&mut candidates, (distance, frame.tolerance), limit, out);
+    true
+}
+
+/// What a solid shows of itself: a side, or a point.
+struct Stretch<N: Real> {
+    which: Which,
+    id: FeatureId,
+    /// Of a point the first counts.
+    corners: [Corner<N, 2>; 2],
+    is_side: bool,
+    rounding: N,
+    /// Between the side and the line of contact.
+    cosine: N,
+    /// From the first corner to the second, seen along the normal, and the length of that.
+    along: N,
+    length: N,
+    /// Of a rounded solid the corner nearest to the other: how far it is below the supporting plane, and
+    /// where it is seen.
+    top: (N, Vector<N, 2>),
+}
+
+impl<N: Real> Stretch<N> {
+    fn of(
+        (which, kind): (Which, Kind<'_, N, 2>),
+        pose: Option<&Pose<N, 2>>,
+        frame: &Frame<N, 2>,
+    ) -> Option<Self> {
+        let outward = which.outward(frame);
+        let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
+        let shown = Shown::of(kind, &direction)?;
+        let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
+            let point = pose.map_or(vertex, |pose| pose.point(&vertex));
+            Corner { point, flat: frame.flat(&point), id, side: shown.id }
+        };
+        let mut stretch = Self {
+            which,
+            id: shown.id,
+            corners: [corner(shown.ends[0]), corner(shown.ends[1])],
+            is_side: shown.is_side,
+            rounding: rounding(kind),
+            cosine: N::ONE,
+            along: N::ZERO,
+            length: N::ZERO,
+            top: (N::ZERO, Vector::<N, 2>::zeros()),
+        };
+        stretch.settle(&outward, frame.tolerance);
+        if stretch.rounding > N::ZERO {
+            stretch.find_top(frame);
+        }
+        Some(stretch)
+    }
+
+    /// A side of no extent seen along the normal is its first corner, with the name of the side; one that
+    /// leans too much its nearest corner.
+    fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
+        let [from, to] = &self.corners;
+        let is_long = max_component(&(from.flat - to.flat)) > tolerance;
+        self.is_side &= is_long;
+        if !self.is_side {
+            return;
+        }
+        let flat = to.flat - from.flat;
+        (self.along, self.length) = (flat.x, flat.norm());
+        self.cosine = self.length / (to.point - from.point).norm();
+        if self.cosine < N::lit(LEAST_COSINE) {
+            let at = |corner: &Corner<N, 2>| corner.point.coords.dot(outward);
+            let farthest = if at(to) > at(from) { *to } else { *from };
+            (self.id, self.corners, self.is_side) = (farthest.id, [farthest; 2], false);
+            self.cosine = N::ONE;
+        }
+    }
+
+    fn find_top(&mut self, frame: &Frame<N, 2>) {
+        let [first, second] = &self.corners;
+        let depth = self.below_witness(&first.point, frame);
+        self.top = (depth, first.flat);
+        if self.is_side {
+            let other = self.below_witness(&second.point, frame);
+            if other < depth {
+                self.top = (other, second.flat);
+            }
+        }
+    }
+
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    fn below_witness(&self, point: &Point<N, 2>, frame: &Frame<N, 2>) -> N {
+        let height = frame.height(point);
+        match self.which {
+            Which::First => -height,
+            Which::Second => height - frame.witness.distance,
+        }
+    }
+
+    /// The part that the witness lies on.
+    fn at_witness(&self, frame: &Frame<N, 2>) -> FeatureId {
+        let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
+        match &self.corners {
+            [from, _] if self.is_side && near(from) => from.id,
+            [_, to] if self.is_side && near(to) => to.id,
+            _ => self.id,
+        }
+    }
+
+    /// The point of the core that is seen at a place.
+    fn under(&self, place: N) -> Point<N, 2> {
+        let [from, to] = &self.corners;
+        let share = (place - from.flat.x) * self.along / (self.along * self.along);
+        from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
+    }
+
+    /// The part beside a place; `None` beyond the ends.
+    fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
+        let along = (place - self.corners[0].flat.x) * self.along / self.length;
+        let tolerance = N::TWO * tolerance;
+        if along < -tolerance || along > self.length + tolerance {
+            return None;
+        }
+        let end = if along <= tolerance { Some(0) } else { None };
+        let end = if along >= self.length - tolerance { Some(1) } else { end };
+        Some(end.map_or(self.id, |end: usize| self.corners[end].id))
+    }
+
+    /// How far the rounded surface is above a point of the core, along the normal.
+    fn lift(&self, core: &Point<N, 2>, frame: &Frame<N, 2>) -> N {
+        if self.rounding <= N::ZERO {
+            return N::ZERO;
+        }
+        let room = self.below_witness(core, frame);
+        let (top, place) = self.top;
+        let (radius, cosine) = (self.rounding, self.cosine);
+        let away_squared = (frame.flat(core) - place).norm_squared();
+        let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+        let lift = if away_squared < turns_squared {
+            room - top + (radius * radius - away_squared).sqrt()
+        } else {
+            radius / cosine
+        };
+        max(min(lift, room), N::ZERO)
+    }
+}
+
+/// The radius by which the core of a solid is swollen.
+fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
+    match kind {
+        Kind::Segment(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_) => N::ZERO,
+        Kind::Capsule(capsule) => capsule.radius(),
+        other => Geometry(other).as_support_map().map_or(N::ZERO, |map| map.rounding()),
+    }
+}
+
+/// Two sides in one frame.
+struct Shared<'a, N: Real> {
+    frame: &'a Frame<N, 2>,
+    first: &'a Stretch<N>,
+    second: &'a Stretch<N>,
+}
+
+impl<N: Real> Shared<'_, N> {
+    /// The ends of the stretch that the sides share: each is an end of one of them and the place beside it
+    /// on the other.
+    fn candidates(&self, out: &mut Candidates<N, 2>) {
+        for corner in &self.first.corners {
+            if let Some(on) = self.second.beside(corner.flat.x, self.frame.tolerance) {
+                let under = self.second.under(corner.flat.x);
+                self.push(&corner.point, &under, [corner.id, on], out);
+            }
+        }
+        for corner in &self.second.corners {
+            if let Some(on) = self.first.beside(corner.flat.x, self.frame.tolerance) {
+                let under = self.first.under(corner.flat.x);
+                self.push(&under, &corner.point, [on, corner.id], out);
+            }
+        }
+    }
+
+    /// Adds a pair of points, each moved by half of what they are beside each other, once.
+    fn push(
+        &self,
+        core1: &Point<N, 2>,
+        core2: &Point<N, 2>,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, 2>,
+    ) {
+        let (gap, normal) = (core2 - core1, self.frame.normal());
+        let half = (gap - normal * normal.dot(&gap)) * N::HALF;
+        let (core1, core2) = (core1 + half, core2 - half);
+        let lift1 = self.first.lift(&core1, self.frame);
+        let lift2 = self.second.lift(&core2, self.frame);
+        let distance = normal.dot(&(core2 - core1)) - lift1 - lift2;
+        let found = self.frame.candidate(core1 + normal * lift1, distance, features);
+        let Some(found) = found else { return };
+        let near = N::lit(4.0) * self.frame.tolerance;
+        let is_new = |old: &Candidate<N, 2>| {
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
+        };
+        if out.iter().all(is_new) {
+            out.push(found);
+        }
+    }
+}
