@@ -57,6 +57,14 @@ impl<const D: usize> Gaps<D> {
         let slack = f64::from(SQUARE * f32::EPSILON);
         f32::min((squared + squared * slack) as f32 + f32::MIN_POSITIVE, f32::MAX)
     }
+
+    /// A key of a block as a distance of the caller's, or a little less.
+    pub(crate) fn distance<N: Real>(&self, key: f32) -> N {
+        let (key, scale) = (f64::from(key), f64::from(self.scale));
+        let slack = f64::from(2.0 * SQUARE * f32::EPSILON);
+        let surely = key - key * slack - self.lost * scale * scale - f64::from(f32::MIN_POSITIVE);
+        N::lit(if surely > 0.0 { surely.sqrt() / scale } else { 0.0 })
+    }
 }
 
 impl Scalar {
@@ -200,6 +208,8 @@ mod tests {
                     assert!(!is_near || mask >> lane & 1 == 1, "{aabb:?} {exact:?}: {distance}");
                     let bound = f32::from_bits(key);
                     assert!(!is_near || bound <= gaps.limit(distance), "a bound of {distance}");
+                    let known = gaps.distance::<f32>(bound);
+                    assert!(!is_near || known <= distance, "{known} is above {distance}");
                     near += usize::from(is_near);
                 }
             }

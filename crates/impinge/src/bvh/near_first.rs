@@ -91,15 +91,16 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects of the trees that the moving box may touch by `limit`, several at a
-    /// time, near ones first but in no exact order; `found` returns the new limit, which never grows.
+    /// Calls `found` with the objects of the trees that the moving box may touch by `limit` and their keys,
+    /// several at a time, near ones first but in no exact order; `found` returns the new limit, which never
+    /// grows.
     /// Limits are in the units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
         slabs: &Slabs<D>,
         limit: f32,
-        found: impl FnMut(&[u32]) -> f32,
+        found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         self.visit_near_first(trees, slabs, limit, found);
     }
@@ -111,7 +112,7 @@ impl Lanes {
         trees: &[&Tree<D>],
         gaps: &Gaps<D>,
         limit: f32,
-        found: impl FnMut(&[u32]) -> f32,
+        found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         self.visit_near_first(trees, gaps, limit, found);
     }
@@ -122,7 +123,7 @@ impl Lanes {
         trees: &[&Tree<D>],
         probe: &impl Probe<D>,
         mut limit: f32,
-        mut found: impl FnMut(&[u32]) -> f32,
+        mut found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         with_kernel!(self, kernel => {
             for tree in trees.iter().filter(|tree| !tree.is_empty()) {
@@ -141,7 +142,7 @@ impl<const D: usize> Tree<D> {
         kernel: K,
         probe: &impl Probe<D>,
         limit: f32,
-        found: &mut impl FnMut(&[u32]) -> f32,
+        found: &mut impl FnMut(&[(u32, f32)]) -> f32,
     ) -> f32 {
         self.descend(
             kernel,
@@ -230,17 +231,18 @@ fn hand_out<K: Kernel>(
     ids: &[u32; LANES],
     open: &mut Open,
     mut limit: f32,
-    found: &mut impl FnMut(&[u32]) -> f32,
+    found: &mut impl FnMut(&[(u32, f32)]) -> f32,
 ) -> f32 {
     while open.mask != 0 {
-        let (mut group, mut count) = ([NONE; GROUP], 0);
+        let (mut group, mut count) = ([(NONE, 0.0); GROUP], 0);
         while count < GROUP {
             let Some(slot) = open.next(kernel, limit) else {
                 open.mask = 0;
                 break;
             };
-            group[count] = ids[(slot - open.first) as usize % LANES];
-            count += usize::from(group[count] != NONE);
+            let lane = (slot - open.first) as usize % LANES;
+            group[count] = (ids[lane], open.keys[lane]);
+            count += usize::from(ids[lane] != NONE);
         }
         if count > 0 {
             limit = found(&group[..count]);

@@ -63,6 +63,13 @@ impl<const D: usize> Slabs<D> {
         if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
     }
 
+    /// A key of a block as a time of the caller's, or a little less.
+    pub(crate) fn time<N: Real>(&self, key: f32) -> N {
+        let slack = f64::from(2.0 * QUOTIENT * f32::EPSILON);
+        let exact = f64::from(key) / self.unit;
+        N::lit(exact - exact * slack)
+    }
+
     /// The faces of a block that the box meets first on an axis, and the others.
     #[inline(always)]
     fn faces<'a>(&self, block: &'a Block<D>, axis: usize) -> [&'a [f32; LANES]; 2] {
@@ -183,6 +190,7 @@ mod tests {
                 if let Some((enter, _)) = hit {
                     assert!(padded >> lane & 1 == 1, "{origin} {dir} {exact:?}");
                     assert!(key <= slabs.limit(enter), "a bound of the time");
+                    assert!(slabs.time::<f32>(key) <= enter, "as the caller counts");
                     hits += 1;
                 }
             }

@@ -9,6 +9,7 @@
 mod ball;
 mod bounds;
 mod capsule;
+mod compact;
 mod composite;
 mod compound;
 mod compound_search;
@@ -52,6 +53,7 @@ mod triangle_feature;
 pub use ball::Ball;
 pub use bounds::{aabb, bounding_sphere};
 pub use capsule::Capsule;
+pub(crate) use compact::Compact;
 pub use composite::{CompositeShape, Part, PartPath, PartSearch, PartSolid, Surface};
 pub use compound::Compound;
 pub use cone::Cone;

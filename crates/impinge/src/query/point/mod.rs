@@ -33,7 +33,7 @@ pub(super) use surface::length;
 
 use super::composite::{Near, PartPoint};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space};
-use crate::shape::{CompositeShape, FeatureId, Shape};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Shape};
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,17 +183,17 @@ fn placed<N: Real, const D: usize>(
 /// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
 /// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
 pub(crate) fn project<N: Space<D>, const D: usize>(
-    shape: &dyn Shape<N, D>,
+    shape: Geometry<'_, N, D>,
     pose: &Pose<N, D>,
     point: &Point<N, D>,
     solid: bool,
 ) -> Option<(PointProjection<N, D>, N)> {
     let local = pose.inverse_point(point);
-    let (nearest, distance) = if let Some(parts) = shape.geometry().as_composite() {
+    let (nearest, distance) = if let Some(parts) = shape.as_composite() {
         let found = (N::tables().nearest_part)(parts, &local, false)?;
         (found.projection(), found.distance.abs())
     } else {
-        let (nearest, _) = shape.project_local_point(&local);
+        let (nearest, _) = (N::tables().surface_point)(shape.0, &local).projection(&local);
         (nearest, length(&(local - nearest.point)))
     };
     let is_own = solid && nearest.is_inside;
@@ -253,10 +253,19 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
     }
 
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
-        match self.geometry().as_composite() {
-            None => self.project_local_point(point).0.is_inside,
-            Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
-        }
+        holds(self.geometry(), point)
+    }
+}
+
+/// See [`PointQuery::contains_local_point`].
+#[inline]
+pub(crate) fn holds<N: Space<D>, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+) -> bool {
+    match shape.as_composite() {
+        None => (N::tables().surface_point)(shape.0, point).projection(point).0.is_inside,
+        Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
     }
 }
 
