@@ -179,7 +179,7 @@ type FlushFn<N, const D: usize> =
 type CastRayFn<N, const D: usize> =
     fn(&Body<N, D>, &Ray<N, D>, N, bool) -> Option<RayIntersection<N, D>>;
 type ProjectFn<N, const D: usize> =
-    fn(&Body<N, D>, &Point<N, D>, bool) -> Option<(PointProjection<N, D>, N)>;
+    fn(&Body<N, D>, &Point<N, D>, bool, N) -> Option<(PointProjection<N, D>, N)>;
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {

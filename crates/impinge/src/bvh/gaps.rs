@@ -34,8 +34,13 @@ impl<const D: usize> Gaps<D> {
     ///
     /// One with coordinates beyond what `f32` can subtract is near everything.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
-        let faces = aabb.mins().iter().chain(aabb.maxs().iter()).filter(|x| x.is_finite_number());
-        let reach = faces.map(|x| x.as_f32().abs()).fold(size, f32::max);
+        let mut reach = size;
+        for axis in 0..D {
+            for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
+                let magnitude = face.as_f32().abs();
+                reach = if face.is_finite_number() { f32::max(reach, magnitude) } else { reach };
+            }
+        }
         let lost = N::MIN_POSITIVE.as_f64();
         if reach < LARGEST {
             let Bounds { lo, hi } = Bounds::enclosing(aabb).clamped();

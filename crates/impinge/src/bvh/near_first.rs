@@ -148,6 +148,7 @@ impl<const D: usize> Tree<D> {
             kernel,
             probe,
             limit,
+            |block| self.touch_leaf(block),
             #[inline(always)]
             |block, limit| {
                 // At once, so that memory has both ready at the same time.
@@ -159,13 +160,15 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Calls `leaf` with leaf blocks in which a key may be at most the limit, which it returns anew.
-    /// Opens each block at most once.
+    /// Opens each block at most once. Calls `touch` with leaf blocks that may come next, so that they are on
+    /// their way from memory while those before are looked at.
     #[inline(always)]
     fn descend<K: Kernel>(
         &self,
         kernel: K,
         probe: &impl Probe<D>,
         mut limit: f32,
+        touch: impl Fn(u32),
         mut leaf: impl FnMut(u32, f32) -> f32,
     ) -> f32 {
         let top = self.layers.len() - 1;
@@ -178,7 +181,12 @@ impl<const D: usize> Tree<D> {
             match path[layer].next(kernel, limit) {
                 None if layer == top => return limit,
                 None => layer += 1,
-                Some(block) if layer == 1 => limit = leaf(block, limit),
+                Some(block) if layer == 1 => {
+                    if path[1].mask != 0 {
+                        touch(path[1].first + path[1].mask.trailing_zeros());
+                    }
+                    limit = leaf(block, limit);
+                }
                 Some(block) => {
                     layer -= 1;
                     path[layer] = self.opened(kernel, probe, (layer, block), limit);
@@ -202,6 +210,17 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
+    /// Reads something of a leaf block.
+    #[inline(always)]
+    fn touch_leaf(&self, block: u32) {
+        let block = block as usize;
+        let Block { lo, hi } = &self.layers[0].blocks[block];
+        for axis in 0..D {
+            core::hint::black_box((lo[axis][0], hi[axis][0]));
+        }
+        core::hint::black_box(self.ids[block * LANES]);
+    }
+
     /// Without the lanes that have no block below them.
     #[inline(always)]
     fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
@@ -212,10 +231,17 @@ impl<const D: usize> Tree<D> {
 
     /// The largest magnitude of a coordinate of the boxes. Right after a refit only.
     pub(crate) fn size(&self) -> f32 {
-        let top = &self.layers[self.layers.len() - 1].bounds;
-        let all = top.iter().filter(|bounds| bounds.is_finite());
-        let faces = all.flat_map(|bounds| bounds.lo.iter().chain(&bounds.hi));
-        faces.fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
+        let mut most = 0.0;
+        for bounds in &self.layers[self.layers.len() - 1].bounds {
+            let mut size = 0.0;
+            for axis in 0..D {
+                for x in [bounds.lo[axis].abs(), bounds.hi[axis].abs()] {
+                    size = if x > size { x } else { size };
+                }
+            }
+            most = if size > most && size < f32::INFINITY { size } else { most };
+        }
+        most
     }
 
     /// The ids in the sixteen slots of each leaf block; [`NONE`] for an empty slot.
@@ -288,6 +314,7 @@ impl Tree<3> {
             kernel,
             &probe.slabs,
             limit,
+            |block| triangles[block as usize].touch(),
             #[inline(always)]
             |block: u32, mut limit: f32| {
                 let own = &triangles[block as usize];

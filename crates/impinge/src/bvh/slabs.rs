@@ -37,8 +37,13 @@ impl<const D: usize> Slabs<D> {
         let speed = max_component(velocity);
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
-        let faces = moving.mins().iter().chain(moving.maxs().iter());
-        let reach = faces.map(|x| x.as_f32().abs()).filter(|x| x.is_finite()).fold(size, f32::max);
+        let mut reach = size;
+        for axis in 0..D {
+            for face in [moving.mins()[axis], moving.maxs()[axis]] {
+                let face = face.as_f32().abs();
+                reach = if face > reach && face < f32::INFINITY { face } else { reach };
+            }
+        }
         let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
         let low = |axis: usize| moving.mins()[axis].as_f32_below() - pad;
         let high = |axis: usize| moving.maxs()[axis].as_f32_above() + pad;

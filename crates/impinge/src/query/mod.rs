@@ -40,7 +40,7 @@ pub(crate) use pair::{Pair, Placed, canonical};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
-pub(crate) use ray::cast_on;
 pub use ray::{RayBatch, RayCast, RayIntersection};
+pub(crate) use ray::{cast_on, surely_misses};
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};

@@ -215,9 +215,12 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
 /// solids are as near as the sum of both limits; and by a few units in the last place of what that makes
 /// of it, because the box, the sum and the distance that it is compared with are rounded.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
-    let faces = aabb.mins().iter().chain(aabb.maxs().iter());
-    let finite = faces.filter(|x| x.is_finite_number());
-    let reach = finite.fold(limit, |reach, x| max(x.abs(), reach));
+    let mut reach = limit;
+    for axis in 0..D {
+        for face in [aabb.mins()[axis].abs(), aabb.maxs()[axis].abs()] {
+            reach = if face < N::INFINITY { max(face, reach) } else { reach };
+        }
+    }
     aabb.loosened(limit + N::lit(8.0) * N::EPSILON * reach)
 }
 

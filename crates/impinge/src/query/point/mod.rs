@@ -32,8 +32,8 @@ pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
 use super::composite::{Near, PartPoint};
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space};
-use crate::shape::{CompositeShape, FeatureId, Geometry, Shape};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +182,7 @@ fn placed<N: Real, const D: usize>(
 
 /// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
 /// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
+#[inline]
 pub(crate) fn project<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
     pose: &Pose<N, D>,
@@ -198,6 +199,30 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
     };
     let is_own = solid && nearest.is_inside;
     Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
+}
+
+/// A ball or a box that does not hold the point is certainly farther from it, by more than rounding; false
+/// of other shapes. The point is in the local frame.
+#[inline(always)]
+pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+    farthest: N,
+) -> bool {
+    let (squared, reach) = match shape.0 {
+        Kind::Ball(ball) => (point.coords.norm_squared(), ball.radius() + farthest),
+        Kind::Cuboid(cuboid) => {
+            let mut squared = N::ZERO;
+            for axis in 0..D {
+                let gap = max(point[axis].abs() - cuboid.half_extents()[axis], N::ZERO);
+                squared += gap * gap;
+            }
+            (squared, farthest)
+        }
+        _ => return false,
+    };
+    let slack = N::lit(64.0) * N::EPSILON * squared + N::MIN_POSITIVE / N::EPSILON;
+    squared > reach * reach + slack && squared < N::INFINITY
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {

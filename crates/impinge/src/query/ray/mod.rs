@@ -6,12 +6,14 @@
 
 mod ball;
 mod batch;
+mod batch_order;
 mod capsule;
 mod clip;
 mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod passing;
 mod plane;
 mod polytope;
 pub(crate) mod ray2;
@@ -26,6 +28,7 @@ mod triangle3;
 mod volume;
 
 pub use batch::RayBatch;
+pub(crate) use passing::surely_misses;
 pub(crate) use span::Span;
 
 use core::cmp::Ordering;
@@ -252,7 +255,11 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits: &mut [Option<RayIntersection<N, D>>],
     ) {
         let RayBatch { max_time, solid, .. } = *batch;
-        batch.each_in_chunks(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
+        let answer = |ray: &Ray<N, D>| self.cast_local_ray_until(ray, max_time, solid);
+        if self.geometry().as_composite().is_some() && !batch.goes_parallel() {
+            return batch.each_near(hits, answer);
+        }
+        batch.each_in_chunks(hits, answer);
     }
 
     fn local_ray_hits(

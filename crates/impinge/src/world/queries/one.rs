@@ -1,8 +1,8 @@
 //! One question about one object: what the tables reach, compiled in this crate.
 
 use crate::math::{Point, Space};
-use crate::query::point::{holds, project};
-use crate::query::{PointProjection, Ray, RayIntersection, cast_on};
+use crate::query::point::{holds, is_surely_beyond, project};
+use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses};
 use crate::world::Body;
 
 impl<N: Space<D>, const D: usize> Body<N, D> {
@@ -17,21 +17,33 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         let local = ray.inverse_transformed_by(&pose);
         let hit = self.ask(
             #[inline(always)]
-            |shape| cast_on(shape, &local, latest, solid),
+            |shape| {
+                if surely_misses(shape, &local) {
+                    return None;
+                }
+                cast_on(shape, &local, latest, solid)
+            },
         )?;
         Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
     }
 
-    /// The nearest point of the object and its distance; `None` if it is empty.
+    /// The nearest point of the object and its distance; `None` if it is empty, and perhaps if it is beyond
+    /// `farthest`.
     pub(crate) fn project(
         &self,
         point: &Point<N, D>,
         solid: bool,
+        farthest: N,
     ) -> Option<(PointProjection<N, D>, N)> {
         let pose = N::pose(&self.isometry);
         self.ask(
             #[inline(always)]
-            |shape| project(shape, &pose, point, solid),
+            |shape| {
+                if is_surely_beyond(shape, &pose.inverse_point(point), farthest) {
+                    return None;
+                }
+                project(shape, &pose, point, solid)
+            },
         )
     }
 

@@ -121,6 +121,6 @@ fn projection<N: Space<D>, const D: usize>(
     solid: bool,
     farthest: N,
 ) -> Option<(N, PointProjection<N, D>)> {
-    let (found, distance) = (N::tables().world.project)(body, point, solid)?;
+    let (found, distance) = (N::tables().world.project)(body, point, solid, farthest)?;
     (distance <= farthest).then_some((distance, found))
 }

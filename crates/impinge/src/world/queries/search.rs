@@ -1,7 +1,5 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
-use smallvec::SmallVec;
-
 use super::QueryFilter;
 use super::ranking::{Best, Rank, Ranked, Ranking, Room};
 use crate::bounding_volume::{Aabb, Ray};
@@ -115,11 +113,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             }
         }
         probe.visit(&*self.broad_phase, limit, &mut |proposals| {
-            // Gathered first: the objects lie apart from each other, and memory is slow one by one.
-            let mut objects: SmallVec<[_; GROUP]> = SmallVec::new();
-            objects.extend(proposals.iter().map(|one| (self.settled_proposal(one), one.key())));
-            for (object, key) in objects {
-                limit = object.map_or(limit, |object| consider(object, key, limit));
+            for group in proposals.chunks(GROUP) {
+                // Gathered first: the objects lie apart from each other, and memory is slow one by one.
+                let mut objects = [None; GROUP];
+                for (object, one) in objects.iter_mut().zip(group) {
+                    *object = self.settled_proposal(one);
+                }
+                for (object, one) in objects.into_iter().zip(group) {
+                    if let Some(object) = object {
+                        limit = consider(object, one.key(), limit);
+                    }
+                }
             }
             limit
         });

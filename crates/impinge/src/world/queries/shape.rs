@@ -73,9 +73,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
         let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
         let near = around(position, shape).map(|aabb| self.meeting(&aabb, filter));
-        near.into_iter()
-            .flatten()
-            .filter(move |object| separation(&placed, &object.body, N::ZERO).is_some())
+        near.into_iter().flatten().filter(move |object| touches(&placed, &object.body))
     }
 
     /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes
@@ -177,6 +175,15 @@ pub(super) fn around<N: Space<D>, const D: usize>(
 ) -> Option<Aabb<N, D>> {
     let pose = N::pose(position);
     pose.is_finite().then(|| grown(&aabb_at(shape, &pose), N::ZERO))
+}
+
+/// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
+fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &Body<N, D>) -> bool {
+    let pose = N::pose(&body.isometry);
+    body.ask(|shape| {
+        let object = Placed { pose, shape };
+        (N::tables().distance_in_world)(placed, &object, N::ZERO).is_some()
+    })
 }
 
 /// How far a solid is from an object, `None` beyond `limit`.
