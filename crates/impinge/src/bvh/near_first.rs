@@ -13,7 +13,7 @@ use super::kernel::{Kernel, with_kernel};
 use super::slabs::Slabs;
 use super::tree::small;
 use super::triangles::{ShearedLine, Triangles};
-use super::{Block, LANES, Lanes, NONE, Tree};
+use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 
 /// Layers that a tree may have: 2^32 objects make eight.
 const LAYERS: usize = 8;
@@ -231,17 +231,8 @@ impl<const D: usize> Tree<D> {
 
     /// The largest magnitude of a coordinate of the boxes. Right after a refit only.
     pub(crate) fn size(&self) -> f32 {
-        let mut most = 0.0;
-        for bounds in &self.layers[self.layers.len() - 1].bounds {
-            let mut size = 0.0;
-            for axis in 0..D {
-                for x in [bounds.lo[axis].abs(), bounds.hi[axis].abs()] {
-                    size = if x > size { x } else { size };
-                }
-            }
-            most = if size > most && size < f32::INFINITY { size } else { most };
-        }
-        most
+        let top = &self.layers[self.layers.len() - 1].bounds;
+        top.iter().map(Bounds::size).fold(0.0, |most, x| if x > most { x } else { most })
     }
 
     /// The ids in the sixteen slots of each leaf block; [`NONE`] for an empty slot.

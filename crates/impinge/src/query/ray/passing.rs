@@ -52,7 +52,7 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
 }
 
 /// The separating axes of a line and a box, and those of a box that is behind the ray (Gottschalk, Lin
-/// and Manocha, "OBBTree", 1996).
+/// and Manocha, "`OBBTree`", 1996).
 #[inline(always)]
 fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;

@@ -87,11 +87,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; FEW]> = SmallVec::new();
         if aabb.holds_finite_point() {
             self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
-                for proposal in proposals {
-                    if let Some(object) = self.settled_proposal(proposal) {
-                        objects.push(object);
-                    }
-                }
+                let settled = proposals.iter().filter_map(|one| self.settled_proposal(one));
+                settled.for_each(|object| objects.push(object));
                 N::ZERO
             });
         } else {

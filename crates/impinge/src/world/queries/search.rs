@@ -114,19 +114,26 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         probe.visit(&*self.broad_phase, limit, &mut |proposals| {
             for group in proposals.chunks(GROUP) {
-                // Gathered first: the objects lie apart from each other, and memory is slow one by one.
-                let mut objects = [None; GROUP];
-                for (object, one) in objects.iter_mut().zip(group) {
-                    *object = self.settled_proposal(one);
-                }
+                let objects = self.gathered(group);
                 for (object, one) in objects.into_iter().zip(group) {
-                    if let Some(object) = object {
-                        limit = consider(object, one.key(), limit);
-                    }
+                    limit = object.map_or(limit, |object| consider(object, one.key(), limit));
                 }
             }
             limit
         });
+    }
+
+    /// The objects of a few proposals: they lie apart from each other, and memory is slow one by one.
+    #[inline]
+    fn gathered(
+        &self,
+        group: &[Proposal<'_, N, CollisionObjectHandle>],
+    ) -> [Option<&CollisionObject<N, D, T>>; GROUP] {
+        let mut objects = [None; GROUP];
+        for (object, one) in objects.iter_mut().zip(group) {
+            *object = self.settled_proposal(one);
+        }
+        objects
     }
 
     /// The object of a proposal, if it is where it was at the last update.
