@@ -29,10 +29,10 @@ use crate::query::separation::{
 use crate::query::tiles::TiledParts;
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
-    Placed, Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world, contacts2,
-    contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3, tangents2, tangents3,
-    update_box_pairs2, update_box_pairs3, witness_feature2, witness_feature3, witness_features2,
-    witness_features3, witness_in_world,
+    Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
+    contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
+    tangents2, tangents3, update_box_pairs2, update_box_pairs3, witness_feature2, witness_feature3,
+    witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -172,6 +172,10 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) set_shape: fn(&mut Body<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
     pub(crate) set_query: fn(&mut Body<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
     pub(crate) flush: FlushFn<N, D>,
+    /// A ray, a point and a point once more, against one object.
+    pub(crate) cast_ray: CastRayFn<N, D>,
+    pub(crate) project: ProjectFn<N, D>,
+    pub(crate) holds: fn(&Body<N, D>, &Point<N, D>) -> bool,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) pair_stopped:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32, &mut Events),
@@ -183,6 +187,10 @@ type SetIsometryFn<N, const D: usize> =
     fn(&mut Body<N, D>, &mut ChangeList<N, D>, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
     fn(&mut Body<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
+type CastRayFn<N, const D: usize> =
+    fn(&Body<N, D>, &Ray<N, D>, N, bool) -> Option<RayIntersection<N, D>>;
+type ProjectFn<N, const D: usize> =
+    fn(&Body<N, D>, &Point<N, D>, bool, N) -> Option<(PointProjection<N, D>, N)>;
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {
@@ -192,6 +200,9 @@ impl<N: Space<D>, const D: usize> WorldTables<N, D> {
             set_shape: Body::set_shape,
             set_query: Body::set_query,
             flush: Body::flush,
+            cast_ray: Body::cast_ray,
+            project: Body::project,
+            holds: Body::holds,
             pair_started: DefaultNarrowPhase::pair_started,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,

@@ -69,8 +69,8 @@ fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     assert!(fresh <= bound, "{fresh} bytes for an object that sleeps, {bound} are allowed");
 }
 
-/// In space with `f32`: 88 bytes are the record of the user's words (pose 28, shape 16, query 12, groups
-/// 12, handles 16, its state 4), 48 the volume and the loosened one, 24 the box in the tree, about 45 the
+/// In space with `f32`: 96 bytes are the record of the user's words (pose 28, shape 16 and its numbers 12,
+/// query 8, groups 12, handles 16, its state 4), 48 the volume and the loosened one, 24 the box in the tree, about 45 the
 /// numbers that join these; an eighth is for growth.
 #[test]
 fn an_object_that_sleeps_takes_256_bytes() {

@@ -180,7 +180,7 @@ fn worlds<N: Space<D>, const D: usize>(place: impl Fn(Vector<N, D>) -> N::Isomet
     }
     world.update();
     let start = |random: &mut Random| Point::from(random.vector::<N, D>() * N::lit(25.0));
-    let rays: Vec<_> = (0..200).map(|_| Ray::new(start(random), random.vector())).collect();
+    let rays: Vec<_> = (0..600).map(|_| Ray::new(start(random), random.vector())).collect();
     let (batch, filter) = (RayBatch::new(&rays).until(N::lit(30.0)), QueryFilter::new());
     let mut hits = vec![None; rays.len()];
     world.cast_rays(&batch, &filter, &mut hits);

@@ -4,10 +4,10 @@ use core::fmt::Debug;
 
 use super::error::or_panic;
 use super::handle::Handles;
-use super::proposal::{Proposal, Proposals, Proxies};
+use super::proposal::{Proposal, Proxies};
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle, VisitProposals};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
-use crate::bvh::{Bounds, Lanes};
+use crate::bvh::{Bounds, GROUP, Lanes};
 use crate::math::{Point, Real, Space, Vector};
 use crate::memory::Recent;
 use crate::pairs::unpack;
@@ -149,8 +149,14 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
     }
 
-    fn proposals(&self, found: &[(u32, N)]) -> Proposals<'_, N, T> {
-        found.iter().map(|&(id, key)| Proposal::kept(&self.proxies, id, key)).collect()
+    /// Hands on what a search found. One at least, and as many as it finds at once at most.
+    #[inline]
+    fn propose(&self, found: &[(u32, N)], visit: &mut VisitProposals<'_, N, T>) -> N {
+        let mut proposals = [Proposal::kept(&self.proxies, found[0].0, found[0].1); GROUP];
+        for (proposal, &(id, key)) in proposals.iter_mut().zip(found) {
+            *proposal = Proposal::kept(&self.proxies, id, key);
+        }
+        visit(&proposals[..found.len()])
     }
 
     fn push_all<'a>(&'a self, ids: &[u32], out: &mut Vec<&'a T>) {
@@ -279,7 +285,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         max_time: N,
         visit: &mut VisitProposals<'_, N, T>,
     ) {
-        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        let mut by_ids = |found: &[(u32, N)]| self.propose(found, visit);
         self.finder.visit_ray_roughly(ray, max_time, &mut by_ids);
     }
 
@@ -294,7 +300,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         max_distance: N,
         visit: &mut VisitProposals<'_, N, T>,
     ) {
-        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        let mut by_ids = |found: &[(u32, N)]| self.propose(found, visit);
         self.finder.visit_nearest_roughly(bv, max_distance, &mut by_ids);
     }
 
@@ -305,7 +311,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         max_time: N,
         visit: &mut VisitProposals<'_, N, T>,
     ) {
-        let mut by_ids = |found: &[(u32, N)]| visit(&self.proposals(found));
+        let mut by_ids = |found: &[(u32, N)]| self.propose(found, visit);
         let sweep = Sweep { aabb: *bv, velocity: *velocity };
         self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }

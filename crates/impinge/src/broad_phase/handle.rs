@@ -29,6 +29,7 @@ impl ProxyHandle {
     /// The index in the table of handles: dense, and in order of creation until the first removal.
     ///
     /// Unique among the objects present at one time, but used again after a removal.
+    #[inline]
     #[must_use]
     pub const fn uid(&self) -> usize {
         self.index as usize

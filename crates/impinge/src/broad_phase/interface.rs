@@ -151,7 +151,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     }
 
     /// [`Self::visit_ray`] in no promised order, several objects at a time, for those who sort what they
-    /// find: near ones first is better. The default is [`Self::visit_ray`], one at a time, with
+    /// find and test what lies in the volumes: near ones first is better, and objects whose volumes the ray
+    /// passes closely may be among them. The default is [`Self::visit_ray`], one at a time, with
     /// zero for all keys.
     ///
     /// A broad phase around another that gives handles of its own makes proposals of its own by

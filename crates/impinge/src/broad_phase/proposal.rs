@@ -1,28 +1,39 @@
 //! Objects that a search proposes.
 
-use smallvec::SmallVec;
-
 use super::dbvt::data_of;
 use crate::math::Real;
 
 /// The data of a broad phase's objects, by index of the handle; `None` where there is no object.
 pub(super) type Proxies<T> = Vec<Option<T>>;
 
-/// A few of them, as many as a search hands out at once.
-pub(super) type Proposals<'a, N, T> = SmallVec<[Proposal<'a, N, T>; 4]>;
-
 /// An object that a search proposes. What is kept about it is fetched when it is asked for: memory is
 /// slow.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Proposal<'a, N, T> {
     source: Source<'a, T>,
     key: N,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 enum Source<'a, T> {
     Data(&'a T),
     Kept(&'a [Option<T>], u32),
+}
+
+impl<N: Copy, T> Copy for Proposal<'_, N, T> {}
+
+impl<N: Copy, T> Clone for Proposal<'_, N, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Source<'_, T> {}
+
+impl<T> Clone for Source<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 impl<'a, N: Real, T> Proposal<'a, N, T> {

@@ -37,7 +37,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.search().by_time(&Sweep::along(ray), max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no exact order, but near ones first, and several at a time.
+    /// [`Self::visit_ray`] in no exact order, but near ones first, several at a time, and with some whose
+    /// loosened boxes alone are met; times may be a little less than those of entry.
     pub fn visit_ray_roughly(&self, ray: &Ray<N, D>, max_time: N, visit: &mut VisitGroup<'_, N>) {
         self.search().groups_by_time(&Sweep::along(ray), max_time, visit);
     }

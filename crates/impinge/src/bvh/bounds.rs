@@ -85,6 +85,16 @@ impl<const D: usize> Bounds<D> {
         all
     }
 
+    /// The largest magnitude of a coordinate; zero if a face is no finite number.
+    #[inline]
+    pub(super) fn size(&self) -> f32 {
+        let mut most = 0.0;
+        for face in self.lo.iter().chain(&self.hi) {
+            most = if face.abs() > most { face.abs() } else { most };
+        }
+        if self.is_finite() { most } else { 0.0 }
+    }
+
     /// The box without the points that no finite box reaches: equivalent as a query to a tree.
     ///
     /// NaN, which is nowhere, becomes empty.

@@ -34,8 +34,13 @@ impl<const D: usize> Gaps<D> {
     ///
     /// One with coordinates beyond what `f32` can subtract is near everything.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
-        let faces = aabb.mins().iter().chain(aabb.maxs().iter()).filter(|x| x.is_finite_number());
-        let reach = faces.map(|x| x.as_f32().abs()).fold(size, f32::max);
+        let mut reach = size;
+        for axis in 0..D {
+            for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
+                let magnitude = face.as_f32().abs();
+                reach = if face.is_finite_number() { f32::max(reach, magnitude) } else { reach };
+            }
+        }
         let lost = N::MIN_POSITIVE.as_f64();
         if reach < LARGEST {
             let Bounds { lo, hi } = Bounds::enclosing(aabb).clamped();
@@ -56,6 +61,14 @@ impl<const D: usize> Gaps<D> {
         let squared = (distance * scale) * (distance * scale) + self.lost * scale * scale;
         let slack = f64::from(SQUARE * f32::EPSILON);
         f32::min((squared + squared * slack) as f32 + f32::MIN_POSITIVE, f32::MAX)
+    }
+
+    /// A key of a block as a distance of the caller's, or a little less.
+    pub(crate) fn distance<N: Real>(&self, key: f32) -> N {
+        let (key, scale) = (f64::from(key), f64::from(self.scale));
+        let slack = f64::from(2.0 * SQUARE * f32::EPSILON);
+        let surely = key - key * slack - self.lost * scale * scale - f64::from(f32::MIN_POSITIVE);
+        N::lit(if surely > 0.0 { surely.sqrt() / scale } else { 0.0 })
     }
 }
 
@@ -200,6 +213,8 @@ mod tests {
                     assert!(!is_near || mask >> lane & 1 == 1, "{aabb:?} {exact:?}: {distance}");
                     let bound = f32::from_bits(key);
                     assert!(!is_near || bound <= gaps.limit(distance), "a bound of {distance}");
+                    let known = gaps.distance::<f32>(bound);
+                    assert!(!is_near || known <= distance, "{known} is above {distance}");
                     near += usize::from(is_near);
                 }
             }

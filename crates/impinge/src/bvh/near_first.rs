@@ -13,7 +13,7 @@ use super::kernel::{Kernel, with_kernel};
 use super::slabs::Slabs;
 use super::tree::small;
 use super::triangles::{ShearedLine, Triangles};
-use super::{Block, LANES, Lanes, NONE, Tree};
+use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 
 /// Layers that a tree may have: 2^32 objects make eight.
 const LAYERS: usize = 8;
@@ -91,15 +91,16 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects of the trees that the moving box may touch by `limit`, several at a
-    /// time, near ones first but in no exact order; `found` returns the new limit, which never grows.
+    /// Calls `found` with the objects of the trees that the moving box may touch by `limit` and their keys,
+    /// several at a time, near ones first but in no exact order; `found` returns the new limit, which never
+    /// grows.
     /// Limits are in the units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
         slabs: &Slabs<D>,
         limit: f32,
-        found: impl FnMut(&[u32]) -> f32,
+        found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         self.visit_near_first(trees, slabs, limit, found);
     }
@@ -111,7 +112,7 @@ impl Lanes {
         trees: &[&Tree<D>],
         gaps: &Gaps<D>,
         limit: f32,
-        found: impl FnMut(&[u32]) -> f32,
+        found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         self.visit_near_first(trees, gaps, limit, found);
     }
@@ -122,7 +123,7 @@ impl Lanes {
         trees: &[&Tree<D>],
         probe: &impl Probe<D>,
         mut limit: f32,
-        mut found: impl FnMut(&[u32]) -> f32,
+        mut found: impl FnMut(&[(u32, f32)]) -> f32,
     ) {
         with_kernel!(self, kernel => {
             for tree in trees.iter().filter(|tree| !tree.is_empty()) {
@@ -141,12 +142,13 @@ impl<const D: usize> Tree<D> {
         kernel: K,
         probe: &impl Probe<D>,
         limit: f32,
-        found: &mut impl FnMut(&[u32]) -> f32,
+        found: &mut impl FnMut(&[(u32, f32)]) -> f32,
     ) -> f32 {
         self.descend(
             kernel,
             probe,
             limit,
+            |block| self.touch_leaf(block),
             #[inline(always)]
             |block, limit| {
                 // At once, so that memory has both ready at the same time.
@@ -158,13 +160,15 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Calls `leaf` with leaf blocks in which a key may be at most the limit, which it returns anew.
-    /// Opens each block at most once.
+    /// Opens each block at most once. Calls `touch` with leaf blocks that may come next, so that they are on
+    /// their way from memory while those before are looked at.
     #[inline(always)]
     fn descend<K: Kernel>(
         &self,
         kernel: K,
         probe: &impl Probe<D>,
         mut limit: f32,
+        touch: impl Fn(u32),
         mut leaf: impl FnMut(u32, f32) -> f32,
     ) -> f32 {
         let top = self.layers.len() - 1;
@@ -177,7 +181,12 @@ impl<const D: usize> Tree<D> {
             match path[layer].next(kernel, limit) {
                 None if layer == top => return limit,
                 None => layer += 1,
-                Some(block) if layer == 1 => limit = leaf(block, limit),
+                Some(block) if layer == 1 => {
+                    if path[1].mask != 0 {
+                        touch(path[1].first + path[1].mask.trailing_zeros());
+                    }
+                    limit = leaf(block, limit);
+                }
                 Some(block) => {
                     layer -= 1;
                     path[layer] = self.opened(kernel, probe, (layer, block), limit);
@@ -201,6 +210,17 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
+    /// Reads something of a leaf block.
+    #[inline(always)]
+    fn touch_leaf(&self, block: u32) {
+        let block = block as usize;
+        let Block { lo, hi } = &self.layers[0].blocks[block];
+        for axis in 0..D {
+            core::hint::black_box((lo[axis][0], hi[axis][0]));
+        }
+        core::hint::black_box(self.ids[block * LANES]);
+    }
+
     /// Without the lanes that have no block below them.
     #[inline(always)]
     fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
@@ -212,9 +232,7 @@ impl<const D: usize> Tree<D> {
     /// The largest magnitude of a coordinate of the boxes. Right after a refit only.
     pub(crate) fn size(&self) -> f32 {
         let top = &self.layers[self.layers.len() - 1].bounds;
-        let all = top.iter().filter(|bounds| bounds.is_finite());
-        let faces = all.flat_map(|bounds| bounds.lo.iter().chain(&bounds.hi));
-        faces.fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
+        top.iter().map(Bounds::size).fold(0.0, |most, x| if x > most { x } else { most })
     }
 
     /// The ids in the sixteen slots of each leaf block; [`NONE`] for an empty slot.
@@ -230,17 +248,18 @@ fn hand_out<K: Kernel>(
     ids: &[u32; LANES],
     open: &mut Open,
     mut limit: f32,
-    found: &mut impl FnMut(&[u32]) -> f32,
+    found: &mut impl FnMut(&[(u32, f32)]) -> f32,
 ) -> f32 {
     while open.mask != 0 {
-        let (mut group, mut count) = ([NONE; GROUP], 0);
+        let (mut group, mut count) = ([(NONE, 0.0); GROUP], 0);
         while count < GROUP {
             let Some(slot) = open.next(kernel, limit) else {
                 open.mask = 0;
                 break;
             };
-            group[count] = ids[(slot - open.first) as usize % LANES];
-            count += usize::from(group[count] != NONE);
+            let lane = (slot - open.first) as usize % LANES;
+            group[count] = (ids[lane], open.keys[lane]);
+            count += usize::from(ids[lane] != NONE);
         }
         if count > 0 {
             limit = found(&group[..count]);
@@ -286,6 +305,7 @@ impl Tree<3> {
             kernel,
             &probe.slabs,
             limit,
+            |block| triangles[block as usize].touch(),
             #[inline(always)]
             |block: u32, mut limit: f32| {
                 let own = &triangles[block as usize];

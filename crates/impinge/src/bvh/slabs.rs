@@ -37,8 +37,13 @@ impl<const D: usize> Slabs<D> {
         let speed = max_component(velocity);
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
-        let faces = moving.mins().iter().chain(moving.maxs().iter());
-        let reach = faces.map(|x| x.as_f32().abs()).filter(|x| x.is_finite()).fold(size, f32::max);
+        let mut reach = size;
+        for axis in 0..D {
+            for face in [moving.mins()[axis], moving.maxs()[axis]] {
+                let face = face.as_f32().abs();
+                reach = if face > reach && face < f32::INFINITY { face } else { reach };
+            }
+        }
         let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
         let low = |axis: usize| moving.mins()[axis].as_f32_below() - pad;
         let high = |axis: usize| moving.maxs()[axis].as_f32_above() + pad;
@@ -61,6 +66,13 @@ impl<const D: usize> Slabs<D> {
         let is_time = scaled >= 0.0;
         let slack = f64::from(QUOTIENT * f32::EPSILON);
         if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
+    }
+
+    /// A key of a block as a time of the caller's, or a little less.
+    pub(crate) fn time<N: Real>(&self, key: f32) -> N {
+        let slack = f64::from(2.0 * QUOTIENT * f32::EPSILON);
+        let exact = f64::from(key) / self.unit;
+        N::lit(exact - exact * slack)
     }
 
     /// The faces of a block that the box meets first on an axis, and the others.
@@ -183,6 +195,7 @@ mod tests {
                 if let Some((enter, _)) = hit {
                     assert!(padded >> lane & 1 == 1, "{origin} {dir} {exact:?}");
                     assert!(key <= slabs.limit(enter), "a bound of the time");
+                    assert!(slabs.time::<f32>(key) <= enter, "as the caller counts");
                     hits += 1;
                 }
             }

@@ -32,7 +32,7 @@ pub use ids::IdAllocator;
 pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;
 pub use query_type::GeometricQueryType;
-pub(crate) use query_type::PairQuery;
+pub(crate) use query_type::{PackedQuery, PairQuery};
 pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,

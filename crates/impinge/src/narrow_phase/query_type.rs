@@ -63,9 +63,41 @@ impl<N: Real> GeometricQueryType<N> {
     }
 }
 
+/// A query type in less memory: its numbers, and −1 for the second of one that asks for proximity. No
+/// number of a query type is negative.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PackedQuery<N: Real>([N; 2]);
+
+impl<N: Real> PackedQuery<N> {
+    pub(crate) fn new(query: GeometricQueryType<N>) -> Self {
+        match query {
+            GeometricQueryType::Contacts(linear, angular) => Self([linear, angular]),
+            GeometricQueryType::Proximity(margin) => Self([margin, -N::ONE]),
+        }
+    }
+
+    /// The query type.
+    #[inline]
+    pub(crate) fn get(self) -> GeometricQueryType<N> {
+        let [first, second] = self.0;
+        if second < N::ZERO {
+            return GeometricQueryType::Proximity(first);
+        }
+        GeometricQueryType::Contacts(first, second)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn packed_and_unpacked() {
+        use GeometricQueryType::{Contacts, Proximity};
+        for query in [Contacts(0.0, 0.0), Contacts(0.5_f32, 2.0), Proximity(0.0), Proximity(3.0)] {
+            assert_eq!(PackedQuery::new(query).get(), query);
+        }
+    }
 
     #[test]
     fn sums_and_precedence() {

@@ -115,7 +115,14 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
 
     /// [`Self::by_time`] in no exact order, but near ones first.
     pub(crate) fn near_first(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
-        self.groups_by_time(sweep, limit, one_by_one(limit, found));
+        let Some(slabs) = self.slabs(sweep) else { return };
+        let Sweep { aabb, velocity } = sweep;
+        let enter = |own: &Aabb<N, D>| own.sweep_interval(aabb, velocity).map(|(enter, _)| enter);
+        let mut within = self.within(limit, enter, found);
+        let first = self.unbounded.iter().fold(limit, |_, &id| within(id));
+        self.lanes.visit_along(&self.trees, &slabs, slabs.limit(first), |near| {
+            slabs.limit(near.iter().fold(limit, |_, &(id, _)| within(id)))
+        });
     }
 
     /// [`Self::by_distance`] in no exact order, but near ones first.
@@ -125,67 +132,87 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         limit: N,
         found: impl FnMut(u32, N) -> N,
     ) {
-        self.groups_by_distance(aabb, limit, one_by_one(limit, found));
-    }
-
-    /// [`Self::near_first`] with several objects and their times at once, all of which were within the
-    /// limit before.
-    pub(crate) fn groups_by_time(
-        &self,
-        sweep: &Sweep<N, D>,
-        limit: N,
-        found: impl FnMut(&[(u32, N)]) -> N,
-    ) {
-        let Sweep { aabb, velocity } = sweep;
-        let is_path = velocity.iter().all(|x| x.is_finite_number());
-        if !is_path || !aabb.holds_finite_point() {
-            return;
-        }
-        let enter = |own: &Aabb<N, D>| own.sweep_interval(aabb, velocity).map(|(enter, _)| enter);
-        let mut within = self.within(limit, enter, found);
-        let first = self.unbounded.chunks(GROUP).fold(limit, |_, ids| within(ids));
-        let slabs = Slabs::new(aabb, velocity, self.size());
-        let first = slabs.limit(first);
-        self.lanes.visit_along(&self.trees, &slabs, first, |ids| slabs.limit(within(ids)));
-    }
-
-    /// [`Self::nearest_first`] with several objects and their distances at once, all of which were within
-    /// the limit before.
-    pub(crate) fn groups_by_distance(
-        &self,
-        aabb: &Aabb<N, D>,
-        limit: N,
-        found: impl FnMut(&[(u32, N)]) -> N,
-    ) {
         if !aabb.holds_finite_point() {
             return;
         }
         let distance = |own: &Aabb<N, D>| Some(own.distance_to_aabb(aabb));
         let mut within = self.within(limit, distance, found);
-        let first = self.unbounded.chunks(GROUP).fold(limit, |_, ids| within(ids));
         let gaps = Gaps::new(aabb, self.size());
-        let first = gaps.limit(first);
-        self.lanes.visit_around(&self.trees, &gaps, first, |ids| gaps.limit(within(ids)));
+        let first = self.unbounded.iter().fold(limit, |_, &id| within(id));
+        self.lanes.visit_around(&self.trees, &gaps, gaps.limit(first), |near| {
+            gaps.limit(near.iter().fold(limit, |_, &(id, _)| within(id)))
+        });
     }
 
-    /// Hands on those of a few objects whose keys are within the limit; returns the new limit.
+    /// The objects whose boxes the trees propose to [`Self::near_first`], several at a time, each with a
+    /// time not after that of its box: for those who test what lies in the boxes, which tells all.
+    pub(crate) fn groups_by_time(
+        &self,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        mut found: impl FnMut(&[(u32, N)]) -> N,
+    ) {
+        let Some(slabs) = self.slabs(sweep) else { return };
+        let mut lowest = self.first_unbounded(limit, &mut found);
+        let first = slabs.limit(lowest);
+        self.lanes.visit_along(&self.trees, &slabs, first, |proposed| {
+            let (group, count) = converted(proposed, |key| slabs.time(key));
+            lowest = min(lowest, found(&group[..count]));
+            slabs.limit(lowest)
+        });
+    }
+
+    /// The objects whose boxes the trees propose to [`Self::nearest_first`], as
+    /// [`Self::groups_by_time`].
+    pub(crate) fn groups_by_distance(
+        &self,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        mut found: impl FnMut(&[(u32, N)]) -> N,
+    ) {
+        if !aabb.holds_finite_point() {
+            return;
+        }
+        let mut lowest = self.first_unbounded(limit, &mut found);
+        let gaps = Gaps::new(aabb, self.size());
+        let first = gaps.limit(lowest);
+        self.lanes.visit_around(&self.trees, &gaps, first, |proposed| {
+            let (group, count) = converted(proposed, |key| gaps.distance(key));
+            lowest = min(lowest, found(&group[..count]));
+            gaps.limit(lowest)
+        });
+    }
+
+    /// Hands on the unbounded objects; returns the new limit.
+    fn first_unbounded(&self, limit: N, found: &mut impl FnMut(&[(u32, N)]) -> N) -> N {
+        self.unbounded.chunks(GROUP).fold(limit, |limit, ids| {
+            let mut group = [(0, N::ZERO); GROUP];
+            for (one, &id) in group.iter_mut().zip(ids) {
+                one.0 = id;
+            }
+            min(limit, found(&group[..ids.len()]))
+        })
+    }
+
+    /// The moving box; `None` if it goes nowhere that is finite.
+    fn slabs(&self, sweep: &Sweep<N, D>) -> Option<Slabs<D>> {
+        let Sweep { aabb, velocity } = sweep;
+        let is_path = velocity.iter().all(|x| x.is_finite_number());
+        let moves = is_path && aabb.holds_finite_point();
+        moves.then(|| Slabs::new(aabb, velocity, self.size()))
+    }
+
+    /// Hands on an object if its key is within the limit; returns the new limit.
     fn within(
         &self,
         limit: N,
         key: impl Fn(&Aabb<N, D>) -> Option<N>,
-        mut found: impl FnMut(&[(u32, N)]) -> N,
-    ) -> impl FnMut(&[u32]) -> N {
+        mut found: impl FnMut(u32, N) -> N,
+    ) -> impl FnMut(u32) -> N {
         let mut lowest = limit;
-        move |ids| {
-            let (mut near, mut count) = ([(0, N::ZERO); GROUP], 0);
-            for &id in ids {
-                if let Some(key) = key(&self.exact[id as usize]).filter(|key| *key <= lowest) {
-                    near[count] = (id, key);
-                    count += 1;
-                }
-            }
-            if count > 0 {
-                lowest = min(lowest, found(&near[..count]));
+        move |id| {
+            if let Some(key) = key(&self.exact[id as usize]).filter(|key| *key <= lowest) {
+                lowest = min(lowest, found(id, key));
             }
             lowest
         }
@@ -239,20 +266,17 @@ impl<N: Real> Best<N> {
     }
 }
 
-/// Hands on a few objects one after another, as long as their keys are within the limit.
-fn one_by_one<N: Real>(
-    limit: N,
-    mut found: impl FnMut(u32, N) -> N,
-) -> impl FnMut(&[(u32, N)]) -> N {
-    let mut lowest = limit;
-    move |group| {
-        for &(id, key) in group {
-            if key <= lowest {
-                lowest = min(lowest, found(id, key));
-            }
-        }
-        lowest
+/// A few objects with their keys as the caller counts, and how many.
+#[inline(always)]
+fn converted<N: Real>(
+    proposed: &[(u32, f32)],
+    key: impl Fn(f32) -> N,
+) -> ([(u32, N); GROUP], usize) {
+    let mut group = [(0, N::ZERO); GROUP];
+    for (one, &(id, bound)) in group.iter_mut().zip(proposed) {
+        *one = (id, key(bound));
     }
+    (group, proposed.len())
 }
 
 fn is_finite<N: Real, const D: usize>(ray: &Ray<N, D>) -> bool {

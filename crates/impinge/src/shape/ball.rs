@@ -34,6 +34,11 @@ impl<N: Real> Ball<N> {
         Ok(Self { radius: size("the radius", radius)? })
     }
 
+    /// A ball of a radius that was one of a ball before.
+    pub(super) const fn of_radius(radius: N) -> Self {
+        Self { radius }
+    }
+
     /// The radius.
     #[inline]
     #[must_use]

@@ -51,6 +51,11 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         Ok(Self { half_extents })
     }
 
+    /// A box of half extents that were those of a box before.
+    pub(super) const fn reaching(half_extents: Vector<N, D>) -> Self {
+        Self { half_extents }
+    }
+
     /// Half the size along each axis.
     #[inline]
     #[must_use]

@@ -6,8 +6,10 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
 use crate::math::{Pose, Real, Space, max};
 use crate::memory::Look;
-use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
-use crate::shape::{Shape, ShapeHandle};
+use crate::narrow_phase::{
+    CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable, PackedQuery,
+};
+use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 
 /// The broad phase of a world.
 pub(crate) type WorldBroadPhase<N, const D: usize> =
@@ -21,17 +23,22 @@ const PLACE: u32 = SELF_PAIR - 1;
 const GONE: u32 = u32::MAX;
 
 /// An object as the user left it: each fact is kept here and nowhere else, but for what the phases
-/// hold as of the last update. Of `f32` in space 88 bytes, and there are as many as objects.
+/// hold as of the last update. Of `f32` in space 96 bytes, and there are as many as objects.
+///
+/// What queries read stands side by side, the rest at both ends.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(crate) struct Body<N: Space<D>, const D: usize> {
-    pub(crate) handle: CollisionObjectHandle,
-    pub(crate) proxy: ProxyHandle,
-    pub(crate) isometry: N::Isometry,
     pub(crate) shape: ShapeHandle<N, D>,
-    pub(crate) query: GeometricQueryType<N>,
-    pub(crate) groups: CollisionGroups,
+    pub(crate) isometry: N::Isometry,
+    /// The numbers of the shape, if they are all that there is.
+    solid: Compact<N, D>,
+    pub(crate) proxy: ProxyHandle,
     /// [`SELF_PAIR`] and a place in the list of changes.
     state: u32,
+    pub(crate) handle: CollisionObjectHandle,
+    pub(crate) groups: CollisionGroups,
+    pub(crate) query: PackedQuery<N>,
 }
 
 /// What happened to an object since the last update.
@@ -107,9 +114,20 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         aabb_at(&*self.shape, &N::pose(&self.isometry))
     }
 
+    /// See [`GeometricQueryType::query_limit`].
+    pub(crate) fn query_limit(&self) -> N {
+        self.query.get().query_limit()
+    }
+
+    /// Asks the shape, which need not be fetched if its numbers are at hand.
+    #[inline(always)]
+    pub(crate) fn ask<R>(&self, question: impl FnOnce(Geometry<'_, N, D>) -> R) -> R {
+        self.solid.ask(&self.shape, question)
+    }
+
     /// The volume for the broad phase.
     pub(crate) fn volume(&self) -> Aabb<N, D> {
-        grown(&self.aabb(), self.query.query_limit())
+        grown(&self.aabb(), self.query_limit())
     }
 
     /// What the narrow phase reads of the object.
@@ -118,7 +136,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
             handle: self.handle,
             isometry: self.isometry,
             shape: self.shape.clone(),
-            query: self.query,
+            query: self.query.get(),
         }
     }
 
@@ -141,12 +159,13 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
     }
 
     pub(crate) fn set_shape(&mut self, list: &mut ChangeList<N, D>, shape: ShapeHandle<N, D>) {
+        self.solid = Compact::of(&shape);
         self.shape = shape;
         list.note_row(self);
     }
 
     pub(crate) fn set_query(&mut self, list: &mut ChangeList<N, D>, query: GeometricQueryType<N>) {
-        self.query = query;
+        self.query = PackedQuery::new(query);
         list.note_row(self);
     }
 
@@ -173,7 +192,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
             readers.algorithms.push(self.index());
         }
         if changes.volume {
-            let volume = grown(&aabb, self.query.query_limit());
+            let volume = grown(&aabb, self.query_limit());
             readers.broad_phase.deferred_set_bounding_volume(self.proxy, volume);
         }
         if changes.groups {
@@ -196,9 +215,12 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
 /// solids are as near as the sum of both limits; and by a few units in the last place of what that makes
 /// of it, because the box, the sum and the distance that it is compared with are rounded.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
-    let faces = aabb.mins().iter().chain(aabb.maxs().iter());
-    let finite = faces.filter(|x| x.is_finite_number());
-    let reach = finite.fold(limit, |reach, x| max(x.abs(), reach));
+    let mut reach = limit;
+    for axis in 0..D {
+        for face in [aabb.mins()[axis].abs(), aabb.maxs()[axis].abs()] {
+            reach = if face < N::INFINITY { max(face, reach) } else { reach };
+        }
+    }
     aabb.loosened(limit + N::lit(8.0) * N::EPSILON * reach)
 }
 
@@ -217,7 +239,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         let ObjectRow { handle, isometry, shape, query } = row;
         let aabb = aabb_at(&*shape, &N::pose(&isometry));
         let proxy = proxy(grown(&aabb, query.query_limit()));
-        let mut body = Body { handle, proxy, isometry, shape, query, groups, state: PLACE };
+        let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
+        let mut body = Body { shape, isometry, solid, proxy, state: PLACE, handle, groups, query };
         let entry = self.note(&mut body);
         entry.aabb = aabb;
         entry.changes = Changes { row: true, volume: true, ..Changes::default() };

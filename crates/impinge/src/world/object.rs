@@ -50,8 +50,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
 
     /// What is asked of the object's pairs.
     #[must_use]
-    pub const fn query_type(&self) -> GeometricQueryType<N> {
-        self.body.query
+    pub fn query_type(&self) -> GeometricQueryType<N> {
+        self.body.query.get()
     }
 
     /// The user's data.

@@ -98,8 +98,18 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// The living objects that queries must test themselves and their exact boxes, in no particular
     /// order.
-    pub(super) fn astray(&self) -> impl Iterator<Item = (&Body<N, D>, &Aabb<N, D>)> {
-        self.changes.astray().filter_map(|(index, aabb)| Some((self.body(index)?, aabb)))
+    pub(super) fn astray(&self) -> impl Iterator<Item = (&CollisionObject<N, D, T>, &Aabb<N, D>)> {
+        self.changes.astray().filter_map(|(index, aabb)| Some((self.at(index)?, aabb)))
+    }
+
+    /// The object whose proxy has a number, if it is where it would be expected: objects and proxies are
+    /// numbered alike and lie in that order until some are removed. Then it is found by its index as
+    /// long as the numbers agree.
+    #[inline]
+    pub(super) fn of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
+        let is_its = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
+        let in_order = self.records.get(uid).filter(is_its);
+        in_order.or_else(|| self.at(u32::try_from(uid).ok()?).filter(is_its))
     }
 
     /// The groups of both objects allow the pair.
@@ -265,7 +275,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             || self.table.handle(index) == body.handle
                 && self.table.isometry(index) == &body.isometry
                 && self.table.shape(index).is_same(&body.shape)
-                && self.table.query(index) == body.query
+                && self.table.query(index) == body.query.get()
     }
 
     fn validate_free(&self) -> Result<(), String> {

@@ -32,8 +32,8 @@ pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
 use super::composite::{Near, PartPoint};
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space};
-use crate::shape::{CompositeShape, FeatureId, Shape};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,22 +182,47 @@ fn placed<N: Real, const D: usize>(
 
 /// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
 /// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
+#[inline]
 pub(crate) fn project<N: Space<D>, const D: usize>(
-    shape: &dyn Shape<N, D>,
+    shape: Geometry<'_, N, D>,
     pose: &Pose<N, D>,
     point: &Point<N, D>,
     solid: bool,
 ) -> Option<(PointProjection<N, D>, N)> {
     let local = pose.inverse_point(point);
-    let (nearest, distance) = if let Some(parts) = shape.geometry().as_composite() {
+    let (nearest, distance) = if let Some(parts) = shape.as_composite() {
         let found = (N::tables().nearest_part)(parts, &local, false)?;
         (found.projection(), found.distance.abs())
     } else {
-        let (nearest, _) = shape.project_local_point(&local);
+        let (nearest, _) = (N::tables().surface_point)(shape.0, &local).projection(&local);
         (nearest, length(&(local - nearest.point)))
     };
     let is_own = solid && nearest.is_inside;
     Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
+}
+
+/// A ball or a box that does not hold the point is certainly farther from it, by more than rounding; false
+/// of other shapes. The point is in the local frame.
+#[inline(always)]
+pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+    farthest: N,
+) -> bool {
+    let (squared, reach) = match shape.0 {
+        Kind::Ball(ball) => (point.coords.norm_squared(), ball.radius() + farthest),
+        Kind::Cuboid(cuboid) => {
+            let mut squared = N::ZERO;
+            for axis in 0..D {
+                let gap = max(point[axis].abs() - cuboid.half_extents()[axis], N::ZERO);
+                squared += gap * gap;
+            }
+            (squared, farthest)
+        }
+        _ => return false,
+    };
+    let slack = N::lit(64.0) * N::EPSILON * squared + N::MIN_POSITIVE / N::EPSILON;
+    squared > reach * reach + slack && squared < N::INFINITY
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {
@@ -253,10 +278,19 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
     }
 
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
-        match self.geometry().as_composite() {
-            None => self.project_local_point(point).0.is_inside,
-            Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
-        }
+        holds(self.geometry(), point)
+    }
+}
+
+/// See [`PointQuery::contains_local_point`].
+#[inline]
+pub(crate) fn holds<N: Space<D>, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+) -> bool {
+    match shape.as_composite() {
+        None => (N::tables().surface_point)(shape.0, point).projection(point).0.is_inside,
+        Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
     }
 }
 

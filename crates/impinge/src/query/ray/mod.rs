@@ -6,12 +6,14 @@
 
 mod ball;
 mod batch;
+mod batch_order;
 mod capsule;
 mod clip;
 mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod passing;
 mod plane;
 mod polytope;
 pub(crate) mod ray2;
@@ -26,18 +28,19 @@ mod triangle3;
 mod volume;
 
 pub use batch::RayBatch;
+pub(crate) use passing::surely_misses;
 pub(crate) use span::Span;
 
 use core::cmp::Ordering;
 
+use super::PointProjection;
 use super::composite::RayQuestion;
 use super::point::length;
-use super::{PointProjection, PointQuery};
 use crate::bounding_volume::Ray;
 use crate::math::{
     AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max, max_component, min,
 };
-use crate::shape::{FeatureId, Kind, Shape, Triangle};
+use crate::shape::{FeatureId, Geometry, Kind, Shape, Triangle};
 
 /// Where and when a ray first meets a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,20 +246,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
-        if let Some(parts) = self.geometry().as_composite() {
-            let mut first: Option<RayIntersection<N, D>> = None;
-            let question = RayQuestion { ray: *ray, max_time, solid };
-            (N::tables().each_hit)(parts, &question, &mut |hit| {
-                let is_first = first.is_none_or(|first| is_before(&hit, &first));
-                first = if is_first { Some(hit) } else { first };
-                first.map_or(max_time, |first| first.toi)
-            });
-            return first;
-        }
-        let kind = self.geometry().0;
-        let project = |point: &_| may_hold(kind, point).then(|| self.project_local_point(point));
-        let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(kind, ray));
-        hit.filter(|hit| hit.toi <= max_time)
+        cast_on(self.geometry(), ray, max_time, solid)
     }
 
     fn cast_local_rays(
@@ -265,7 +255,11 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits: &mut [Option<RayIntersection<N, D>>],
     ) {
         let RayBatch { max_time, solid, .. } = *batch;
-        batch.each_in_chunks(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
+        let answer = |ray: &Ray<N, D>| self.cast_local_ray_until(ray, max_time, solid);
+        if self.geometry().as_composite().is_some() && !batch.goes_parallel() {
+            return batch.each_near(hits, answer);
+        }
+        batch.each_in_chunks(hits, answer);
     }
 
     fn local_ray_hits(
@@ -305,6 +299,31 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         );
         hits
     }
+}
+
+/// See [`RayCast::cast_local_ray_until`].
+#[inline]
+pub(crate) fn cast_on<N: Space<D>, const D: usize>(
+    geometry: Geometry<'_, N, D>,
+    ray: &Ray<N, D>,
+    max_time: N,
+    solid: bool,
+) -> Option<RayIntersection<N, D>> {
+    let kind = geometry.0;
+    if let Kind::Composite(parts) = kind {
+        let mut first: Option<RayIntersection<N, D>> = None;
+        let question = RayQuestion { ray: *ray, max_time, solid };
+        (N::tables().each_hit)(parts, &question, &mut |hit| {
+            let is_first = first.is_none_or(|first| is_before(&hit, &first));
+            first = if is_first { Some(hit) } else { first };
+            first.map_or(max_time, |first| first.toi)
+        });
+        return first;
+    }
+    let surface_point = |point: &_| (N::tables().surface_point)(kind, point).projection(point);
+    let project = |point: &_| may_hold(kind, point).then(|| surface_point(point));
+    let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(kind, ray));
+    hit.filter(|hit| hit.toi <= max_time)
 }
 
 /// Earlier, or at the same time on a part of lower number. No two hits are on one part, and no time is

@@ -1,7 +1,7 @@
 //! What a solid meets on its way.
 
 use super::QueryFilter;
-use super::ranking::Ranking;
+use super::ranking::Room;
 use super::search::Probe;
 use super::shape::around;
 use crate::math::{Space, Vector, max};
@@ -81,17 +81,16 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
         let Some(cast) = Cast::new(position, velocity, shape, options) else { return Vec::new() };
-        self.ranked_impacts(&cast, Ranking::new(usize::MAX, options.max_time), filter)
+        self.ranked_impacts(&cast, Room::for_all(options.max_time), filter)
     }
 
     fn ranked_impacts(
         &self,
         cast: &Cast<'_, N, D>,
-        ranking: Option<Ranking<N, Impact<N, D>>>,
+        room: Room<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let found =
-            self.rank(&cast.probe, ranking, filter, &|body, latest| cast.impact(body, latest));
+        let found = self.rank(&cast.probe, room, filter, &|body, latest| cast.impact(body, latest));
         found.into_iter().map(|(object, _, impact)| (object, impact)).collect()
     }
 }
@@ -127,13 +126,11 @@ impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
     /// When the solid hits an object, and how; `None` if that is after `latest`.
     fn impact(&self, body: &Body<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
-        let found = impact(&self.moving, &at_rest(body), &options)?;
+        let (pose, at_rest) = (N::pose(&body.isometry), Vector::<N, D>::zeros());
+        let found = body.ask(|shape| {
+            let object = Moving { placed: Placed { pose, shape }, velocity: at_rest };
+            impact(&self.moving, &object, &options)
+        })?;
         Some((found.toi, found))
     }
-}
-
-/// An object, which does not move.
-fn at_rest<N: Space<D>, const D: usize>(body: &Body<N, D>) -> Moving<'_, N, D> {
-    let placed = Placed { pose: N::pose(&body.isometry), shape: body.shape.geometry() };
-    Moving { placed, velocity: Vector::<N, D>::zeros() }
 }

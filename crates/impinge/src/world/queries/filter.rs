@@ -80,14 +80,10 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
     }
 
     /// What is known without the user's record allows the object.
+    #[inline]
     pub(super) fn admits(&self, handle: CollisionObjectHandle, groups: &CollisionGroups) -> bool {
         let can_interact = self.groups.is_none_or(|own| own.can_interact_with_groups(groups));
         can_interact && !self.excluded.contains(&handle)
-    }
-
-    /// There is a question about the user's record.
-    pub(super) const fn has_predicate(&self) -> bool {
-        self.predicate.is_some()
     }
 
     /// The predicate allows the object.

@@ -6,6 +6,7 @@
 
 mod cast;
 mod filter;
+mod one;
 mod point;
 mod ranking;
 mod ray;
@@ -15,13 +16,17 @@ mod shape;
 use core::fmt;
 
 pub use filter::QueryFilter;
+use smallvec::SmallVec;
 
-use super::bodies::{Body, grown};
+use super::bodies::grown;
 use super::{CollisionObject, CollisionWorld};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::ClosestPoints;
+
+/// So many objects are found without memory from the allocator.
+const FEW: usize = 16;
 
 /// An object near what was asked about.
 pub struct Neighbor<'a, N: Space<D>, const D: usize, T> {
@@ -57,20 +62,19 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The objects that the broad phase found and has not lost track of, and those that it has and
     /// that `may` meet the question; allowed by the filter, in order, each once.
     ///
-    /// The test of the question itself comes next: the user's records, which lie elsewhere in memory,
-    /// are for [`Self::record`] of those that pass it.
+    /// The test of the question itself comes next.
     fn candidates<'a>(
         &'a self,
         found: Vec<&CollisionObjectHandle>,
         may: &dyn Fn(&Aabb<N, D>) -> bool,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
-        let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(body, _)| body);
-        let allowed = settled.chain(astray).filter(|body| self.allows(body, filter));
-        let mut bodies: Vec<_> = allowed.collect();
-        bodies.sort_unstable_by_key(|body| body.handle);
-        bodies.into_iter()
+        let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(object, _)| object);
+        let allowed = settled.chain(astray).filter(|object| self.allows(object, filter));
+        let mut objects: Vec<_> = allowed.collect();
+        objects.sort_unstable_by_key(|object| object.body.handle);
+        objects.into_iter()
     }
 
     /// The objects whose volumes meet `aabb`, and few others, allowed by the filter, in order, each once:
@@ -79,40 +83,36 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &'a self,
         aabb: &Aabb<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> impl Iterator<Item = &'a Body<N, D>> + use<'a, N, D, T> {
-        let mut bodies: Vec<&'a Body<N, D>> = Vec::new();
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; FEW]> = SmallVec::new();
         if aabb.holds_finite_point() {
             self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
-                bodies.extend(proposals.iter().filter_map(|one| self.settled_proposal(one)));
+                let settled = proposals.iter().filter_map(|one| self.settled_proposal(one));
+                settled.for_each(|object| objects.push(object));
                 N::ZERO
             });
         } else {
             // No search goes to infinity, where none but unbounded volumes are met.
             let mut found = Vec::new();
             self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
-            bodies.extend(found.into_iter().filter_map(|&handle| self.settled(handle)));
+            objects.extend(found.into_iter().filter_map(|&handle| self.settled(handle)));
         }
         let astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
-        bodies.extend(astray.map(|(body, _)| body));
-        bodies.retain(|body| self.allows(body, filter));
-        bodies.sort_unstable_by_key(|body| body.handle);
-        bodies.into_iter()
-    }
-
-    /// The user's record of a living object.
-    fn record(&self, body: &Body<N, D>) -> Option<&CollisionObject<N, D, T>> {
-        self.objects.get(body.handle)
+        objects.extend(astray.map(|(object, _)| object));
+        objects.retain(|object| self.allows(object, filter));
+        objects.sort_unstable_by_key(|object| object.body.handle);
+        objects.into_iter()
     }
 
     /// The object of a handle of the broad phase, if it lives and is where it was at the last update.
-    fn settled(&self, handle: CollisionObjectHandle) -> Option<&Body<N, D>> {
-        let body = &self.objects.get(handle)?.body;
-        (!self.objects.changes.is_astray(body)).then_some(body)
+    fn settled(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
+        let object = self.objects.get(handle)?;
+        (!self.objects.changes.is_astray(&object.body)).then_some(object)
     }
 
     /// The living objects of which the broad phase does not know where they are, and their volumes.
-    fn astray(&self) -> impl Iterator<Item = (&Body<N, D>, Aabb<N, D>)> {
+    fn astray(&self) -> impl Iterator<Item = (&CollisionObject<N, D, T>, Aabb<N, D>)> {
         let astray = self.objects.astray();
-        astray.map(|(body, aabb)| (body, grown(aabb, body.query.query_limit())))
+        astray.map(|(object, aabb)| (object, grown(aabb, object.body.query_limit())))
     }
 }

@@ -1,12 +1,11 @@
 //! Where a point lies to the objects.
 
-use super::ranking::Ranking;
+use super::ranking::Room;
 use super::search::Probe;
 use super::{Neighbor, QueryFilter};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
-use crate::query::point::project;
-use crate::query::{ClosestPoints, PointProjection, PointQuery};
+use crate::query::{ClosestPoints, PointProjection};
 use crate::world::bodies::Body;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
@@ -32,8 +31,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let near = near(&point).map(|_| self.meeting(&Aabb::at(point), filter));
         near.into_iter()
             .flatten()
-            .filter(move |body| holds(body, &point))
-            .filter_map(move |body| self.record(body))
+            .filter(move |object| (N::tables().world.holds)(&object.body, &point))
     }
 
     /// The nearest point to `point` of any object, and that object; of several the one whose handle comes
@@ -97,11 +95,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<Neighbor<'_, N, D, T>> {
-        let ranking = Ranking::new(count, max_distance);
+        let room = Room { count, limit: max_distance };
         let Some(probe) = near(point) else { return Vec::new() };
-        let found = self.rank(&probe, ranking, filter, &|body, farthest| {
-            projection(body, point, true, farthest)
-        });
+        let found = self
+            .rank(&probe, room, filter, &|body, farthest| projection(body, point, true, farthest));
         let neighbor = |(object, distance, nearest): (_, _, PointProjection<N, D>)| {
             let apart = ClosestPoints::WithinMargin(*point, nearest.point);
             let points = if nearest.is_inside { ClosestPoints::Intersecting } else { apart };
@@ -124,12 +121,6 @@ fn projection<N: Space<D>, const D: usize>(
     solid: bool,
     farthest: N,
 ) -> Option<(N, PointProjection<N, D>)> {
-    let (found, distance) = project(&*body.shape, &N::pose(&body.isometry), point, solid)?;
+    let (found, distance) = (N::tables().world.project)(body, point, solid, farthest)?;
     (distance <= farthest).then_some((distance, found))
-}
-
-/// An object holds a point.
-fn holds<N: Space<D>, const D: usize>(body: &Body<N, D>, point: &Point<N, D>) -> bool {
-    let pose = N::pose(&body.isometry);
-    body.shape.contains_local_point(&pose.inverse_point(point))
 }

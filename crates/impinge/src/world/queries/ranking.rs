@@ -42,6 +42,20 @@ pub(super) trait Rank<N: Real, A> {
     }
 }
 
+/// How many answers are asked for, and up to which key.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room<N: Real> {
+    pub(super) count: usize,
+    pub(super) limit: N,
+}
+
+impl<N: Real> Room<N> {
+    /// All answers with keys up to `limit`.
+    pub(super) const fn for_all(limit: N) -> Self {
+        Self { count: usize::MAX, limit }
+    }
+}
+
 impl<N: Real, A> Ranking<N, A> {
     /// Room for `count` answers with keys up to `limit`; `None` if that is no room at all.
     pub(super) fn new(count: usize, limit: N) -> Option<Self> {

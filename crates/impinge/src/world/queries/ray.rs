@@ -1,11 +1,11 @@
 //! What a ray meets.
 
 use super::QueryFilter;
-use super::ranking::Ranking;
+use super::ranking::Room;
 use super::search::Probe;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
-use crate::query::{Ray, RayBatch, RayCast, RayIntersection};
+use crate::query::{Ray, RayBatch, RayIntersection};
 use crate::world::bodies::Body;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
@@ -28,12 +28,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (ray, mut found) = (*ray, Vec::new());
         self.broad_phase.interferences_with_ray(&ray, &mut found);
         let probe = Probe::Ray(ray);
-        self.candidates(found, &|volume| probe.meets(volume), &groups.into()).filter_map(
-            move |body| {
-                let hit = cast(body, &ray, N::INFINITY, true)?;
-                Some((self.record(body)?, hit))
-            },
-        )
+        self.candidates(found, &|volume| probe.meets(volume), &groups.into())
+            .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
     /// The object that a ray meets first, among those able to interact with `groups`, and where; of
@@ -101,6 +97,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that
     /// `batch.rays[i]` meets first and where, to the bit. The caller keeps the places from frame to frame.
     ///
+    /// Many rays are asked in an order of space, for which a list of eight bytes for each is made, and thus
+    /// faster than one by one.
+    ///
     /// On the calling thread, whatever the features: a world may hold what is not to be shared. Those
     /// that can be shared may be asked from several threads, each with a share of the rays.
     ///
@@ -133,7 +132,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
         hits: &mut [Option<(CollisionObjectHandle, RayIntersection<N, D>)>],
     ) {
-        batch.each(hits, |ray| {
+        batch.each_near(hits, |ray| {
             let found = self.first_ray_hit(ray, batch.max_time, batch.solid, filter);
             found.map(|(object, hit)| (object.handle(), hit))
         });
@@ -151,17 +150,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        self.ranked_hits(ray, Ranking::new(usize::MAX, max_time), solid, filter)
+        self.ranked_hits(ray, Room::for_all(max_time), solid, filter)
     }
 
     fn ranked_hits(
         &self,
         ray: &Ray<N, D>,
-        ranking: Option<Ranking<N, RayIntersection<N, D>>>,
+        room: Room<N>,
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        let found = self.rank(&Probe::Ray(*ray), ranking, filter, &|body, latest| {
+        let found = self.rank(&Probe::Ray(*ray), room, filter, &|body, latest| {
             let hit = cast(body, ray, latest, solid)?;
             Some((hit.toi, hit))
         });
@@ -176,8 +175,5 @@ fn cast<N: Space<D>, const D: usize>(
     latest: N,
     solid: bool,
 ) -> Option<RayIntersection<N, D>> {
-    let pose = N::pose(&body.isometry);
-    let local = ray.inverse_transformed_by(&pose);
-    let local = body.shape.cast_local_ray_until(&local, latest, solid)?;
-    Some(RayIntersection { normal: pose.vector(&local.normal), ..local })
+    (N::tables().world.cast_ray)(body, ray, latest, solid)
 }

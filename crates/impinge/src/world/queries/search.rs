@@ -1,9 +1,7 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
-use smallvec::SmallVec;
-
 use super::QueryFilter;
-use super::ranking::{Best, Rank, Ranked, Ranking};
+use super::ranking::{Best, Rank, Ranked, Ranking, Room};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::Proposal;
 use crate::bvh::GROUP;
@@ -53,6 +51,9 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
 /// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
 type Visit<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
+/// An object and what was found about it.
+type Found<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A);
+
 /// An object and what was found about it, with the key that it was ranked by.
 pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
 
@@ -65,13 +66,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub(super) fn rank<A>(
         &self,
         probe: &Probe<N, D>,
-        ranking: Option<Ranking<N, A>>,
+        room: Room<N>,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
     ) -> Vec<Answer<'_, N, D, T, A>> {
-        let Some(mut ranking) = ranking else { return Vec::new() };
+        let Some(mut ranking) = Ranking::new(room.count, room.limit) else { return Vec::new() };
         self.rank_into(&mut ranking, probe, filter, measure);
-        ranking.into_sorted().into_iter().filter_map(|found| self.answer(found)).collect()
+        ranking.into_sorted().into_iter().map(answer).collect()
     }
 
     /// The best of the answers with keys up to `limit`.
@@ -84,69 +85,85 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> Option<Answer<'_, N, D, T, A>> {
         let mut best = Best::new(limit)?;
         self.rank_into(&mut best, probe, filter, measure);
-        self.answer(best.found()?)
+        best.found().map(answer)
     }
 
-    fn rank_into<A>(
-        &self,
-        ranking: &mut impl Rank<N, A>,
+    fn rank_into<'a, A>(
+        &'a self,
+        ranking: &mut impl Rank<N, Found<'a, N, D, T, A>>,
         probe: &Probe<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
     ) {
         let mut limit = ranking.limit_of_boxes();
-        let mut consider = |body: &Body<N, D>, key: N, limit: N| {
+        let mut consider = |object: &'a CollisionObject<N, D, T>, key: N, limit: N| {
             if key <= limit
-                && self.allows(body, filter)
-                && let Some((key, answer)) = measure(body, ranking.limit())
+                && self.allows(object, filter)
+                && let Some((key, answer)) = measure(&object.body, ranking.limit())
             {
-                ranking.offer(Ranked { key, handle: body.handle, answer });
+                let handle = object.body.handle;
+                ranking.offer(Ranked { key, handle, answer: (object, answer) });
                 return ranking.limit_of_boxes();
             }
             limit
         };
-        for (body, volume) in self.astray() {
+        for (object, volume) in self.astray() {
             if let Some(key) = probe.key(&volume) {
-                limit = consider(body, key, limit);
+                limit = consider(object, key, limit);
             }
         }
         probe.visit(&*self.broad_phase, limit, &mut |proposals| {
-            // Gathered first: the bodies lie apart from each other, and memory is slow one by one.
-            let mut bodies: SmallVec<[_; GROUP]> = SmallVec::new();
-            bodies.extend(proposals.iter().map(|one| (self.settled_proposal(one), one.key())));
-            for (body, key) in bodies {
-                limit = body.map_or(limit, |body| consider(body, key, limit));
+            for group in proposals.chunks(GROUP) {
+                let objects = self.gathered(group);
+                for (object, one) in objects.into_iter().zip(group) {
+                    limit = object.map_or(limit, |object| consider(object, one.key(), limit));
+                }
             }
             limit
         });
     }
 
+    /// The objects of a few proposals: they lie apart from each other, and memory is slow one by one.
+    #[inline]
+    fn gathered(
+        &self,
+        group: &[Proposal<'_, N, CollisionObjectHandle>],
+    ) -> [Option<&CollisionObject<N, D, T>>; GROUP] {
+        let mut objects = [None; GROUP];
+        for (object, one) in objects.iter_mut().zip(group) {
+            *object = self.settled_proposal(one);
+        }
+        objects
+    }
+
     /// The object of a proposal, if it is where it was at the last update.
     ///
-    /// As a rule its proxy has its number, which saves the way through the broad phase's record. A proxy
-    /// with the number of that of a living object is that object's.
+    /// As a rule the number of its proxy tells where it is, which saves the way through the broad phase's
+    /// record. A proxy with the number of that of a living object is that object's.
+    #[inline]
     pub(super) fn settled_proposal(
         &self,
         proposal: &Proposal<'_, N, CollisionObjectHandle>,
-    ) -> Option<&Body<N, D>> {
-        let uid = proposal.uid();
-        let guess = uid.and_then(|uid| self.objects.body(u32::try_from(uid).ok()?));
-        match guess {
-            Some(body) if Some(body.proxy.uid()) == uid => {
-                (!self.objects.changes.is_astray(body)).then_some(body)
-            }
-            _ => self.settled(*proposal.data()),
-        }
+    ) -> Option<&CollisionObject<N, D, T>> {
+        let expected = proposal.uid().and_then(|uid| self.objects.of_proxy(uid));
+        let Some(object) = expected else { return self.settled(*proposal.data()) };
+        (!self.objects.changes.is_astray(&object.body)).then_some(object)
     }
 
-    fn answer<A>(&self, found: Ranked<N, A>) -> Option<Answer<'_, N, D, T, A>> {
-        Some((self.objects.get(found.handle)?, found.key, found.answer))
+    /// The filter allows a living object.
+    #[inline]
+    pub(super) fn allows(
+        &self,
+        object: &CollisionObject<N, D, T>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> bool {
+        filter.admits(object.body.handle, &object.body.groups) && filter.accepts(object)
     }
+}
 
-    /// The filter allows a living object. Only a predicate is worth the way to the user's record, which
-    /// lies elsewhere in memory.
-    pub(super) fn allows(&self, body: &Body<N, D>, filter: &QueryFilter<'_, N, D, T>) -> bool {
-        let accepts = || self.objects.get(body.handle).is_some_and(|object| filter.accepts(object));
-        filter.admits(body.handle, &body.groups) && (!filter.has_predicate() || accepts())
-    }
+fn answer<'a, N: Space<D>, const D: usize, T, A>(
+    ranked: Ranked<N, Found<'a, N, D, T, A>>,
+) -> Answer<'a, N, D, T, A> {
+    let (object, answer) = ranked.answer;
+    (object, ranked.key, answer)
 }

@@ -1,6 +1,6 @@
 //! What lies near a solid, and what it overlaps.
 
-use super::ranking::Ranking;
+use super::ranking::Room;
 use super::search::Probe;
 use super::{Neighbor, QueryFilter};
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -37,9 +37,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let aabb = *aabb;
-        self.meeting(&aabb, filter)
-            .filter(move |body| body.aabb().intersects(&aabb))
-            .filter_map(move |body| self.record(body))
+        self.meeting(&aabb, filter).filter(move |object| object.body.aabb().intersects(&aabb))
     }
 
     /// The objects that touch or overlap a solid, in order of their handles.
@@ -75,10 +73,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
         let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
         let near = around(position, shape).map(|aabb| self.meeting(&aabb, filter));
-        near.into_iter()
-            .flatten()
-            .filter(move |body| separation(&placed, body, N::ZERO).is_some())
-            .filter_map(move |body| self.record(body))
+        near.into_iter().flatten().filter(move |object| touches(&placed, &object.body))
     }
 
     /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes
@@ -158,8 +153,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> Vec<Neighbor<'_, N, D, T>> {
         let Some(aabb) = around(position, shape) else { return Vec::new() };
         let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
-        let ranking = Ranking::new(count, max_distance);
-        let found = self.rank(&Probe::Near(aabb), ranking, filter, &|body, farthest| {
+        let room = Room { count, limit: max_distance };
+        let found = self.rank(&Probe::Near(aabb), room, filter, &|body, farthest| {
             let found = separation(&placed, body, farthest)?;
             Some((max(found.distance, N::ZERO), found))
         });
@@ -182,12 +177,21 @@ pub(super) fn around<N: Space<D>, const D: usize>(
     pose.is_finite().then(|| grown(&aabb_at(shape, &pose), N::ZERO))
 }
 
+/// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
+fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &Body<N, D>) -> bool {
+    let pose = N::pose(&body.isometry);
+    body.ask(|shape| {
+        let object = Placed { pose, shape };
+        (N::tables().distance_in_world)(placed, &object, N::ZERO).is_some()
+    })
+}
+
 /// How far a solid is from an object, `None` beyond `limit`.
 fn separation<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &Body<N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let other = Placed { pose: N::pose(&body.isometry), shape: body.shape.geometry() };
-    (N::tables().separation_in_world)(placed, &other, limit)
+    let pose = N::pose(&body.isometry);
+    body.ask(|shape| (N::tables().separation_in_world)(placed, &Placed { pose, shape }, limit))
 }

@@ -1,0 +1,78 @@
+//! The numbers of a ball or a box without the way to the shape: what lies behind a handle lies elsewhere
+//! in memory.
+
+use super::{Ball, Cuboid, Geometry, Kind, ShapeHandle};
+use crate::math::{Real, Vector};
+
+/// A copy of the numbers of a ball or a box, of which worlds have most; of any other shape only that it
+/// is one.
+///
+/// The half extents of a box; the radius of a ball, then a number below zero; a number below zero first
+/// for any other shape. None of these sizes is negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Compact<N: Real, const D: usize>([N; D]);
+
+impl<N: Real, const D: usize> Compact<N, D> {
+    pub(crate) fn of(shape: &ShapeHandle<N, D>) -> Self {
+        let mut numbers = [-N::ONE; D];
+        if let Some(ball) = shape.as_shape::<Ball<N>>() {
+            numbers[0] = ball.radius();
+        } else if let Some(cuboid) = shape.as_shape::<Cuboid<N, D>>() {
+            numbers = core::array::from_fn(|axis| cuboid.half_extents()[axis]);
+        }
+        Self(numbers)
+    }
+
+    /// Asks the shape, which is `own`; looks at that only if the numbers do not tell all.
+    #[inline(always)]
+    pub(crate) fn ask<R>(
+        &self,
+        own: &ShapeHandle<N, D>,
+        question: impl FnOnce(Geometry<'_, N, D>) -> R,
+    ) -> R {
+        let (ball, cuboid);
+        let geometry = if self.0[0] < N::ZERO {
+            own.geometry()
+        } else if self.0[1] < N::ZERO {
+            ball = Ball::of_radius(self.0[0]);
+            Geometry(Kind::Ball(&ball))
+        } else {
+            cuboid = Cuboid::reaching(Vector::<N, D>::from(self.0));
+            Geometry(Kind::Cuboid(&cuboid))
+        };
+        question(geometry)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Capsule, ShapeKind};
+    use super::*;
+
+    fn answers_as<const D: usize>(shape: ShapeHandle<f64, D>, kind: ShapeKind) {
+        let compact = Compact::of(&shape);
+        let found = compact.ask(&shape, |geometry| {
+            assert_eq!(geometry.kind(), kind, "{shape:?}");
+            match geometry.0 {
+                Kind::Ball(ball) => vec![ball.radius()],
+                Kind::Cuboid(cuboid) => cuboid.half_extents().iter().copied().collect(),
+                _ => Vec::new(),
+            }
+        });
+        let reach = shape.local_aabb().half_extents();
+        assert!(found.iter().zip(reach.iter()).all(|(a, b)| a == b), "{shape:?}: {found:?}");
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_shape() {
+        for size in [0.0, 1e-300, 2.5, 1e300] {
+            answers_as::<2>(ShapeHandle::new(Ball::new(size)), ShapeKind::Ball);
+            answers_as::<3>(ShapeHandle::new(Ball::new(size)), ShapeKind::Ball);
+            let half = Vector::<f64, 3>::new(size, 0.0, 3.0);
+            answers_as::<3>(ShapeHandle::new(Cuboid::new(half)), ShapeKind::Cuboid);
+            let half = Vector::<f64, 2>::new(0.0, size);
+            answers_as::<2>(ShapeHandle::new(Cuboid::new(half)), ShapeKind::Cuboid);
+        }
+        answers_as::<3>(ShapeHandle::new(Capsule::new(1.0, 0.5)), ShapeKind::Capsule);
+    }
+}

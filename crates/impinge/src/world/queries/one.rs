@@ -1,0 +1,58 @@
+//! One question about one object: what the tables reach, compiled in this crate.
+
+use crate::math::{Point, Space};
+use crate::query::point::{holds, is_surely_beyond, project};
+use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses};
+use crate::world::Body;
+
+impl<N: Space<D>, const D: usize> Body<N, D> {
+    /// Where a ray meets the object, at `latest` at the latest, with the normal in the world frame.
+    pub(crate) fn cast_ray(
+        &self,
+        ray: &Ray<N, D>,
+        latest: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>> {
+        let pose = N::pose(&self.isometry);
+        let local = ray.inverse_transformed_by(&pose);
+        let hit = self.ask(
+            #[inline(always)]
+            |shape| {
+                if surely_misses(shape, &local) {
+                    return None;
+                }
+                cast_on(shape, &local, latest, solid)
+            },
+        )?;
+        Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
+    }
+
+    /// The nearest point of the object and its distance; `None` if it is empty, and perhaps if it is beyond
+    /// `farthest`.
+    pub(crate) fn project(
+        &self,
+        point: &Point<N, D>,
+        solid: bool,
+        farthest: N,
+    ) -> Option<(PointProjection<N, D>, N)> {
+        let pose = N::pose(&self.isometry);
+        self.ask(
+            #[inline(always)]
+            |shape| {
+                if is_surely_beyond(shape, &pose.inverse_point(point), farthest) {
+                    return None;
+                }
+                project(shape, &pose, point, solid)
+            },
+        )
+    }
+
+    /// The object holds a point.
+    pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
+        let local = N::pose(&self.isometry).inverse_point(point);
+        self.ask(
+            #[inline(always)]
+            |shape| holds(shape, &local),
+        )
+    }
+}
