@@ -16,21 +16,11 @@ pub(super) type ContactRows<'a, N, const D: usize> =
 
 /// Pairs with copies of their solids, of which some may be due; what changes is noted.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
-    rows: ContactRows<'r, N, D>,
-    due: Chosen,
-    table: &'t ObjectTable<N, D>,
-    changes: &'t mut Changes,
-}
-
-impl<'r, 't, N: Space<D>, const D: usize> DueContacts<'r, 't, N, D> {
-    pub(super) fn new(
-        mut rows: ContactRows<'r, N, D>,
-        table: &'t ObjectTable<N, D>,
-        changes: &'t mut Changes,
-    ) -> Self {
-        let due = rows.take_all_due(table);
-        Self { rows, due, table, changes }
-    }
+    pub(super) rows: ContactRows<'r, N, D>,
+    /// Which are due.
+    pub(super) due: Chosen,
+    pub(super) table: &'t ObjectTable<N, D>,
+    pub(super) changes: &'t mut Changes,
 }
 
 /// [`update_pairs2`], for pairs of the narrow phase.

@@ -299,7 +299,11 @@ mod tests {
             assert_eq!(group.push((n, n + 1), n, n == 2), n, "places are dense");
         }
         let taken = |state, is_touching, moved| Taken { state, is_touching, moved };
-        assert_eq!(group.swap_remove(0), taken(0, false, Some((2, 3))), "the last moves to the front");
+        assert_eq!(
+            group.swap_remove(0),
+            taken(0, false, Some((2, 3))),
+            "the last moves to the front"
+        );
         assert_eq!((group.key(0), *group.state(0)), ((2, 3), 2), "with its state");
         assert_eq!(group.touching(), [1], "and with its flag");
         assert_eq!(group.swap_remove(1), taken(1, false, None), "nobody moves when the last goes");

@@ -130,10 +130,13 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<(u32, u32)>) {
         let place = location.place;
         match location.lane {
-            Lane::Contacts(lane) => contacts_of(self.contacts[usize::from(lane)].swap_remove(place)),
+            Lane::Contacts(lane) => {
+                contacts_of(self.contacts[usize::from(lane)].swap_remove(place))
+            }
             Lane::Composites => contacts_of(self.composites.swap_remove(place)),
             Lane::Proximity(lane) => {
-                let Taken { state, moved, .. } = self.proximity[usize::from(lane)].swap_remove(place);
+                let Taken { state, moved, .. } =
+                    self.proximity[usize::from(lane)].swap_remove(place);
                 (Carried::Proximity(state.status), moved)
             }
             Lane::CustomContacts => contacts_of(self.custom_contacts.swap_remove(place)),

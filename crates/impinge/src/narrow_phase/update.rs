@@ -161,11 +161,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             Lane::Composites => {
                 let rows = &mut self.lanes.composites.rows();
-                update_places(rows, picked, |rows, place| update_contact(rows, table, place, changes));
+                update_places(rows, picked, |rows, place| {
+                    update_contact(rows, table, place, changes)
+                });
             }
             Lane::Proximity(group) => {
                 let rows = &mut self.lanes.proximity[usize::from(group)].rows();
-                update_places(rows, picked, |rows, place| update_status(rows, table, place, changes));
+                update_places(rows, picked, |rows, place| {
+                    update_status(rows, table, place, changes)
+                });
             }
             Lane::CustomContacts => {
                 for place in picked.iter().map(|at| at.place as usize) {
@@ -205,29 +209,22 @@ fn update_convex<N: Space<D>, const D: usize>(
     changes: &mut Changes,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
+    let due = rows.take_all_due(table);
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
-        return update_boxes(rows, table, changes);
+        let places: Places = due.indices().collect();
+        return update_boxes_at(&mut rows, table, &places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
-        let mut due = DueContacts::new(rows.reborrow(), table, &mut *changes);
+        let changes = &mut *changes;
+        let mut due = DueContacts { rows: rows.reborrow(), due, table, changes };
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        update_contacts(rows, table, changes);
+        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
     }
 }
 
-/// Brings the contacts of some pairs of boxes up to date, several at a time.
-fn update_boxes<N: Space<D>, const D: usize>(
-    mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
-    changes: &mut Changes,
-) {
-    let places: Places = rows.take_all_due(table).indices().collect();
-    update_boxes_at(&mut rows, table, &places, changes);
-}
-
-/// The same of those at the given places, ascending.
+/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date, several at a time.
 fn update_boxes_at<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -311,17 +308,6 @@ fn update_status<N: Space<D>, const D: usize>(
     let (key, entry, _) = rows.row(place);
     let change = entry.update(&posed(table, key));
     changes.extend(change.map(|change| (key, change)));
-}
-
-/// Brings the contacts of some pairs of convex solids up to date, one by one.
-fn update_contacts<N: Space<D>, const D: usize>(
-    mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
-    changes: &mut Changes,
-) {
-    for place in rows.take_all_due(table).indices() {
-        update_contact(&mut rows, table, place, changes);
-    }
 }
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what

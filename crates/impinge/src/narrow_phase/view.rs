@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use super::entry::posed;
 use super::convex_views::ConvexViews;
+use super::entry::posed;
 use super::lanes::{CompositeGroup, ContactGroup, Lane};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
