@@ -30,6 +30,9 @@ pub(super) struct Schedule<const D: usize> {
     ordered: usize,
     /// Slots from here on have come since the last [`Tree::refit`].
     fresh: usize,
+    /// Where the slots begin that were sorted together since the last renewal, ascending: each run is
+    /// longer than twice the next.
+    runs: Vec<usize>,
     /// The centres being sorted, and the parts of them still to be.
     snapshot: Vec<Item<D>>,
     parts: Vec<(usize, usize)>,
@@ -40,6 +43,8 @@ pub(super) struct Schedule<const D: usize> {
     /// Objects that came, or went elsewhere, since the snapshot was taken: it knows nothing of where
     /// they are. Some may be listed twice or have gone.
     late: Vec<u32>,
+    /// Memory for those that came.
+    newcomers: Vec<Item<D>>,
     /// Memory for a new order, and by id whether an object has its place in it.
     order: Vec<u32>,
     is_placed: Vec<bool>,
@@ -51,6 +56,8 @@ impl<const D: usize> Default for Schedule<D> {
             base: None,
             ordered: 0,
             fresh: 0,
+            runs: Vec::new(),
+            newcomers: Vec::new(),
             snapshot: Vec::new(),
             parts: Vec::new(),
             calls: 0,
@@ -69,20 +76,32 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Sorts the objects that came since the last refit among themselves, or everything if they
-    /// are a third of all.
+    /// are a third of all. Those that came before them are sorted with them if they are not many more: so
+    /// that there are few runs, and each object is sorted anew but a few times (the logarithmic method of
+    /// Bentley and Saxe 1980).
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
         if new * 3 > self.live {
             self.rebuild();
         } else if new > LANES {
-            let start = self.schedule.fresh / LANES * LANES;
-            let mut items = Vec::new();
-            self.list_items(start, &mut items);
-            sort(&mut items);
-            let ids: Vec<u32> = items.iter().map(|item| item.id).collect();
-            self.rearrange(start, &ids);
+            let start = self.schedule.next_run(self.end);
+            self.sort_from(start);
         }
         self.schedule.fresh = self.end;
+    }
+
+    /// Sorts the objects in the slots from `start` (a block boundary) on.
+    fn sort_from(&mut self, start: usize) {
+        let mut items = core::mem::take(&mut self.schedule.newcomers);
+        let mut ids = core::mem::take(&mut self.schedule.order);
+        self.list_items(start, &mut items);
+        sort(&mut items);
+        ids.clear();
+        ids.extend(items.iter().map(|item| item.id));
+        self.rearrange(start, &ids);
+        if !self.is_sparing {
+            (self.schedule.newcomers, self.schedule.order) = (items, ids);
+        }
     }
 
     /// Notes that boxes changed, so that the surface is worth a look.
@@ -208,7 +227,9 @@ impl<const D: usize> Tree<D> {
     fn give_back(&mut self) {
         if self.is_sparing {
             let Schedule { base, ordered, fresh, calls, is_used, .. } = self.schedule;
-            let kept = Schedule { base, ordered, fresh, calls, is_used, ..Schedule::default() };
+            let runs = core::mem::take(&mut self.schedule.runs);
+            let kept =
+                Schedule { base, ordered, fresh, runs, calls, is_used, ..Schedule::default() };
             self.schedule = kept;
         }
     }
@@ -218,10 +239,26 @@ impl<const D: usize> Schedule<D> {
     /// Begins a new round after the order was renewed; keeps the memory.
     fn begin(&mut self, ordered: usize, fresh: usize) {
         (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
+        self.runs.clear();
+        if ordered < fresh {
+            self.runs.push(ordered.div_ceil(LANES) * LANES);
+        }
         (self.calls, self.is_used) = (0, true);
         self.snapshot.clear();
         self.parts.clear();
         self.late.clear();
+    }
+
+    /// Where the slots begin that are to be sorted together, as far as `end`.
+    fn next_run(&mut self, end: usize) -> usize {
+        let mut start = self.fresh / LANES * LANES;
+        self.runs.retain(|&run| run < start);
+        while let Some(&run) = self.runs.last().filter(|&&run| start - run <= 2 * (end - start)) {
+            start = run;
+            self.runs.pop();
+        }
+        self.runs.push(start);
+        start
     }
 
     /// Sorts parts of the snapshot until `budget` items have been handled; always at least one.

@@ -7,6 +7,8 @@ use crate::memory::Look;
 
 /// No id, or no slot.
 pub const NONE: u32 = u32::MAX;
+/// By how much the surface of a leaf block may grow with an object that takes a free lane.
+const ROOM: f64 = 0.3;
 /// A tree of more leaf blocks than this gives its memory back when it is empty.
 const KEPT_LEAVES: usize = 256;
 
@@ -359,18 +361,25 @@ impl<const D: usize> Tree<D> {
     }
 
     /// A free lane near where a descent along the least growth ends: of the last sixteen blocks, that
-    /// with a free lane which grows least.
+    /// with a free lane which grows least. None if that would grow much: a block that reaches far makes
+    /// every join dear, and at the end newcomers are sorted among themselves.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
             let children = &self.layers[layer - 1].bounds;
             let last = children.len().min((block + 1) * LANES);
-            let growth = |child: &usize| {
-                let own = &children[*child];
-                own.merged(bounds).half_surface() - own.half_surface()
-            };
-            let near = (block * LANES..last).filter(|&child| layer > 1 || self.has_hole(child));
-            block = near.min_by(|a, b| growth(a).total_cmp(&growth(b)))?;
+            let mut least = (f64::INFINITY, NONE as usize);
+            for (child, own) in (block * LANES..last).zip(&children[block * LANES..last]) {
+                let growth = own.merged(bounds).half_surface() - own.half_surface();
+                if growth < least.0 && (layer > 1 || self.has_hole(child)) {
+                    least = (growth, child);
+                }
+            }
+            block = least.1;
+            let own = children.get(block)?.half_surface();
+            if layer == 1 && own > 0.0 && least.0 > ROOM * own {
+                return None;
+            }
         }
         let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)

@@ -37,7 +37,7 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) due: Vec<(u32, u32)>,
     /// Empty but for their memory, from update to update.
     pub(super) changes: Changes,
-    pub(super) indices: Vec<usize>,
+    pub(super) picked: Vec<Location>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
     /// How long the lists of an update have been lately.
@@ -85,7 +85,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             ids: IdAllocator::new(),
             due: Vec::new(),
             changes: Changes::new(),
-            indices: Vec::new(),
+            picked: Vec::new(),
             recent: Recent::default(),
             order: OnceLock::new(),
             touching: OnceLock::new(),
@@ -99,7 +99,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if let Some(look) = self.recent.end_update(self.pairs.len()) {
             look.trim(&mut self.due);
             look.trim(&mut self.changes);
-            look.trim(&mut self.indices);
+            look.trim(&mut self.picked);
             look.fit(&mut self.locations);
             self.pairs.fit(look);
             self.lanes.fit(look);
@@ -183,16 +183,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// now; moves it to the lane of its new kinds. Answers whether it could.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: (u32, u32), index: usize) -> bool {
         let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
-        let Location { lane, place, is_touching } = self.locations[index];
+        let Location { lane, place } = self.locations[index];
         let query = table.query(key.0).pair(table.query(key.1));
         match (lane, new_lane, query) {
             (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
-                let (mut entry, moved) = self.lanes.contacts[usize::from(old)].swap_remove(place);
-                self.note_move(moved, place);
+                let taken = self.lanes.contacts[usize::from(old)].swap_remove(place);
+                self.note_move(taken.moved, place);
+                let mut entry = taken.state;
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 entry.state.set_solids(shapes(table, key));
-                let place = self.lanes.contacts[usize::from(new)].push(key, entry);
-                self.locations[index] = Location { lane: new_lane, place, is_touching };
+                let group = &mut self.lanes.contacts[usize::from(new)];
+                let place = group.push(key, entry, taken.is_touching);
+                self.locations[index] = Location { lane: new_lane, place };
             }
             (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
                 let entry = self.lanes.composites.state_mut(place);
@@ -200,11 +202,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
-                let (mut entry, moved) = self.lanes.proximity[usize::from(old)].swap_remove(place);
-                self.note_move(moved, place);
-                entry.margin = margin;
-                let place = self.lanes.proximity[usize::from(new)].push(key, entry);
-                self.locations[index] = Location { lane: new_lane, place, is_touching };
+                let taken = self.lanes.proximity[usize::from(old)].swap_remove(place);
+                self.note_move(taken.moved, place);
+                let entry = ProximityEntry { margin, ..taken.state };
+                let place = self.lanes.proximity[usize::from(new)].push(key, entry, false);
+                self.locations[index] = Location { lane: new_lane, place };
             }
             _ => return false,
         }
@@ -237,35 +239,33 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried: Carried,
         (linear, angular): (N, N),
     ) -> (Location, Option<Change>) {
-        let is_touching = carried.is_touching();
         if let Some((lane, max_points)) = self.built_in_lane(table, key) {
-            let (touch, change) = carried.into_touch();
+            let (is_touching, change) = carried.into_touching();
             let number = self.ids.allocate();
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
                 Lane::Contacts(group) => {
-                    let mut entry =
-                        ContactEntry::<N, ContactState<N, D>>::new(request, number, touch);
+                    let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, number);
                     entry.state.set_solids(shapes(table, key));
-                    self.lanes.contacts[usize::from(group)].push(key, entry)
+                    self.lanes.contacts[usize::from(group)].push(key, entry, is_touching)
                 }
                 Lane::Composites => {
-                    self.lanes.composites.push(key, ContactEntry::new(request, number, touch))
+                    self.lanes.composites.push(key, ContactEntry::new(request, number), is_touching)
                 }
                 _ => unreachable!("the query asks for contacts"),
             };
-            return (Location { lane, place, is_touching }, change);
+            return (Location { lane, place }, change);
         }
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
         let Some(algorithm) = self.contact_dispatcher.get_contact_algorithm(a, b) else {
             return (NOWHERE, carried.end());
         };
-        let (touch, change) = carried.into_touch();
+        let (is_touching, change) = carried.into_touching();
         let half = angular * N::HALF;
         let prediction = ContactPrediction::new(linear, half, half);
-        let entry = CustomContactEntry { algorithm, prediction, due: true, touch };
-        let place = self.lanes.custom_contacts.push(key, entry);
-        (Location { lane: Lane::CustomContacts, place, is_touching }, change)
+        let entry = CustomContactEntry { algorithm, prediction };
+        let place = self.lanes.custom_contacts.push(key, entry, is_touching);
+        (Location { lane: Lane::CustomContacts, place }, change)
     }
 
     fn enter_proximity(
@@ -278,18 +278,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if let Some((lane, _)) = self.built_in_lane(table, key) {
             let Lane::Proximity(group) = lane else { unreachable!("the query asks for proximity") };
             let (status, change) = carried.into_status();
-            let entry = ProximityEntry { margin, due: true, status };
-            let place = self.lanes.proximity[usize::from(group)].push(key, entry);
-            return (Location { lane, place, is_touching: false }, change);
+            let entry = ProximityEntry { margin, status };
+            let place = self.lanes.proximity[usize::from(group)].push(key, entry, false);
+            return (Location { lane, place }, change);
         }
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
         let Some(algorithm) = self.proximity_dispatcher.get_proximity_algorithm(a, b) else {
             return (NOWHERE, carried.end());
         };
         let (status, change) = carried.into_status();
-        let entry = CustomProximityEntry { algorithm, margin, due: true, status };
-        let place = self.lanes.custom_proximity.push(key, entry);
-        (Location { lane: Lane::CustomProximity, place, is_touching: false }, change)
+        let entry = CustomProximityEntry { algorithm, margin, status };
+        let place = self.lanes.custom_proximity.push(key, entry, false);
+        (Location { lane: Lane::CustomProximity, place }, change)
     }
 
     /// Takes the state of a pair out of its lane and keeps the location of whoever moved true.
@@ -317,7 +317,7 @@ fn shapes<N: Space<D>, const D: usize>(
 }
 
 /// Where pairs without an algorithm are.
-const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0, is_touching: false };
+const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
 
 /// Puts what happened to a pair into events.
 pub(super) fn push_change<N: Space<D>, const D: usize>(

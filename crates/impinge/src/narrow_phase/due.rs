@@ -2,10 +2,9 @@
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
-use super::group::Rows;
-use super::lanes::needs_update;
+use super::group::{Chosen, Rows};
 use super::state::ContactState;
-use super::update::Changes;
+use super::update::{Changes, note_touching};
 use crate::math::Space;
 use crate::query::{
     ContactManifold, KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2, update_pairs3,
@@ -18,6 +17,8 @@ pub(super) type ContactRows<'a, N, const D: usize> =
 /// Pairs with copies of their solids, of which some may be due; what changes is noted.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
+    /// Which are due.
+    pub(super) due: Chosen,
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) changes: &'t mut Changes,
 }
@@ -46,12 +47,11 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> 
 
     #[inline(always)]
     fn begin(&mut self, index: usize) -> Option<PairQuestion<'_, N, D>> {
-        let key = self.rows.keys[index];
-        let entry = &mut self.rows.states[index];
-        if !needs_update(entry.due, self.table, key) {
+        if !self.due.contains(index) {
             return None;
         }
-        entry.begin(self.rows.views.get_mut(index));
+        let (key, entry, view) = self.rows.row(index);
+        ContactView::expire_any(view);
         let poses = [self.table.pose(key.0), self.table.pose(key.1)];
         Some(entry.state.turned(poses, &entry.request)?.0)
     }
@@ -71,8 +71,7 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> 
 
     #[inline(always)]
     fn end(&mut self, index: usize) {
-        if let Some(change) = self.rows.states[index].note() {
-            self.changes.push((self.rows.keys[index], change));
-        }
+        let is_touching = self.rows.states[index].is_touching();
+        note_touching(&mut self.rows, index, is_touching, self.changes);
     }
 }

@@ -9,7 +9,7 @@ use super::traits::{
 };
 use super::{IdAllocator, ObjectTable};
 use crate::math::{Pose, Real, Space};
-use crate::query::{BoxJob, ContactManifold, ManifoldRequest, Proximity};
+use crate::query::{ManifoldRequest, Proximity};
 
 /// What an update, or the end, of a pair means to the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,28 +34,6 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
     }
 }
 
-/// Whether a pair touches, and the event that a change of that is.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Touch {
-    pub(crate) touching: bool,
-}
-
-impl Touch {
-    #[inline]
-    fn set(&mut self, touching: bool) -> Option<Change> {
-        if touching == self.touching {
-            return None;
-        }
-        self.touching = touching;
-        Some(Change::Contact { touching })
-    }
-
-    /// What the end of the pair means.
-    pub(crate) fn end(self) -> Option<Change> {
-        self.touching.then_some(Change::Contact { touching: false })
-    }
-}
-
 /// The last status of a pair, and the event that a change of it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Status(pub(crate) Proximity);
@@ -72,16 +50,15 @@ impl Status {
     }
 }
 
-/// Contacts by the library's own algorithm.
+/// Contacts by the library's own algorithm. What readers look at stands in front: of a pair with few
+/// contacts they need no more than the first lines of its memory.
 #[derive(Debug)]
+#[repr(C)]
 pub(crate) struct ContactEntry<N: Real, S> {
-    pub(crate) request: ManifoldRequest<N>,
     /// Names the pair's contacts.
     pub(crate) number: u64,
-    /// To be updated even if both objects stand still.
-    pub(crate) due: bool,
-    pub(crate) touch: Touch,
     pub(crate) state: S,
+    pub(crate) request: ManifoldRequest<N>,
 }
 
 /// The manifolds of a pair as users see them: made when first read after an update.
@@ -115,61 +92,53 @@ impl<M: Default> ContactView<M> {
     }
 }
 
-impl<N: Real, S> ContactEntry<N, S> {
-    pub(crate) fn new<const D: usize>(
-        request: ManifoldRequest<N>,
-        number: u64,
-        touch: Touch,
-    ) -> Self
-    where
-        S: KeptContacts<N, D>,
-    {
-        Self { request, number, due: true, touch, state: S::default() }
-    }
-
-    /// Brings the contacts up to date.
-    pub(crate) fn update<const D: usize>(
-        &mut self,
-        view: Option<&mut ContactView<S::Manifolds>>,
-        posed: &Posed<'_, N, D>,
-    ) -> Option<Change>
-    where
-        S: KeptContacts<N, D>,
-    {
-        self.begin(view);
-        self.state.update(posed, &self.request);
-        self.note()
-    }
-
-    /// Begins an update, which ends with [`Self::note`].
+impl<M: Default> ContactView<M> {
+    /// Forgets the manifolds of a pair of which somebody may have asked for them.
     #[inline]
-    pub(crate) fn begin<M: Default>(&mut self, view: Option<&mut ContactView<M>>) {
-        self.due = false;
+    pub(crate) fn expire_any(view: Option<&mut Self>) {
         if let Some(view) = view {
             view.expire();
         }
     }
+}
 
-    /// What the contacts, as they are now, mean to the outside.
-    #[inline]
-    pub(crate) fn note<const D: usize>(&mut self) -> Option<Change>
+impl<N: Real, S> ContactEntry<N, S> {
+    pub(crate) fn new<const D: usize>(request: ManifoldRequest<N>, number: u64) -> Self
     where
         S: KeptContacts<N, D>,
     {
-        self.touch.set(self.state.len() > 0)
+        Self { request, number, state: S::default() }
+    }
+
+    /// Brings the contacts up to date and says whether there are any.
+    pub(crate) fn update<const D: usize>(
+        &mut self,
+        view: Option<&mut ContactView<S::Manifolds>>,
+        posed: &Posed<'_, N, D>,
+    ) -> bool
+    where
+        S: KeptContacts<N, D>,
+    {
+        ContactView::expire_any(view);
+        self.state.update(posed, &self.request);
+        self.is_touching()
+    }
+
+    /// There are contacts.
+    #[inline]
+    pub(crate) fn is_touching<const D: usize>(&self) -> bool
+    where
+        S: KeptContacts<N, D>,
+    {
+        self.state.len() > 0
     }
 }
 
 impl<N: Space<D>, const D: usize> ContactEntry<N, ContactState<N, D>> {
-    /// Begins an update of a pair of boxes, which ends with [`Self::note`].
+    /// Brings what readers look at into the cache; returns nothing of use.
     #[inline]
-    pub(crate) fn begin_boxes<'a>(
-        &'a mut self,
-        view: Option<&mut ContactView<ContactManifold<N, D>>>,
-        poses: [&'a Pose<N, D>; 2],
-    ) -> Option<BoxJob<'a, N, D>> {
-        self.begin(view);
-        self.state.box_job(poses, &self.request)
+    pub(crate) fn fetch(&self, poses: [&Pose<N, D>; 2]) -> u32 {
+        self.state.fetch(poses).wrapping_add(u32::from(self.number == 0))
     }
 }
 
@@ -177,7 +146,6 @@ impl<N: Space<D>, const D: usize> ContactEntry<N, ContactState<N, D>> {
 #[derive(Debug)]
 pub(crate) struct ProximityEntry<N: Real> {
     pub(crate) margin: N,
-    pub(crate) due: bool,
     pub(crate) status: Status,
 }
 
@@ -187,7 +155,6 @@ impl<N: Real> ProximityEntry<N> {
     where
         N: Space<D>,
     {
-        self.due = false;
         self.status.set(proximity_of(posed, self.margin))
     }
 }
@@ -196,20 +163,17 @@ impl<N: Real> ProximityEntry<N> {
 pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ContactAlgorithm<N, D>,
     pub(crate) prediction: ContactPrediction<N>,
-    pub(crate) due: bool,
-    pub(crate) touch: Touch,
 }
 
 impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
-    /// Brings the contacts up to date.
+    /// Brings the contacts up to date and says whether there are any.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ContactDispatcher<N, D>,
         table: &ObjectTable<N, D>,
         (first, second): (u32, u32),
         ids: &mut IdAllocator,
-    ) -> Option<Change> {
-        self.due = false;
+    ) -> bool {
         let able = self.algorithm.update(
             dispatcher,
             table.isometry(first),
@@ -219,13 +183,13 @@ impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
             &self.prediction,
             ids,
         );
-        self.touch.set(able && self.algorithm.num_contacts() > 0)
+        able && self.algorithm.num_contacts() > 0
     }
 }
 
 impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("CustomContactEntry").field("touch", &self.touch).finish_non_exhaustive()
+        f.debug_struct("CustomContactEntry").finish_non_exhaustive()
     }
 }
 
@@ -233,7 +197,6 @@ impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
 pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ProximityAlgorithm<N, D>,
     pub(crate) margin: N,
-    pub(crate) due: bool,
     pub(crate) status: Status,
 }
 
@@ -245,7 +208,6 @@ impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
         table: &ObjectTable<N, D>,
         (first, second): (u32, u32),
     ) -> Option<Change> {
-        self.due = false;
         let able = self.algorithm.update(
             dispatcher,
             table.isometry(first),

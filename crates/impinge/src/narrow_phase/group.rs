@@ -2,16 +2,35 @@
 
 use std::sync::OnceLock;
 
+use super::ObjectTable;
+use crate::math::Space;
 use crate::memory::Look;
+
+/// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
+/// constant, so that the order of results never depends on the number of threads.
+pub(super) const CHUNK: usize = 128;
+
+/// Pairs in a word of flags.
+const WORD: usize = 64;
+
+/// Some of at most [`CHUNK`] pairs, a bit each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Chosen([u64; CHUNK / WORD]);
 
 /// The states of some pairs in no particular order, without gaps.
 ///
 /// A pair's place changes when another pair of the group is removed; whoever keeps places is told.
+/// What is asked of all pairs again and again, whether they are due and whether they touch, stands apart
+/// from the states, so that who passes over a pair does not wait for its memory.
 /// To each state belongs a view: what readers make of it. The views come into being, all together,
 /// when the first is asked for: who never asks pays nothing for them.
 #[derive(Debug)]
 pub(crate) struct Group<S, V = ()> {
     keys: Vec<(u32, u32)>,
+    /// By pair: to be updated even if both objects stand still.
+    due: Vec<bool>,
+    /// By pair, a bit each, the others zero: it has contact points.
+    touching: Vec<u64>,
     states: Vec<S>,
     /// One for each state, or none at all.
     views: OnceLock<Vec<V>>,
@@ -20,42 +39,92 @@ pub(crate) struct Group<S, V = ()> {
 /// The pairs of a group to work on, side by side.
 pub(crate) struct Rows<'a, S, V> {
     pub(crate) keys: &'a [(u32, u32)],
+    due: &'a mut [bool],
+    touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
     /// As many as states, or none.
     pub(crate) views: &'a mut [V],
 }
 
+/// A pair that was taken out of a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Taken<S> {
+    pub(crate) state: S,
+    pub(crate) is_touching: bool,
+    /// The pair that now has its place, if any.
+    pub(crate) moved: Option<(u32, u32)>,
+}
+
 impl<S, V> Default for Group<S, V> {
     fn default() -> Self {
-        Self { keys: Vec::new(), states: Vec::new(), views: OnceLock::new() }
+        let (keys, due, touching) = (Vec::new(), Vec::new(), Vec::new());
+        Self { keys, due, touching, states: Vec::new(), views: OnceLock::new() }
     }
 }
 
+/// The word of a pair's flag, and its bit.
+const fn flag(place: usize) -> (usize, u64) {
+    (place / WORD, 1 << (place % WORD))
+}
+
+/// Says whether a pair touches, and answers whether that is new.
+#[inline]
+fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
+    let (word, bit) = flag(place);
+    let is_new = (words[word] & bit != 0) != is_touching;
+    words[word] ^= if is_new { bit } else { 0 };
+    is_new
+}
+
 impl<S, V: Default> Group<S, V> {
-    /// Adds a pair and answers its place.
-    pub(crate) fn push(&mut self, key: (u32, u32), state: S) -> u32 {
+    /// Adds a pair, which is due, and answers its place.
+    pub(crate) fn push(&mut self, key: (u32, u32), state: S, is_touching: bool) -> u32 {
+        let place = self.keys.len();
         self.keys.push(key);
+        self.due.push(true);
+        self.touching.resize(self.keys.len().div_ceil(WORD), 0);
+        set_touching(&mut self.touching, place, is_touching);
         self.states.push(state);
         if let Some(views) = self.views.get_mut() {
             views.push(V::default());
         }
-        u32::try_from(self.keys.len() - 1).expect("fewer than 2^32 pairs fit in memory")
+        u32::try_from(place).expect("fewer than 2^32 pairs fit in memory")
     }
 
-    /// Takes a pair out; the pair named in the answer, if any, now has its place.
-    pub(crate) fn swap_remove(&mut self, place: u32) -> (S, Option<(u32, u32)>) {
-        let place = place as usize;
+    /// Takes a pair out; the last one gets its place.
+    pub(crate) fn swap_remove(&mut self, place: u32) -> Taken<S> {
+        let (is_touching, place) = (self.is_touching(place), place as usize);
+        let last = self.keys.len() - 1;
+        let (word, bit) = flag(last);
+        let is_last_touching = self.touching[word] & bit != 0;
+        set_touching(&mut self.touching, place, is_last_touching);
+        set_touching(&mut self.touching, last, false);
+        self.touching.truncate(last.div_ceil(WORD));
         self.keys.swap_remove(place);
+        self.due.swap_remove(place);
         if let Some(views) = self.views.get_mut() {
             views.swap_remove(place);
         }
-        (self.states.swap_remove(place), self.keys.get(place).copied())
+        let (state, moved) = (self.states.swap_remove(place), self.keys.get(place).copied());
+        Taken { state, is_touching, moved }
     }
 
     /// Gives back memory that a group which has stopped to grow does not need.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.keys);
+        look.fit(&mut self.due);
         look.fit(&mut self.states);
+    }
+
+    /// The pair at a place has contact points.
+    pub(crate) fn is_touching(&self, place: u32) -> bool {
+        let (word, bit) = flag(place as usize);
+        self.touching[word] & bit != 0
+    }
+
+    /// Asks for a pair to be updated even if both objects stand still.
+    pub(crate) fn make_due(&mut self, place: u32) {
+        self.due[place as usize] = true;
     }
 
     /// The state of the pair at a place.
@@ -66,13 +135,6 @@ impl<S, V: Default> Group<S, V> {
     /// The state of the pair at a place, to change.
     pub(crate) fn state_mut(&mut self, place: u32) -> &mut S {
         &mut self.states[place as usize]
-    }
-
-    /// The state of the pair at a place and its view, if there is one, to change.
-    pub(crate) fn parts_mut(&mut self, place: u32) -> (&mut S, Option<&mut V>) {
-        let place = place as usize;
-        let view = self.views.get_mut().map(|views| &mut views[place]);
-        (&mut self.states[place], view)
     }
 
     /// The view of the pair at a place.
@@ -86,9 +148,26 @@ impl<S, V: Default> Group<S, V> {
         self.keys[place as usize]
     }
 
-    /// All pairs with their states, in the order in which they lie.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = ((u32, u32), &S)> {
-        self.keys.iter().copied().zip(&self.states)
+    /// The pairs, in the order in which they lie.
+    pub(crate) fn keys(&self) -> &[(u32, u32)] {
+        &self.keys
+    }
+
+    /// Their states.
+    pub(crate) fn states(&self) -> &[S] {
+        &self.states
+    }
+
+    /// Which of them touch, sixty-four in a word.
+    pub(crate) fn touching(&self) -> &[u64] {
+        &self.touching
+    }
+
+    /// The touching pairs with their states, in the order in which they lie.
+    pub(crate) fn iter_touching(&self) -> impl Iterator<Item = ((u32, u32), &S)> {
+        let pairs = (0..).zip(&self.keys).zip(&self.states);
+        let pairs = pairs.filter(|((place, _), _)| self.is_touching(*place));
+        pairs.map(|((_, &key), state)| (key, state))
     }
 
     /// There is no pair.
@@ -99,38 +178,113 @@ impl<S, V: Default> Group<S, V> {
     /// All pairs, their states and their views.
     pub(crate) fn rows(&mut self) -> Rows<'_, S, V> {
         let views = self.views.get_mut().map_or(&mut [][..], Vec::as_mut_slice);
-        Rows { keys: &self.keys, states: &mut self.states, views }
+        let Self { keys, due, touching, states, .. } = self;
+        Rows { keys, due, touching, states, views }
+    }
+}
+
+impl Chosen {
+    /// The pair is among them.
+    #[inline]
+    pub(super) const fn contains(&self, index: usize) -> bool {
+        self.0[index / WORD] >> (index % WORD) & 1 != 0
+    }
+
+    /// Their indices, ascending.
+    pub(super) fn indices(mut self) -> impl Iterator<Item = usize> {
+        let mut word = 0;
+        core::iter::from_fn(move || {
+            while self.0[word] == 0 {
+                word = Some(word + 1).filter(|&word| word < CHUNK / WORD)?;
+            }
+            let lowest = self.0[word].trailing_zeros() as usize;
+            self.0[word] &= self.0[word] - 1;
+            Some(word * WORD + lowest)
+        })
     }
 }
 
 impl<'a, S, V> Rows<'a, S, V> {
-    /// How many pairs there are; who cannot share work need not ask.
-    #[cfg(feature = "parallel")]
-    pub(crate) fn len(&self) -> usize {
+    /// How many pairs there are.
+    pub(crate) const fn len(&self) -> usize {
         self.keys.len()
     }
 
     /// The same rows, to be used once more afterwards.
     pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V> {
-        Rows { keys: self.keys, states: self.states, views: self.views }
+        let Rows { keys, due, touching, states, views } = self;
+        Rows { keys, due, touching, states, views }
     }
 
-    /// The rows in pieces of a constant size, the last one perhaps shorter.
-    pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Rows<'a, S, V>> {
-        let mut views = self.views.chunks_mut(size);
-        let pairs = self.keys.chunks(size).zip(self.states.chunks_mut(size));
+    /// The rows in pieces of [`CHUNK`], the last one perhaps shorter.
+    pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V>> {
+        let (mut views, mut due) = (self.views.chunks_mut(CHUNK), self.due.chunks_mut(CHUNK));
+        let mut touching = self.touching.chunks_mut(CHUNK / WORD);
+        let pairs = self.keys.chunks(CHUNK).zip(self.states.chunks_mut(CHUNK));
         pairs.map(move |(keys, states)| Rows {
             keys,
+            due: due.next().unwrap_or_default(),
+            touching: touching.next().unwrap_or_default(),
             states,
             views: views.next().unwrap_or_default(),
         })
     }
 
-    /// Every pair with its state and its view.
-    pub(crate) fn each(self) -> impl Iterator<Item = ((u32, u32), &'a mut S, Option<&'a mut V>)> {
-        let mut views = self.views.iter_mut();
-        let pairs = self.keys.iter().zip(self.states);
-        pairs.map(move |(&key, state)| (key, state, views.next()))
+    /// A pair with its state and its view.
+    #[inline]
+    pub(crate) fn row(&mut self, index: usize) -> ((u32, u32), &mut S, Option<&mut V>) {
+        (self.keys[index], &mut self.states[index], self.views.get_mut(index))
+    }
+
+    /// The pair needs a new query: it is due, or one of its objects changed. If so, it is due no more.
+    #[inline]
+    pub(crate) fn take_due<N: Space<D>, const D: usize>(
+        &mut self,
+        index: usize,
+        table: &ObjectTable<N, D>,
+    ) -> bool {
+        let (first, second) = self.keys[index];
+        self.take_mark(index) | table.has_changed(first) | table.has_changed(second)
+    }
+
+    /// The pair is marked as due; it is so no more.
+    #[inline]
+    pub(crate) fn take_mark(&mut self, index: usize) -> bool {
+        core::mem::take(&mut self.due[index])
+    }
+
+    /// Those of a chunk of pairs that need a new query. Nothing is due any more.
+    ///
+    /// Whether objects changed is known before the memory of the pairs comes: no branch waits for it.
+    pub(super) fn take_all_due<N: Space<D>, const D: usize>(
+        &mut self,
+        table: &ObjectTable<N, D>,
+    ) -> Chosen {
+        let mut chosen = Chosen([0; CHUNK / WORD]);
+        for index in 0..self.keys.len().min(CHUNK) {
+            let is_due = self.take_due(index, table);
+            chosen.0[index / WORD] |= u64::from(is_due) << (index % WORD);
+        }
+        self.fetch(chosen, table);
+        chosen
+    }
+
+    /// Brings the poses of some pairs into the cache: they wait for memory at once, where those who compute
+    /// with them, pair by pair, would wait for one after the other. Changes nothing.
+    fn fetch<N: Space<D>, const D: usize>(&self, chosen: Chosen, table: &ObjectTable<N, D>) {
+        let is_right = |object: u32| u32::from(table.pose(object).translation[0] > N::ZERO);
+        let mut sum = 0;
+        for index in chosen.indices() {
+            let (first, second) = self.keys[index];
+            sum += is_right(first) + is_right(second);
+        }
+        core::hint::black_box(sum);
+    }
+
+    /// Says that the pair has contact points, or none, and answers whether that is new.
+    #[inline]
+    pub(crate) fn set_touching(&mut self, index: usize, is_touching: bool) -> bool {
+        set_touching(self.touching, index, is_touching)
     }
 }
 
@@ -142,28 +296,64 @@ mod tests {
     fn the_last_pair_fills_the_gap() {
         let mut group = Group::<u32>::default();
         for n in 0..3 {
-            assert_eq!(group.push((n, n + 1), n), n, "places are dense");
+            assert_eq!(group.push((n, n + 1), n, n == 2), n, "places are dense");
         }
-        assert_eq!(group.swap_remove(0), (0, Some((2, 3))), "the last moves to the front");
+        let taken = |state, is_touching, moved| Taken { state, is_touching, moved };
+        assert_eq!(
+            group.swap_remove(0),
+            taken(0, false, Some((2, 3))),
+            "the last moves to the front"
+        );
         assert_eq!((group.key(0), *group.state(0)), ((2, 3), 2), "with its state");
-        assert_eq!(group.swap_remove(1), (1, None), "nobody moves when the last goes");
+        assert_eq!(group.touching(), [1], "and with its flag");
+        assert_eq!(group.swap_remove(1), taken(1, false, None), "nobody moves when the last goes");
+        assert_eq!(group.swap_remove(0), taken(2, true, None), "none is left");
+        assert!(group.touching().is_empty(), "nor a flag");
+    }
+
+    #[test]
+    fn flags_follow_their_pairs() {
+        let mut group = Group::<u32>::default();
+        let is_third = |n: u32| n.is_multiple_of(3);
+        for n in 0..200 {
+            group.push((n, n), n, is_third(n));
+        }
+        for step in 0..150 {
+            let place = step * 7 % (200 - step);
+            let state = *group.state(place);
+            assert_eq!(group.swap_remove(place).is_touching, is_third(state), "that of {state}");
+        }
+        let touching: Vec<_> = group.iter_touching().map(|(_, &state)| state).collect();
+        let expected = group.states().iter().copied().filter(|&n| is_third(n));
+        assert_eq!(touching, expected.collect::<Vec<_>>(), "in order");
+        assert!((10..25).contains(&touching.len()), "about a third: {}", touching.len());
+        for mut rows in group.rows().chunks() {
+            let flags = (0..rows.len()).map(|n| (is_third(*rows.row(n).1), n)).collect::<Vec<_>>();
+            assert!(flags.iter().all(|&(flag, n)| !rows.set_touching(n, flag)), "nothing new");
+            assert!(flags.iter().all(|&(flag, n)| rows.set_touching(n, !flag)), "all new");
+        }
     }
 
     #[test]
     fn views_follow_their_pairs_once_there_are_any() {
         let mut group = Group::<u32, Option<u32>>::default();
         for n in 0..5 {
-            group.push((n, n + 1), n);
+            group.push((n, n + 1), n, false);
         }
         assert!(group.rows().views.is_empty(), "nobody asked");
         assert_eq!(*group.view(3), None, "made now");
-        for (_, state, view) in group.rows().each() {
+        for index in 0..5 {
+            let mut rows = group.rows();
+            let (_, state, view) = rows.row(index);
             *view.expect("one for each") = Some(*state);
         }
         group.swap_remove(1);
-        group.push((9, 9), 9);
+        group.push((9, 9), 9, false);
         assert_eq!([1, 4].map(|place| *group.view(place)), [Some(4), None], "moved, and new");
-        let sizes = group.rows().chunks(2).map(|rows| (rows.states.len(), rows.views.len()));
-        assert_eq!(sizes.collect::<Vec<_>>(), [(2, 2), (2, 2), (1, 1)], "cut alike");
+        for n in 5..130 {
+            group.push((n, n), n, false);
+        }
+        let sizes = group.rows().chunks().map(|rows| (rows.states.len(), rows.views.len()));
+        assert_eq!(sizes.collect::<Vec<_>>(), [(128, 128), (2, 2)], "cut alike");
     }
 }

@@ -1,11 +1,10 @@
 //! Where the state of each pair lies: one lane per algorithm.
 
-use super::ObjectTable;
 use super::entry::{
     Change, ContactEntry, ContactView, CustomContactEntry, CustomProximityEntry, ProximityEntry,
-    Status, Touch,
+    Status,
 };
-use super::group::Group;
+use super::group::{Group, Taken};
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
 use crate::memory::Look;
@@ -16,7 +15,7 @@ use crate::shape::{Shape, ShapeKind};
 const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
 /// Which algorithm serves a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Lane {
     /// The library's contacts, for this pair of kinds.
     Contacts(u8),
@@ -31,19 +30,16 @@ pub(crate) enum Lane {
 }
 
 /// A lane and the place in it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Location {
     pub(crate) lane: Lane,
     pub(crate) place: u32,
-    /// The pair has contact points: what the state says, here too so that readers pass over the
-    /// others without looking at their states.
-    pub(crate) is_touching: bool,
 }
 
 /// What a pair carries over when its algorithm changes: the facts that events are told by.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
-    Contacts(Touch),
+    Contacts { is_touching: bool },
     Proximity(Status),
     Nothing,
 }
@@ -52,22 +48,19 @@ impl Carried {
     /// What the end of the pair means.
     pub(crate) fn end(self) -> Option<Change> {
         match self {
-            Self::Contacts(touch) => touch.end(),
+            Self::Contacts { is_touching } => {
+                is_touching.then_some(Change::Contact { touching: false })
+            }
             Self::Proximity(status) => status.end(),
             Self::Nothing => None,
         }
     }
 
-    /// The pair has contact points.
-    pub(crate) fn is_touching(self) -> bool {
-        matches!(self, Self::Contacts(Touch { touching: true }))
-    }
-
-    /// The touch to go on with, and the event if the pair had another query type before.
-    pub(crate) fn into_touch(self) -> (Touch, Option<Change>) {
+    /// Whether the pair goes on touching, and the event if it had another query type before.
+    pub(crate) fn into_touching(self) -> (bool, Option<Change>) {
         match self {
-            Self::Contacts(touch) => (touch, None),
-            other => (Touch::default(), other.end()),
+            Self::Contacts { is_touching } => (is_touching, None),
+            other => (false, other.end()),
         }
     }
 
@@ -138,26 +131,30 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
         let place = location.place;
         match location.lane {
             Lane::Contacts(lane) => {
-                let (entry, moved) = self.contacts[usize::from(lane)].swap_remove(place);
-                (Carried::Contacts(entry.touch), moved)
+                contacts_of(self.contacts[usize::from(lane)].swap_remove(place))
             }
-            Lane::Composites => {
-                let (entry, moved) = self.composites.swap_remove(place);
-                (Carried::Contacts(entry.touch), moved)
-            }
+            Lane::Composites => contacts_of(self.composites.swap_remove(place)),
             Lane::Proximity(lane) => {
-                let (entry, moved) = self.proximity[usize::from(lane)].swap_remove(place);
-                (Carried::Proximity(entry.status), moved)
+                let Taken { state, moved, .. } =
+                    self.proximity[usize::from(lane)].swap_remove(place);
+                (Carried::Proximity(state.status), moved)
             }
-            Lane::CustomContacts => {
-                let (entry, moved) = self.custom_contacts.swap_remove(place);
-                (Carried::Contacts(entry.touch), moved)
-            }
+            Lane::CustomContacts => contacts_of(self.custom_contacts.swap_remove(place)),
             Lane::CustomProximity => {
-                let (entry, moved) = self.custom_proximity.swap_remove(place);
-                (Carried::Proximity(entry.status), moved)
+                let Taken { state, moved, .. } = self.custom_proximity.swap_remove(place);
+                (Carried::Proximity(state.status), moved)
             }
             Lane::Nothing => (Carried::Nothing, None),
+        }
+    }
+
+    /// The pair has contact points.
+    pub(crate) fn is_touching(&self, Location { lane, place }: Location) -> bool {
+        match lane {
+            Lane::Contacts(lane) => self.contacts[usize::from(lane)].is_touching(place),
+            Lane::Composites => self.composites.is_touching(place),
+            Lane::CustomContacts => self.custom_contacts.is_touching(place),
+            Lane::Proximity(_) | Lane::CustomProximity | Lane::Nothing => false,
         }
     }
 
@@ -172,22 +169,17 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
     pub(crate) fn make_due(&mut self, location: Location) {
         let place = location.place;
         match location.lane {
-            Lane::Contacts(lane) => self.contacts[usize::from(lane)].state_mut(place).due = true,
-            Lane::Composites => self.composites.state_mut(place).due = true,
-            Lane::Proximity(lane) => self.proximity[usize::from(lane)].state_mut(place).due = true,
-            Lane::CustomContacts => self.custom_contacts.state_mut(place).due = true,
-            Lane::CustomProximity => self.custom_proximity.state_mut(place).due = true,
+            Lane::Contacts(lane) => self.contacts[usize::from(lane)].make_due(place),
+            Lane::Composites => self.composites.make_due(place),
+            Lane::Proximity(lane) => self.proximity[usize::from(lane)].make_due(place),
+            Lane::CustomContacts => self.custom_contacts.make_due(place),
+            Lane::CustomProximity => self.custom_proximity.make_due(place),
             Lane::Nothing => {}
         }
     }
 }
 
-/// A pair needs a new query: it is due, or one of its objects changed.
-#[inline]
-pub(crate) fn needs_update<N: Space<D>, const D: usize>(
-    due: bool,
-    table: &ObjectTable<N, D>,
-    (first, second): (u32, u32),
-) -> bool {
-    due || table.has_changed(first) || table.has_changed(second)
+/// What a pair that was taken out carries over, and which pair has its place.
+fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<(u32, u32)>) {
+    (Carried::Contacts { is_touching: taken.is_touching }, taken.moved)
 }

@@ -83,14 +83,16 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
 
 /// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub(crate) struct InOrder<C> {
-    contacts: C,
     /// The canonical order at the last update was the reverse of the pair's own.
     swapped: bool,
+    contacts: C,
 }
 
-/// The contacts of two convex solids.
+/// The contacts of two convex solids. What readers look at stands in front.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: InOrder<RawManifold<N, D>>,
     /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
@@ -182,6 +184,14 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         let (first, second) = (usize::from(swapped), usize::from(!swapped));
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
+    }
+
+    /// Reads something of every cache line that [`Self::view`] is going to look at; returns nothing of use.
+    #[inline]
+    pub(super) fn fetch(&self, poses: [&Pose<N, D>; 2]) -> u32 {
+        let pose = poses[usize::from(self.kept.swapped)];
+        let names = self.kept.contacts.points.iter().map(|point| point.id);
+        names.fold(u32::from(pose.translation[0] > N::ZERO), u32::wrapping_add)
     }
 
     /// What it takes to bring the contacts of two boxes up to date; `None` for other solids.

@@ -5,20 +5,19 @@ use smallvec::SmallVec;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
-use super::group::{Group, Rows};
-use super::lanes::{Lane, Location, needs_update};
-use super::state::{KeptContacts, Posed};
+use super::group::{CHUNK, Group, Rows};
+use super::lanes::{Lane, Location};
+use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
 use crate::query::{BoxJob, Solid};
 
-/// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
-/// constant, so that the order of results never depends on the number of threads.
-const CHUNK: usize = 128;
-
 /// Below one pair to update in this many, the pairs are found from the objects that changed rather
 /// than by going through all of them.
 const SPARSE: usize = 8;
+
+/// Places of pairs in a chunk.
+type Places = SmallVec<[usize; CHUNK]>;
 
 /// What changed, pair by pair.
 pub(super) type Changes = Vec<((u32, u32), Change)>;
@@ -38,8 +37,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         } else {
             self.update_all(table, &mut changes);
         }
+        if changes.iter().any(|(_, change)| matches!(change, Change::Contact { .. })) {
+            self.touching.take();
+        }
         for (key, change) in changes.drain(..) {
-            self.note_change(key, change);
             push_change(table, key, Some(change), events);
         }
         self.changes = changes;
@@ -56,15 +57,6 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }) && affected * SPARSE < self.pairs.len()
     }
 
-    /// Keeps what readers go by in step with the states.
-    fn note_change(&mut self, (first, second): (u32, u32), change: Change) {
-        if let Change::Contact { touching } = change {
-            let index = self.pairs.index_of(first, second).expect("a state belongs to a pair");
-            self.locations[index].is_touching = touching;
-            self.touching.take();
-        }
-    }
-
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
         // Of the hundreds of groups most are empty.
@@ -75,29 +67,52 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             });
         }
         update_group(&mut self.lanes.composites, changes, |rows, changes| {
-            update_contacts(rows, table, changes);
+            update_each(rows, table, changes, update_contact);
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
-            update_group(group, changes, |rows, changes| update_proximity(rows, table, changes));
+            update_group(group, changes, |rows, changes| {
+                update_each(rows, table, changes, update_status);
+            });
         }
         self.update_all_custom(table, changes);
     }
 
     /// One by one: algorithms of the user's share one source of names.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
-        for (key, entry, _) in self.lanes.custom_contacts.rows().each() {
-            if needs_update(entry.due, table, key) {
-                let dispatcher = &*self.contact_dispatcher;
-                let change = entry.update(dispatcher, table, key, &mut self.ids);
-                changes.extend(change.map(|change| (key, change)));
+        for place in 0..self.lanes.custom_contacts.keys().len() {
+            if self.lanes.custom_contacts.rows().take_due(place, table) {
+                self.update_custom_contact(table, place, changes);
             }
         }
-        for (key, entry, _) in self.lanes.custom_proximity.rows().each() {
-            if needs_update(entry.due, table, key) {
-                let change = entry.update(&*self.proximity_dispatcher, table, key);
-                changes.extend(change.map(|change| (key, change)));
+        for place in 0..self.lanes.custom_proximity.keys().len() {
+            if self.lanes.custom_proximity.rows().take_due(place, table) {
+                self.update_custom_proximity(table, place, changes);
             }
         }
+    }
+
+    fn update_custom_contact(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        place: usize,
+        changes: &mut Changes,
+    ) {
+        let mut rows = self.lanes.custom_contacts.rows();
+        let (key, entry, _) = rows.row(place);
+        let is_touching = entry.update(&*self.contact_dispatcher, table, key, &mut self.ids);
+        note_touching(&mut rows, place, is_touching, changes);
+    }
+
+    fn update_custom_proximity(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        place: usize,
+        changes: &mut Changes,
+    ) {
+        let mut rows = self.lanes.custom_proximity.rows();
+        let (key, entry, _) = rows.row(place);
+        let change = entry.update(&*self.proximity_dispatcher, table, key);
+        changes.extend(change.map(|change| (key, change)));
     }
 
     /// Updates the pairs of the objects that changed, and those that are due.
@@ -107,55 +122,82 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         due: &[(u32, u32)],
         changes: &mut Changes,
     ) {
-        let mut indices = core::mem::take(&mut self.indices);
+        let mut picked = core::mem::take(&mut self.picked);
+        self.pick(table, due, &mut picked);
+        for picked in picked.chunk_by(|one, other| one.lane == other.lane) {
+            self.update_picked(table, picked, changes);
+        }
+        picked.clear();
+        self.picked = picked;
+    }
+
+    /// Lists where the pairs of the objects that changed are, and those that are due: each once, lane by
+    /// lane, in the order in which they lie.
+    fn pick(&self, table: &ObjectTable<N, D>, due: &[(u32, u32)], picked: &mut Vec<Location>) {
         for &row in table.changed() {
             // A pair of two changed objects is taken from the end with the smaller index.
             let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
             let partners = self.pairs.partners(row).filter(|(partner, _)| mine(*partner));
-            indices.extend(partners.map(|(_, index)| index));
+            picked.extend(partners.map(|(_, index)| self.locations[index]));
         }
         let still = |&&(a, b): &&(u32, u32)| !table.has_changed(a) && !table.has_changed(b);
         let due = due.iter().filter(still).filter_map(|&(a, b)| self.pairs.index_of(a, b));
-        indices.extend(due);
-        indices.sort_unstable();
-        indices.dedup();
-        for index in indices.drain(..) {
-            let key = self.pairs.pairs()[index];
-            let change = self.update_one(table, key, self.locations[index]);
-            changes.extend(change.map(|change| (key, change)));
-        }
-        self.indices = indices;
+        picked.extend(due.map(|index| self.locations[index]));
+        picked.sort_unstable();
+        picked.dedup();
     }
 
-    fn update_one(
+    /// Updates some pairs of one lane.
+    fn update_picked(
         &mut self,
         table: &ObjectTable<N, D>,
-        key: (u32, u32),
-        Location { lane, place, .. }: Location,
-    ) -> Option<Change> {
-        match lane {
+        picked: &[Location],
+        changes: &mut Changes,
+    ) {
+        match picked[0].lane {
             Lane::Contacts(group) => {
-                let (entry, view) = self.lanes.contacts[usize::from(group)].parts_mut(place);
-                entry.update(view, &posed(table, key))
+                let rows = self.lanes.contacts[usize::from(group)].rows();
+                update_picked_convex(rows, table, picked, changes);
             }
             Lane::Composites => {
-                let (entry, view) = self.lanes.composites.parts_mut(place);
-                entry.update(view, &posed(table, key))
+                let rows = &mut self.lanes.composites.rows();
+                update_places(rows, picked, |rows, place| {
+                    update_contact(rows, table, place, changes)
+                });
             }
             Lane::Proximity(group) => {
-                let entry = self.lanes.proximity[usize::from(group)].state_mut(place);
-                entry.update(&posed(table, key))
+                let rows = &mut self.lanes.proximity[usize::from(group)].rows();
+                update_places(rows, picked, |rows, place| {
+                    update_status(rows, table, place, changes)
+                });
             }
             Lane::CustomContacts => {
-                let entry = self.lanes.custom_contacts.state_mut(place);
-                entry.update(&*self.contact_dispatcher, table, key, &mut self.ids)
+                for place in picked.iter().map(|at| at.place as usize) {
+                    self.lanes.custom_contacts.rows().take_mark(place);
+                    self.update_custom_contact(table, place, changes);
+                }
             }
             Lane::CustomProximity => {
-                let entry = self.lanes.custom_proximity.state_mut(place);
-                entry.update(&*self.proximity_dispatcher, table, key)
+                for place in picked.iter().map(|at| at.place as usize) {
+                    self.lanes.custom_proximity.rows().take_mark(place);
+                    self.update_custom_proximity(table, place, changes);
+                }
             }
-            Lane::Nothing => None,
+            Lane::Nothing => {}
         }
+    }
+}
+
+/// Says whether a pair touches, and lists it if that is new.
+#[inline]
+pub(super) fn note_touching<S, V>(
+    rows: &mut Rows<'_, S, V>,
+    index: usize,
+    is_touching: bool,
+    changes: &mut Changes,
+) {
+    if rows.set_touching(index, is_touching) {
+        changes.push((rows.keys[index], Change::Contact { touching: is_touching }));
     }
 }
 
@@ -167,60 +209,105 @@ fn update_convex<N: Space<D>, const D: usize>(
     changes: &mut Changes,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
+    let due = rows.take_all_due(table);
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
-        return update_boxes(rows, table, changes);
+        let places: Places = due.indices().collect();
+        return update_boxes_at(&mut rows, table, &places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
-        let mut due = DueContacts { rows: rows.reborrow(), table, changes: &mut *changes };
+        let changes = &mut *changes;
+        let mut due = DueContacts { rows: rows.reborrow(), due, table, changes };
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        update_contacts(rows, table, changes);
+        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
     }
 }
 
-/// Brings the contacts of some pairs of boxes up to date, several at a time.
-fn update_boxes<N: Space<D>, const D: usize>(
-    mut rows: ContactRows<'_, N, D>,
+/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date, several at a time.
+fn update_boxes_at<N: Space<D>, const D: usize>(
+    rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
+    places: &[usize],
     changes: &mut Changes,
 ) {
     let mut jobs = SmallVec::<[BoxJob<'_, N, D>; CHUNK]>::new();
-    for (key, entry, view) in rows.reborrow().each() {
-        if needs_update(entry.due, table, key) {
-            let poses = [table.pose(key.0), table.pose(key.1)];
-            if let Some(job) = entry.begin_boxes(view, poses) {
-                jobs.push(job);
-            }
-        }
+    let (mut rest, mut first) = (&mut rows.states[..], 0);
+    for &place in places {
+        let (_, from_place) = rest.split_at_mut(place - first);
+        let Some((entry, after)) = from_place.split_first_mut() else { break };
+        (rest, first) = (after, place + 1);
+        ContactView::expire_any(rows.views.get_mut(place));
+        let key = rows.keys[place];
+        let poses = [table.pose(key.0), table.pose(key.1)];
+        jobs.extend(entry.state.box_job(poses, &entry.request));
     }
     (N::tables().box_contacts)(&mut jobs);
     drop(jobs);
-    for (&key, entry) in rows.keys.iter().zip(rows.states) {
-        if let Some(change) = entry.note() {
-            changes.push((key, change));
+    for &place in places {
+        let is_touching = rows.states[place].is_touching();
+        note_touching(rows, place, is_touching, changes);
+    }
+}
+
+/// Brings the contacts of the picked pairs of convex solids up to date.
+fn update_picked_convex<N: Space<D>, const D: usize>(
+    mut rows: ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    picked: &[Location],
+    changes: &mut Changes,
+) {
+    let first = picked[0].place as usize;
+    let are_boxes =
+        matches!(rows.states[first].state.solids(), Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
+    for picked in picked.chunks(CHUNK) {
+        let places: Places = picked.iter().map(|at| at.place as usize).collect();
+        for &place in &places {
+            rows.take_mark(place);
+        }
+        if are_boxes {
+            update_boxes_at(&mut rows, table, &places, changes);
+        } else {
+            let mut update = |&place: &usize| update_contact(&mut rows, table, place, changes);
+            places.iter().for_each(&mut update);
         }
     }
 }
 
-/// Brings the contacts of some pairs up to date.
-fn update_contacts<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
-    rows: Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>>,
-    table: &ObjectTable<N, D>,
-    changes: &mut Changes,
+/// Updates the picked pairs of some other kind.
+fn update_places<S, V>(
+    rows: &mut Rows<'_, S, V>,
+    picked: &[Location],
+    mut update: impl FnMut(&mut Rows<'_, S, V>, usize),
 ) {
-    update_each(rows, changes, (table, |entry| entry.due), |entry, view, posed| {
-        entry.update(view, posed)
-    });
+    for at in picked {
+        rows.take_mark(at.place as usize);
+        update(rows, at.place as usize);
+    }
 }
 
-/// Brings the proximity of some pairs up to date.
-fn update_proximity<N: Space<D>, const D: usize>(
-    rows: Rows<'_, ProximityEntry<N>, ()>,
+/// Brings the contacts of one pair up to date.
+fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
+    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>>,
     table: &ObjectTable<N, D>,
+    place: usize,
     changes: &mut Changes,
 ) {
-    update_each(rows, changes, (table, |entry| entry.due), |entry, _, posed| entry.update(posed));
+    let (key, entry, view) = rows.row(place);
+    let is_touching = entry.update(view, &posed(table, key));
+    note_touching(rows, place, is_touching, changes);
+}
+
+/// Brings the proximity of one pair up to date.
+fn update_status<N: Space<D>, const D: usize>(
+    rows: &mut Rows<'_, ProximityEntry<N>, ()>,
+    table: &ObjectTable<N, D>,
+    place: usize,
+    changes: &mut Changes,
+) {
+    let (key, entry, _) = rows.row(place);
+    let change = entry.update(&posed(table, key));
+    changes.extend(change.map(|change| (key, change)));
 }
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
@@ -234,7 +321,7 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
     #[cfg(feature = "parallel")]
     if rows.len() >= 2 * CHUNK {
         use rayon::prelude::*;
-        let chunks: Vec<_> = rows.chunks(CHUNK).collect();
+        let chunks: Vec<_> = rows.chunks().collect();
         let chunk = |rows| {
             let mut changes = Changes::new();
             update(rows, &mut changes);
@@ -244,22 +331,21 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
         changes.extend(results.into_iter().flatten());
         return;
     }
-    for rows in rows.chunks(CHUNK) {
+    for rows in rows.chunks() {
         update(rows, changes);
     }
 }
 
 /// Updates the pairs of a chunk that need it, one by one.
 fn update_each<N: Space<D>, S, V, const D: usize>(
-    rows: Rows<'_, S, V>,
+    mut rows: Rows<'_, S, V>,
+    table: &ObjectTable<N, D>,
     changes: &mut Changes,
-    (table, is_due): (&ObjectTable<N, D>, fn(&S) -> bool),
-    update: impl Fn(&mut S, Option<&mut V>, &Posed<'_, N, D>) -> Option<Change>,
+    update: impl Fn(&mut Rows<'_, S, V>, &ObjectTable<N, D>, usize, &mut Changes),
 ) {
-    for (key, state, view) in rows.each() {
-        if needs_update(is_due(state), table, key) {
-            let change = update(state, view, &posed(table, key));
-            changes.extend(change.map(|change| (key, change)));
+    for place in 0..rows.len() {
+        if rows.take_due(place, table) {
+            update(&mut rows, table, place, changes);
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
+use super::convex_views::ConvexViews;
 use super::entry::posed;
-use super::group::Group;
-use super::lanes::{CompositeGroup, ContactGroup, Lane, Location};
+use super::lanes::{CompositeGroup, ContactGroup, Lane};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
@@ -29,7 +29,6 @@ struct BuiltIn<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     group: &'a ContactGroup<N, D>,
     place: u32,
-    is_touching: bool,
 }
 
 /// Where the contacts of a pair with a composite are.
@@ -43,7 +42,7 @@ struct Composite<'a, N: Space<D>, const D: usize> {
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
     /// The manifold, if it holds a contact.
     fn manifold(&self) -> Option<&'a ContactManifold<N, D>> {
-        if !self.is_touching {
+        if !self.group.is_touching(self.place) {
             return None;
         }
         let (group, place) = (self.group, self.place);
@@ -178,7 +177,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &'a self,
         table: &'a ObjectTable<N, D>,
     ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
-        let is_touching = |place: usize| self.locations[place].is_touching;
+        let is_touching = |index: usize| self.lanes.is_touching(self.locations[index]);
         let touching = self.touching.get_or_init(|| sorted(&self.pairs, is_touching));
         touching.iter().flat_map(move |&index| {
             let (first, second) = self.pairs.pairs()[index as usize];
@@ -194,21 +193,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         table: &'a ObjectTable<N, D>,
     ) -> impl Iterator<Item = (u32, u32, ManifoldView<'a, N, D>)> + 'a {
         let poses = |(first, second)| [table.pose(first), table.pose(second)];
-        let convex = self.lanes.contacts.iter().flat_map(Group::iter);
-        let convex = convex
-            .filter(|(_, entry)| entry.touch.touching)
-            .map(move |(key, entry)| (key.0, key.1, entry.state.view(poses(key), entry.number)));
-        let composites = self.lanes.composites.iter().flat_map(move |(key, entry)| {
+        let composites = self.lanes.composites.iter_touching().flat_map(move |(key, entry)| {
             let views = entry.state.views(poses(key), entry.number);
             views.map(move |view| (key.0, key.1, view))
         });
-        let custom = self.lanes.custom_contacts.iter();
-        let custom = custom.filter(|(_, entry)| entry.touch.touching).flat_map(|(key, entry)| {
+        let custom = self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
             let views = manifolds.filter_map(ManifoldView::of_manifold);
             views.map(move |view| (key.0, key.1, view))
         });
-        convex.chain(composites).chain(custom)
+        ConvexViews::new(&self.lanes.contacts, table).chain(composites).chain(custom)
     }
 
     /// All pairs whose proximity is asked for, sorted by handle index.
@@ -228,8 +222,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         match location.lane {
             Lane::Contacts(group) => {
                 let group = &self.lanes.contacts[usize::from(group)];
-                let Location { place, is_touching, .. } = location;
-                let pair = BuiltIn { table, group, place, is_touching };
+                let pair = BuiltIn { table, group, place: location.place };
                 Some(ContactPair(Contacts::BuiltIn(pair)))
             }
             Lane::Composites => {
@@ -290,15 +283,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             if found != key {
                 return Err(format!("the state of pair {key:?} is that of {found:?}"));
             }
-            let touches = match location.lane {
+            let has_contacts = match location.lane {
                 Lane::Contacts(group) => {
-                    self.lanes.contacts[usize::from(group)].state(place).touch.touching
+                    self.lanes.contacts[usize::from(group)].state(place).is_touching()
                 }
-                Lane::Composites => self.lanes.composites.state(place).touch.touching,
-                Lane::CustomContacts => self.lanes.custom_contacts.state(place).touch.touching,
-                _ => false,
+                Lane::Composites => self.lanes.composites.state(place).is_touching(),
+                _ => continue,
             };
-            if touches != location.is_touching {
+            if has_contacts != self.lanes.is_touching(*location) {
                 return Err(format!("readers hold a wrong opinion of pair {key:?}"));
             }
         }

@@ -60,6 +60,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     }
 
     /// How many contacts it holds: at least one.
+    #[inline]
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
     pub fn len(&self) -> usize {
@@ -86,6 +87,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     }
 
     /// The contacts, in the order in which they began.
+    #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
         let normal = self.own_normal();
         (0..self.len()).map(move |index| self.contact(index, &normal))

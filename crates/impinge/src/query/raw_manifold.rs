@@ -53,15 +53,17 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     }
 }
 
-/// A set of points with one normal, in the frame of the first solid.
+/// A set of points with one normal, in the frame of the first solid. The points stand last: who reads few
+/// of them reads one piece of memory.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
     /// Unit, from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// No point means that the solids are farther apart than the prediction.
-    pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
     /// Where the numbers of new points come from.
     pub(crate) ids: PairIds,
+    /// No point means that the solids are farther apart than the prediction.
+    pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
 }
 
 /// The numbers given to the contacts of one pair, each once.

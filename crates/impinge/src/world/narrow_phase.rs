@@ -202,42 +202,34 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D> {
-        let table = objects.table();
-        let pairs = Self::contact_pairs(self, table);
-        Box::new(
-            pairs.map(|(first, second, pair)| (table.handle(first), table.handle(second), pair)),
-        )
+        let pairs = Self::contact_pairs(self, objects.table());
+        Box::new(pairs.map(named(objects)))
     }
 
     fn contact_manifolds<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactManifolds<'a, N, D> {
-        let table = objects.table();
-        let manifolds = Self::contact_manifolds(self, table);
-        Box::new(
-            manifolds.map(|(first, second, manifold)| {
-                (table.handle(first), table.handle(second), manifold)
-            }),
-        )
+        let manifolds = Self::contact_manifolds(self, objects.table());
+        Box::new(manifolds.map(named(objects)))
     }
 
     fn contact_views<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactViews<'a, N, D> {
-        let table = objects.table();
-        let views = Self::contact_views(self, table);
-        Box::new(
-            views.map(|(first, second, view)| (table.handle(first), table.handle(second), view)),
-        )
+        let views = Self::contact_views(self, objects.table());
+        Box::new(views.map(named(objects)))
     }
 
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
-        let table = objects.table();
-        let pairs = Self::proximity_pairs(self);
-        Box::new(
-            pairs.map(|(first, second, pair)| (table.handle(first), table.handle(second), pair)),
-        )
+        Box::new(Self::proximity_pairs(self).map(named(objects)))
     }
+}
+
+/// Turns indices of living objects, and what goes with them, into their handles.
+fn named<N: Space<D>, const D: usize, T, F>(
+    objects: &CollisionObjects<N, D, T>,
+) -> impl Fn((u32, u32, F)) -> (CollisionObjectHandle, CollisionObjectHandle, F) {
+    |(first, second, found)| (objects.handle_at(first), objects.handle_at(second), found)
 }

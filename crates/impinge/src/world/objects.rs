@@ -119,6 +119,12 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         both.is_some_and(|(one, two)| one.groups.can_interact_with_groups(&two.groups))
     }
 
+    /// The handle of the object at an index, which there is.
+    #[inline]
+    pub(super) fn handle_at(&self, index: u32) -> CollisionObjectHandle {
+        CollisionObjectHandle::new(index, self.slots[index as usize].generation)
+    }
+
     /// The objects, in order of their handles.
     pub fn iter(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
         self.slots.iter().filter_map(|slot| self.records.get(slot.place as usize))

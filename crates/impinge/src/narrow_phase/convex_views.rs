@@ -1,0 +1,78 @@
+//! All contacts of pairs of convex solids, read where they lie.
+
+use core::slice;
+
+use super::ObjectTable;
+use super::lanes::ContactGroup;
+use super::state::KeptContacts;
+use crate::math::Space;
+use crate::query::ManifoldView;
+
+/// The manifolds that hold a contact, group by group in the order in which they lie.
+pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
+    table: &'a ObjectTable<N, D>,
+    groups: slice::Iter<'a, ContactGroup<N, D>>,
+    group: Option<&'a ContactGroup<N, D>>,
+    /// The word of flags under way, and what is left of it.
+    word: usize,
+    flags: u64,
+}
+
+impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
+    pub(super) fn new(groups: &'a [ContactGroup<N, D>], table: &'a ObjectTable<N, D>) -> Self {
+        Self { table, groups: groups.iter(), group: None, word: 0, flags: 0 }
+    }
+
+    /// Goes to the next word of flags that is not zero; `None` after the last.
+    #[inline(never)]
+    fn next_word(&mut self) -> Option<&'a ContactGroup<N, D>> {
+        loop {
+            if let Some(group) = self.group
+                && let Some(&flags) = group.touching().get(self.word)
+            {
+                (self.word, self.flags) = (self.word + 1, flags);
+                if flags != 0 {
+                    self.fetch(group);
+                    return Some(group);
+                }
+            } else {
+                (self.group, self.word) = (Some(self.groups.next()?), 0);
+            }
+        }
+    }
+
+    /// Brings what is to be read for a word of flags into the cache: its pairs wait for memory at once,
+    /// where whoever reads would wait for one after the other. Changes nothing.
+    fn fetch(&self, group: &ContactGroup<N, D>) {
+        let (mut flags, mut sum) = (self.flags, 0_u32);
+        while flags != 0 {
+            let place = place(self.word, &mut flags);
+            let (key, entry) = (group.keys()[place], &group.states()[place]);
+            let poses = [self.table.pose(key.0), self.table.pose(key.1)];
+            sum = sum.wrapping_add(entry.fetch(poses));
+        }
+        core::hint::black_box(sum);
+    }
+}
+
+/// Takes the lowest flag out of the word before `word`; the place of its pair.
+#[inline]
+const fn place(word: usize, flags: &mut u64) -> usize {
+    let place = (word - 1) * 64 + flags.trailing_zeros() as usize;
+    *flags &= *flags - 1;
+    place
+}
+
+impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
+    type Item = (u32, u32, ManifoldView<'a, N, D>);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        let group = if self.flags == 0 { self.next_word()? } else { self.group? };
+        let place = place(self.word, &mut self.flags);
+        let ((first, second), entry) = (group.keys()[place], &group.states()[place]);
+        let poses = [self.table.pose(first), self.table.pose(second)];
+        debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
+        Some((first, second, entry.state.view(poses, entry.number)))
+    }
+}
