@@ -62,7 +62,8 @@ impl<N: Real> Bend<N> {
     pub(super) fn admits(&self, normal: &Vector<N, 3>, is_one_sided: bool) -> Option<bool> {
         let [along1, along2] = self.fronts.each_ref().map(|front| front.dot(normal));
         let is_front = along1 > N::ZERO && along2 > N::ZERO;
-        if !is_front && !(along1 < N::ZERO && along2 < N::ZERO) {
+        let is_back = along1 < N::ZERO && along2 < N::ZERO;
+        if !(is_front || is_back) {
             return None;
         }
         match (self.kind, is_front) {

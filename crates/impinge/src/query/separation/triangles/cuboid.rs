@@ -1,86 +1,49 @@
 //! Triangles against one box.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
+use fearless_simd::{Select, Simd, SimdMask};
 
-use super::super::triangle_axes::{AxisKind, least_sine, noise};
+use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_cuboid;
 use super::{
-    Axes, Best, EDGES, Eight, FACE, Question, Separations, best_face, edging, exchanged, low_byte,
-    parted, times, triangle,
+    Axes, Best, EDGES, Eight, FACE, Faceted, Question, best_face, edging, exchanged, low_byte,
+    parted, times,
 };
+use crate::convex::Separation;
 use crate::math::lanes::spread;
-use crate::math::{Real, Wide};
-use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{Cuboid, SupportMap};
+use crate::math::{Real, Vector, Wide};
+use crate::query::tiles::Tiles;
+use crate::shape::Cuboid;
 
-/// The separations of a box; answers false where the numbers end.
-pub(super) fn separations<'a, N: Real>(
-    parts: &TiledParts<'_, N, 3>,
-    cuboid: &Cuboid<N, 3>,
-    question: impl Fn(N) -> Question<'a, N>,
-    out: &mut Separations<N, 3>,
-) -> bool {
-    let question = question(cuboid.reach());
-    for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
-        let Some(axes) = at(Level::new(), (&question, cuboid), tiles) else { return false };
-        for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-            let triangle = triangle(&question, tiles, lane);
-            let Some(fin) = axes.fin(lane, &triangle, question.pose12) else { return false };
-            let axis = axes.axis(lane, |index, normal| {
-                let edge = triangle_cuboid::edge_toward(index % 3, &-normal);
-                AxisKind::Edges(edge, index / 3)
-            });
-            let is_near = axes.beyond >> lane & 1 == 0;
-            let answer = || triangle_cuboid::answer(&fin, cuboid, &axis, question.limit);
-            out.push(if is_near { answer() } else { None });
+impl<N: Real> Faceted<N> for Cuboid<N, 3> {
+    #[inline(always)]
+    fn search<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        question: &Question<'_, N>,
+        tiles: &Tiles<N, 3>,
+    ) -> Axes<N> {
+        let eight = Eight::<N, V>::new(simd, question, tiles);
+        let half = times(&spread(simd, self.half_extents()), eight.shrink);
+        let best = best_of_box(simd, &eight, &half);
+        let beyond = eight.is_beyond(best.gap);
+        if low_byte(beyond.to_bitmask()) == u8::MAX {
+            return eight.stored(&best, beyond.to_bitmask());
         }
+        let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
+        let reach = front[0].abs() * half[0] + front[1].abs() * half[1] + front[2].abs() * half[2];
+        let best = best_face(simd, &eight.corners, (&front, has_front), (-reach, reach), &best);
+        let beyond = beyond | eight.is_beyond(best.gap);
+        let best = best_edges(simd, &eight, (&half, &sides), best);
+        eight.stored(&best, (beyond | eight.is_beyond(best.gap)).to_bitmask())
     }
-    true
-}
 
-/// [`search`] with the vectors of an instruction set; the answers do not depend on it.
-fn at<N: Real>(
-    level: Level,
-    asked: (&Question<'_, N>, &Cuboid<N, 3>),
-    tiles: &Tiles<N, 3>,
-) -> Option<Axes<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        Some(simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, asked, tiles),
-        ))
-    } else {
-        level.as_sse2().map(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || search::<_, N, N::Lanes<_>>(simd, asked, tiles),
-            )
-        })
+    fn edges(index: usize, normal: &Vector<N, 3>) -> AxisKind {
+        AxisKind::Edges(triangle_cuboid::edge_toward(index % 3, &-normal), index / 3)
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, asked, tiles)))
-}
 
-#[inline(always)]
-fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    (question, cuboid): (&Question<'_, N>, &Cuboid<N, 3>),
-    tiles: &Tiles<N, 3>,
-) -> Axes<N> {
-    let eight = Eight::<N, V>::new(simd, question, tiles);
-    let half = times(&spread(simd, cuboid.half_extents()), eight.shrink);
-    let best = best_of_box(simd, &eight, &half);
-    let beyond = eight.is_beyond(best.gap);
-    if low_byte(beyond.to_bitmask()) == u8::MAX {
-        return eight.stored(&best, beyond.to_bitmask());
+    fn answer(&self, fin: &Fin<'_, N>, axis: Axis<N>, limit: N) -> Option<Separation<N, 3>> {
+        triangle_cuboid::answer(fin, self, &axis, limit)
     }
-    let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
-    let reach = front[0].abs() * half[0] + front[1].abs() * half[1] + front[2].abs() * half[2];
-    let best = best_face(simd, &eight.corners, (&front, has_front), (-reach, reach), &best);
-    let beyond = beyond | eight.is_beyond(best.gap);
-    let best = best_edges(simd, &eight, (&half, &sides), best);
-    eight.stored(&best, (beyond | eight.is_beyond(best.gap)).to_bitmask())
 }
 
 /// The face normals of the box that leave the largest gaps.

@@ -7,7 +7,7 @@
 mod cuboid;
 mod polytope;
 
-use fearless_simd::{Select, Simd};
+use fearless_simd::{Level, Select, Simd};
 use smallvec::SmallVec;
 
 use super::triangle_axes::{Axis, AxisKind, Fin, THIN, noise};
@@ -15,7 +15,7 @@ use crate::convex::Separation;
 use crate::math::lanes::{by_axis, cross, dot, either, load, spread};
 use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
 use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{Kind, Triangle};
+use crate::shape::{Kind, SupportMap, Triangle};
 
 /// What is found of each of some parts; `None` beyond the limit.
 pub(crate) type Separations<N, const D: usize> = SmallVec<[Option<Separation<N, D>>; 16]>;
@@ -28,13 +28,13 @@ pub(crate) fn separations3<N: Real>(
     limit: N,
     out: &mut Separations<N, 3>,
 ) -> bool {
-    let question = |reach| Question { pose12, reach, limit, origin: &parts.origin };
-    pose12.is_finite()
-        && match solid {
-            Kind::Cuboid(cuboid) => cuboid::separations(parts, cuboid, question, out),
-            Kind::Polytope(hull) => polytope::separations(parts, hull, question, out),
-            _ => false,
+    match solid {
+        Kind::Cuboid(cuboid) => of_solid(parts, (cuboid, pose12), limit, out),
+        Kind::Polytope(hull) if polytope::is_small(hull) => {
+            of_solid(parts, (hull, pose12), limit, out)
         }
+        _ => false,
+    }
 }
 
 /// In the plane triangles are filled.
@@ -45,6 +45,72 @@ pub(crate) fn separations2<N: Real>(
     _: &mut Separations<N, 2>,
 ) -> bool {
     false
+}
+
+/// A solid with flat faces.
+trait Faceted<N: Real>: SupportMap<N, 3> {
+    /// Finds the directions that leave the largest gaps to eight triangles.
+    fn search<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        question: &Question<'_, N>,
+        tiles: &Tiles<N, 3>,
+    ) -> Axes<N>;
+
+    /// The edge of the solid and the side of the triangle that an index stands for, with a normal.
+    fn edges(index: usize, normal: &Vector<N, 3>) -> AxisKind;
+
+    /// What an axis says of a triangle, if it is within the limit.
+    fn answer(&self, fin: &Fin<'_, N>, axis: Axis<N>, limit: N) -> Option<Separation<N, 3>>;
+}
+
+/// [`separations3`] of a solid; answers false where the numbers end.
+fn of_solid<N: Real>(
+    parts: &TiledParts<'_, N, 3>,
+    (solid, pose12): (&impl Faceted<N>, &Pose<N, 3>),
+    limit: N,
+    out: &mut Separations<N, 3>,
+) -> bool {
+    let question = Question { pose12, reach: solid.reach(), limit, origin: &parts.origin };
+    if !pose12.is_finite() {
+        return false;
+    }
+    for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
+        let Some(axes) = at(Level::new(), solid, &question, tiles) else { return false };
+        for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
+            let found = axes.answer(lane, (solid, &question), tiles);
+            let Some(found) = found else { return false };
+            out.push(found);
+        }
+    }
+    true
+}
+
+/// The axes by the vectors of an instruction set, on which they do not depend.
+fn at<N: Real>(
+    level: Level,
+    solid: &impl Faceted<N>,
+    question: &Question<'_, N>,
+    tiles: &Tiles<N, 3>,
+) -> Option<Axes<N>> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = level.as_avx2() {
+        Some(simd.vectorize(
+            #[inline(always)]
+            || solid.search::<_, N::Lanes<_>>(simd, question, tiles),
+        ))
+    } else {
+        level.as_sse2().map(|simd| {
+            simd.vectorize(
+                #[inline(always)]
+                || solid.search::<_, N::Lanes<_>>(simd, question, tiles),
+            )
+        })
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    Some(
+        fearless_simd::dispatch!(level, simd => solid.search::<_, N::Lanes<_>>(simd, question, tiles)),
+    )
 }
 
 /// What all triangles are asked.
@@ -79,28 +145,33 @@ const FACE: f64 = 1.0;
 const EDGES: f64 = 2.0;
 
 impl<N: Real> Axes<N> {
-    /// The pair of a triangle and the solid, the triangle being one of the eight; `None` where the numbers
-    /// end.
-    fn fin<'a>(
+    /// What the axis of one of the triangles says; `None` where the numbers end.
+    #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
+    fn answer(
         &self,
         lane: usize,
-        triangle: &'a Triangle<N, 3>,
-        pose12: &'a Pose<N, 3>,
-    ) -> Option<Fin<'a, N>> {
+        (solid, question): (&impl Faceted<N>, &Question<'_, N>),
+        tiles: &Tiles<N, 3>,
+    ) -> Option<Option<Separation<N, 3>>> {
         let units = (self.scale[lane], self.shrink[lane]);
-        let is_plain = units.0.is_finite_number() && units.1.is_finite_number();
+        if !(units.0.is_finite_number() && units.1.is_finite_number()) {
+            return None;
+        }
+        if self.beyond >> lane & 1 == 1 {
+            return Some(None);
+        }
+        let triangle = Triangle::of_finite(tiles.corners(lane).map(|at| at - question.origin));
         let [a, b, c] = &self.corners;
         let corners = [of_lane(a, lane), of_lane(b, lane), of_lane(c, lane)];
-        is_plain.then(|| Fin::placed(triangle, pose12, corners, units))
+        let fin = Fin::placed(&triangle, question.pose12, corners, units);
+        Some(solid.answer(&fin, self.axis(lane, solid), question.limit))
     }
 
-    /// The axis of a triangle; `edges` says what the index of an edge and a side, with the normal, stands
-    /// for.
-    fn axis(&self, lane: usize, edges: impl Fn(usize, &Vector<N, 3>) -> AxisKind) -> Axis<N> {
+    fn axis<T: Faceted<N>>(&self, lane: usize, _: &T) -> Axis<N> {
         let (normal, gap) = (of_lane(&self.normals, lane), self.gaps[lane]);
         let index = whole(self.indices[lane]);
         let kind = if self.kinds[lane] == N::lit(EDGES) {
-            edges(index, &normal)
+            T::edges(index, &normal)
         } else if self.kinds[lane] == N::lit(FACE) {
             AxisKind::Face(u32::try_from(index).expect("32 bits number the faces"))
         } else {
@@ -122,15 +193,6 @@ fn of_lane<N: Real>(rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
 )]
 fn whole<N: Real>(number: N) -> usize {
     number.as_f64() as usize
-}
-
-/// A triangle as the pair has it.
-fn triangle<N: Real>(
-    question: &Question<'_, N>,
-    tiles: &Tiles<N, 3>,
-    lane: usize,
-) -> Triangle<N, 3> {
-    Triangle::of_finite(tiles.corners(lane).map(|corner| corner - question.origin))
 }
 
 /// The best directions so far.

@@ -1,99 +1,64 @@
 //! Triangles against one convex hull.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
+use fearless_simd::{Select, Simd, SimdMask};
 
-use super::super::triangle_axes::{AxisKind, least_sine, noise};
+use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_polytope;
 use super::{
-    Axes, Best, EDGES, Eight, FACE, Question, Separations, best_face, edging, exchanged, low_byte,
-    minus, over, times, triangle,
+    Axes, Best, EDGES, Eight, FACE, Faceted, Question, best_face, edging, exchanged, low_byte,
+    minus, over, times,
 };
+use crate::convex::Separation;
 use crate::math::lanes::{cross, dot, spread};
-use crate::math::{Real, Wide};
-use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{Polytope, SupportMap};
+use crate::math::{Real, Vector, Wide};
+use crate::query::tiles::Tiles;
+use crate::shape::Polytope;
 
 /// So many faces have hulls of no more edges than are treated here; see [`triangle_polytope`].
 const MOST_FACES: usize = 64;
 
-/// The separations of a hull; answers false of large ones, and where the numbers end.
-pub(super) fn separations<'a, N: Real>(
-    parts: &TiledParts<'_, N, 3>,
-    hull: &Polytope<N, 3>,
-    question: impl Fn(N) -> Question<'a, N>,
-    out: &mut Separations<N, 3>,
-) -> bool {
-    if !triangle_polytope::is_usual(hull) || hull.faces().len() > MOST_FACES {
-        return false;
-    }
-    let question = question(hull.reach());
-    for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
-        let Some(axes) = at(Level::new(), (&question, hull), tiles) else { return false };
-        for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-            let triangle = triangle(&question, tiles, lane);
-            let Some(fin) = axes.fin(lane, &triangle, question.pose12) else { return false };
-            let axis = axes.axis(lane, |index, _| {
-                let edge = u32::try_from(index / 3).expect("32 bits number the edges");
-                AxisKind::Edges(edge, index % 3)
-            });
-            let is_near = axes.beyond >> lane & 1 == 0;
-            let answer = || triangle_polytope::answer(&fin, hull, axis, question.limit);
-            out.push(if is_near { answer() } else { None });
-        }
-    }
-    true
-}
-
-/// [`search`] with the vectors of an instruction set; the answers do not depend on it.
-fn at<N: Real>(
-    level: Level,
-    asked: (&Question<'_, N>, &Polytope<N, 3>),
-    tiles: &Tiles<N, 3>,
-) -> Option<Axes<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        Some(simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, asked, tiles),
-        ))
-    } else {
-        level.as_sse2().map(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || search::<_, N, N::Lanes<_>>(simd, asked, tiles),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, asked, tiles)))
+/// The hull is treated here.
+pub(super) fn is_small<N: Real>(hull: &Polytope<N, 3>) -> bool {
+    triangle_polytope::is_usual(hull) && hull.faces().len() <= MOST_FACES
 }
 
 /// For each face which sides climb over its plane.
 type Climbs<M> = [[M; 3]; MOST_FACES];
 
-/// Says of triangles that are beyond the limit by a pair of edges that they are not: that is held against
-/// the farthest points first.
-#[inline(always)]
-fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    (question, hull): (&Question<'_, N>, &Polytope<N, 3>),
-    tiles: &Tiles<N, 3>,
-) -> Axes<N> {
-    let eight = Eight::<N, V>::new(simd, question, tiles);
-    let none = eight.shrink.simd_lt(eight.shrink);
-    let mut climbs = [[none; 3]; MOST_FACES];
-    let best = best_of_hull(simd, &eight, hull, &mut climbs);
-    let beyond = eight.is_beyond(best.gap);
-    if low_byte(beyond.to_bitmask()) == u8::MAX {
-        return eight.stored(&best, beyond.to_bitmask());
+impl<N: Real> Faceted<N> for Polytope<N, 3> {
+    /// Says of triangles that are beyond the limit by a pair of edges that they are not: that is held
+    /// against the farthest points first.
+    #[inline(always)]
+    fn search<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        question: &Question<'_, N>,
+        tiles: &Tiles<N, 3>,
+    ) -> Axes<N> {
+        let eight = Eight::<N, V>::new(simd, question, tiles);
+        let none = eight.shrink.simd_lt(eight.shrink);
+        let mut climbs = [[none; 3]; MOST_FACES];
+        let best = best_of_hull(simd, &eight, self, &mut climbs);
+        let beyond = eight.is_beyond(best.gap);
+        if low_byte(beyond.to_bitmask()) == u8::MAX {
+            return eight.stored(&best, beyond.to_bitmask());
+        }
+        let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
+        let heights = heights(simd, self, &front, eight.shrink);
+        let best = best_face(simd, &eight.corners, (&front, has_front), heights, &best);
+        let beyond = beyond | eight.is_beyond(best.gap);
+        let edging = Edging { sides, front, has_front };
+        let best = best_edges(simd, &eight, (self, &climbs), &edging, best);
+        eight.stored(&best, beyond.to_bitmask())
     }
-    let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
-    let heights = heights(simd, hull, &front, eight.shrink);
-    let best = best_face(simd, &eight.corners, (&front, has_front), heights, &best);
-    let beyond = beyond | eight.is_beyond(best.gap);
-    let edging = Edging { sides, front, has_front };
-    let best = best_edges(simd, &eight, (hull, &climbs), &edging, best);
-    eight.stored(&best, beyond.to_bitmask())
+
+    fn edges(index: usize, _: &Vector<N, 3>) -> AxisKind {
+        AxisKind::Edges(u32::try_from(index / 3).expect("32 bits number the edges"), index % 3)
+    }
+
+    fn answer(&self, fin: &Fin<'_, N>, axis: Axis<N>, limit: N) -> Option<Separation<N, 3>> {
+        triangle_polytope::answer(fin, self, axis, limit)
+    }
 }
 
 /// The face normals of the hull that leave the largest gaps.
