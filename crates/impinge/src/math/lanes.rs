@@ -47,6 +47,51 @@ pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, con
     )
 }
 
+/// The difference.
+#[inline(always)]
+pub(crate) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| a[axis] - b[axis],
+    )
+}
+
+/// The sum.
+#[inline(always)]
+pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| a[axis] + b[axis],
+    )
+}
+
+/// A multiple in each lane.
+#[inline(always)]
+pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| v[axis] * factor,
+    )
+}
+
+/// The opposite.
+#[inline(always)]
+pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| -v[axis],
+    )
+}
+
+/// A fraction in each lane.
+#[inline(always)]
+pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| v[axis] / divisor,
+    )
+}
+
 /// The sum of the products, in the order of the axes.
 #[inline(always)]
 pub(crate) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {

@@ -6,7 +6,7 @@
 use fearless_simd::{Level, Select, Simd, SimdMask};
 
 use super::near::{least_length, relative_slack};
-use crate::math::lanes::{by_axis, dot, either, lit, load, norm, spread};
+use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread};
 use crate::math::{Matrix, Real, Vector, Wide, min};
 use crate::query::tiles::{LANES, Tiles};
 
@@ -167,14 +167,6 @@ fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 #[inline(always)]
 fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D]) -> [V; D] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
-}
-
-#[inline(always)]
-fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| a[axis] - b[axis],
-    )
 }
 
 /// How far the core reaches along vectors, times their lengths.

@@ -4,45 +4,15 @@ use fearless_simd::Simd;
 
 pub(super) use super::super::box_lanes::bits;
 use super::super::frame::ROUNDING_ERRORS;
-pub(super) use crate::math::lanes::{by_axis, cross, dot, either, lit, norm, seen_from};
+pub(super) use crate::math::lanes::{
+    by_axis, cross, dot, either, lit, minus, negated, norm, plus, seen_from, times,
+};
 use crate::math::{Real, Wide};
 
 /// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
-}
-
-#[inline(always)]
-pub(super) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| a[axis] - b[axis],
-    )
-}
-
-#[inline(always)]
-pub(super) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| a[axis] + b[axis],
-    )
-}
-
-#[inline(always)]
-pub(super) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| v[axis] * factor,
-    )
-}
-
-#[inline(always)]
-pub(super) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| -v[axis],
-    )
 }
 
 /// The lanes where a square is far from both ends of the range, so that its root is the length.

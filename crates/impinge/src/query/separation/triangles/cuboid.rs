@@ -6,10 +6,10 @@ use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_cuboid;
 use super::{
     Axes, Best, EDGES, Eight, FACE, Faceted, Question, best_face, edging, exchanged, low_byte,
-    parted, times,
+    parted,
 };
 use crate::convex::Separation;
-use crate::math::lanes::spread;
+use crate::math::lanes::{spread, times};
 use crate::math::{Real, Vector, Wide};
 use crate::query::tiles::Tiles;
 use crate::shape::Cuboid;

@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 
 use super::triangle_axes::{Axis, AxisKind, Fin, THIN, noise};
 use crate::convex::Separation;
-use crate::math::lanes::{by_axis, cross, dot, either, load, spread};
+use crate::math::lanes::{by_axis, cross, dot, either, load, minus, over, spread, times};
 use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
 use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{Kind, SupportMap, Triangle};
@@ -414,19 +414,4 @@ fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             dot(&column, v)
         },
     )
-}
-
-#[inline(always)]
-fn minus<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn times<S: Simd, V: Wide<S>>(a: &[V; 3], b: V) -> [V; 3] {
-    [a[0] * b, a[1] * b, a[2] * b]
-}
-
-#[inline(always)]
-fn over<S: Simd, V: Wide<S>>(a: &[V; 3], b: V) -> [V; 3] {
-    [a[0] / b, a[1] / b, a[2] / b]
 }

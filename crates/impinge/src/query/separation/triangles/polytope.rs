@@ -6,10 +6,9 @@ use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_polytope;
 use super::{
     Axes, Best, EDGES, Eight, FACE, Faceted, Question, best_face, edging, exchanged, low_byte,
-    minus, over, times,
 };
 use crate::convex::Separation;
-use crate::math::lanes::{cross, dot, spread};
+use crate::math::lanes::{cross, dot, minus, over, spread, times};
 use crate::math::{Real, Vector, Wide};
 use crate::query::tiles::Tiles;
 use crate::shape::Polytope;
