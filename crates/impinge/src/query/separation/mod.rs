@@ -30,6 +30,7 @@ mod outline;
 mod overlap;
 mod plane_any;
 mod polygon_lanes;
+mod polygon_nearest;
 mod polygon_polygon;
 pub(super) mod projection;
 pub(super) mod rectangle_axes;

@@ -3,7 +3,7 @@
 use super::super::frame::Frame;
 use super::super::{build, stretch, tangents2};
 use super::scene::{Random, Scene, solids};
-use crate::math::{Real, Space};
+use crate::math::Space;
 use crate::query::separation::separation;
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::{Ellipsoid, Rounded, Shape};
