@@ -127,11 +127,11 @@ mod tests {
             let state = &mut state;
             let ball = Ball::new(number::<N>(state).abs() * N::lit(scale));
             let cuboid = Cuboid::new(vector::<N, D>(state, scale).abs());
-            let far = if bits(state) % 2 == 0 { 1.0 } else { 30.0 };
+            let far = if bits(state).is_multiple_of(2) { 1.0 } else { 30.0 };
             let origin = Point::from(vector::<N, D>(state, scale * far));
             let ray = Ray::new(origin, vector::<N, D>(state, speed));
             for shape in [&ball as &dyn Shape<N, D>, &cuboid] {
-                let solid = bits(state) % 2 == 0;
+                let solid = bits(state).is_multiple_of(2);
                 let is_hit = shape.cast_local_ray_until(&ray, N::INFINITY, solid).is_some();
                 let is_missed = surely_misses(shape.geometry(), &ray);
                 assert!(!(is_hit && is_missed), "{shape:?} {ray:?}, solid: {solid}");
