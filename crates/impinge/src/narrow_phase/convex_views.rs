@@ -48,8 +48,9 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         while flags != 0 {
             let place = place(self.word, &mut flags);
             let (key, entry) = (group.keys()[place], &group.states()[place]);
-            let poses = [self.table.pose(key.0), self.table.pose(key.1)];
-            sum = sum.wrapping_add(entry.fetch(poses));
+            let home = self.table.pose(entry.state.home(key));
+            let seen = (entry.number == 0) | (home.translation[0] > N::ZERO);
+            sum = sum.wrapping_add(entry.state.fetch()).wrapping_add(u32::from(seen));
         }
         core::hint::black_box(sum);
     }
@@ -70,9 +71,9 @@ impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
     fn next(&mut self) -> Option<Self::Item> {
         let group = if self.flags == 0 { self.next_word()? } else { self.group? };
         let place = place(self.word, &mut self.flags);
-        let ((first, second), entry) = (group.keys()[place], &group.states()[place]);
-        let poses = [self.table.pose(first), self.table.pose(second)];
+        let (key, entry) = (group.keys()[place], &group.states()[place]);
+        let home = self.table.pose(entry.state.home(key));
         debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
-        Some((first, second, entry.state.view(poses, entry.number)))
+        Some((key.0, key.1, entry.state.view(home, entry.number)))
     }
 }

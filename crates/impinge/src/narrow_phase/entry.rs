@@ -3,12 +3,12 @@
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::state::{ContactState, KeptContacts, Posed, proximity_of};
+use super::state::{KeptContacts, Posed, proximity_of};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
 };
 use super::{IdAllocator, ObjectTable};
-use crate::math::{Pose, Real, Space};
+use crate::math::{Real, Space};
 use crate::query::{ManifoldRequest, Proximity};
 
 /// What an update, or the end, of a pair means to the outside.
@@ -131,14 +131,6 @@ impl<N: Real, S> ContactEntry<N, S> {
         S: KeptContacts<N, D>,
     {
         self.state.len() > 0
-    }
-}
-
-impl<N: Space<D>, const D: usize> ContactEntry<N, ContactState<N, D>> {
-    /// Brings what readers look at into the cache; returns nothing of use.
-    #[inline]
-    pub(crate) fn fetch(&self, poses: [&Pose<N, D>; 2]) -> u32 {
-        self.state.fetch(poses).wrapping_add(u32::from(self.number == 0))
     }
 }
 

@@ -265,20 +265,7 @@ impl<'a, S, V> Rows<'a, S, V> {
             let is_due = self.take_due(index, table);
             chosen.0[index / WORD] |= u64::from(is_due) << (index % WORD);
         }
-        self.fetch(chosen, table);
         chosen
-    }
-
-    /// Brings the poses of some pairs into the cache: they wait for memory at once, where those who compute
-    /// with them, pair by pair, would wait for one after the other. Changes nothing.
-    fn fetch<N: Space<D>, const D: usize>(&self, chosen: Chosen, table: &ObjectTable<N, D>) {
-        let is_right = |object: u32| u32::from(table.pose(object).translation[0] > N::ZERO);
-        let mut sum = 0;
-        for index in chosen.indices() {
-            let (first, second) = self.keys[index];
-            sum += is_right(first) + is_right(second);
-        }
-        core::hint::black_box(sum);
     }
 
     /// Says that the pair has contact points, or none, and answers whether that is new.

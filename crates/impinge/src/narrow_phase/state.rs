@@ -186,12 +186,18 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
 
-    /// Reads something of every cache line that [`Self::view`] is going to look at; returns nothing of use.
+    /// Of the two objects of the pair, that in whose frame the contacts are kept.
     #[inline]
-    pub(super) fn fetch(&self, poses: [&Pose<N, D>; 2]) -> u32 {
-        let pose = poses[usize::from(self.kept.swapped)];
+    pub(super) const fn home(&self, (first, second): (u32, u32)) -> u32 {
+        if self.kept.swapped { second } else { first }
+    }
+
+    /// Reads something of every cache line of the contacts that [`Self::view`] is going to look at; returns
+    /// nothing of use.
+    #[inline]
+    pub(super) fn fetch(&self) -> u32 {
         let names = self.kept.contacts.points.iter().map(|point| point.id);
-        names.fold(u32::from(pose.translation[0] > N::ZERO), u32::wrapping_add)
+        names.fold(0, u32::wrapping_add)
     }
 
     /// What it takes to bring the contacts of two boxes up to date; `None` for other solids.
@@ -206,14 +212,11 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         Some(BoxJob { poses, cuboids: [cuboid1, cuboid2], request, raw })
     }
 
-    /// The contacts, which are not none, read in place; the poses are those of the last update.
+    /// The contacts, which are not none, read in place; the pose is that of [`Self::home`] at the last
+    /// update.
     #[inline]
-    pub(crate) fn view<'a>(
-        &'a self,
-        poses: [&'a Pose<N, D>; 2],
-        pair_number: u64,
-    ) -> ManifoldView<'a, N, D> {
-        let placement = Placement::new(poses, pair_number, self.kept.swapped);
+    pub(crate) fn view<'a>(&'a self, pose1: &'a Pose<N, D>, pair: u64) -> ManifoldView<'a, N, D> {
+        let placement = Placement { pose1, pair, is_swapped: self.kept.swapped };
         ManifoldView::of_convex(&self.kept.contacts, placement)
     }
 }

@@ -162,13 +162,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             Lane::Composites => {
                 let rows = &mut self.lanes.composites.rows();
                 update_places(rows, picked, |rows, place| {
-                    update_contact(rows, table, place, changes)
+                    update_contact(rows, table, place, changes);
                 });
             }
             Lane::Proximity(group) => {
                 let rows = &mut self.lanes.proximity[usize::from(group)].rows();
                 update_places(rows, picked, |rows, place| {
-                    update_status(rows, table, place, changes)
+                    update_status(rows, table, place, changes);
                 });
             }
             Lane::CustomContacts => {
