@@ -204,7 +204,7 @@ mod tests {
         ball = Ball::new(0.75);
         assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "another ball at its address");
         for _ in 0..2 {
-            assert_eq!(asker.depths(&cuboid, &ball, 9.0), [], "far away, asked twice");
+            assert!(asker.depths(&cuboid, &ball, 9.0).is_empty(), "far away, asked twice");
         }
         assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "back again");
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
