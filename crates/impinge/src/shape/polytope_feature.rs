@@ -13,6 +13,9 @@ enum Part {
     Vertex(usize),
 }
 
+/// The names of two vertices and where they are.
+type Ends<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
+
 impl<N: Real, const D: usize> Polytope<N, D> {
     /// The rule of [`SupportMap::core_feature`], with any limit.
     fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
@@ -116,7 +119,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// What [`Self::fill`] says of a part of no more than two vertices.
-    fn ends_of(&self, part: Part) -> Option<(FeatureId, [(FeatureId, Point<N, D>); 2])> {
+    fn ends_of(&self, part: Part) -> Option<(FeatureId, Ends<N, D>)> {
         match part {
             Part::Side(side) => Some((Self::side_id(side), self.ends(side))),
             Part::Face(face) => {
@@ -131,7 +134,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    fn ends(&self, side: u32) -> [(FeatureId, Point<N, D>); 2] {
+    fn ends(&self, side: u32) -> Ends<N, D> {
         let ends = self.side(side).vertices;
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
     }

@@ -9,7 +9,7 @@ use super::frame::{Candidate, Frame};
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
-use crate::shape::{FeatureId, Geometry, Kind, Shown};
+use crate::shape::{FeatureId, Geometry, Kind, Shown, SupportMap};
 
 /// Sides that lean more than 60° count as their nearest end.
 const LEAST_COSINE: f64 = 0.5;
@@ -188,7 +188,7 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     match kind {
         Kind::Segment(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_) => N::ZERO,
         Kind::Capsule(capsule) => capsule.radius(),
-        other => Geometry(other).as_support_map().map_or(N::ZERO, |map| map.rounding()),
+        other => Geometry(other).as_support_map().map_or(N::ZERO, SupportMap::rounding),
     }
 }
 
