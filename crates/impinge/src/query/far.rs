@@ -35,13 +35,16 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     /// The same at all times up to `end`, zero included, while the second shape moves with `velocity`
     /// against the first.
     pub(crate) fn stays_beyond(&self, limit: N, velocity: &Vector<N, D>, end: N) -> bool {
-        let speed_squared = velocity.norm_squared();
+        let (speed_squared, along) = (velocity.norm_squared(), self.between.dot(velocity));
         // A speed whose square is no number of the type says nothing about when they are nearest.
         let is_still = max_component(velocity) <= N::ZERO;
-        if !is_still && speed_squared <= N::MIN_POSITIVE {
+        let is_known = speed_squared > N::MIN_POSITIVE
+            && speed_squared.is_finite_number()
+            && along.is_finite_number();
+        if !(is_still || is_known) {
             return false;
         }
-        let nearest = if is_still { N::ZERO } else { -self.between.dot(velocity) / speed_squared };
+        let nearest = if is_still { N::ZERO } else { -along / speed_squared };
         let way = self.between + velocity * max(min(nearest, end), N::ZERO);
         // The way is off by some rounding errors of the distance that it began with.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
@@ -212,5 +215,7 @@ mod tests {
         let still = Vector::<f32, 3>::zeros();
         assert!(apart(&unit, 1.0).stays_beyond(0.0, &still, forever), "it stays");
         assert!(apart(&unit, 1.0).stays_beyond(0.0, &(-creeps * 1e25), forever), "it leaves");
+        let rushes = Vector::<f32, 3>::new(-1e25, 0.0, 0.0);
+        assert!(!apart(&unit, 1.0).stays_beyond(0.0, &rushes, forever), "its square overflows");
     }
 }
