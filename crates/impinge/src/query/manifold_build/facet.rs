@@ -25,6 +25,41 @@ pub(super) enum Which {
     Second,
 }
 
+impl Which {
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    #[inline]
+    pub(super) fn below_witness<N: Real, const D: usize>(
+        self,
+        point: &Point<N, D>,
+        frame: &Frame<N, D>,
+    ) -> N {
+        let height = frame.height(point);
+        match self {
+            Self::First => -height,
+            Self::Second => height - frame.witness.distance,
+        }
+    }
+}
+
+/// How far the surface of a core that is swollen by a radius, and whose flat part has a cosine to the
+/// normal, is above a point of the core: `room` below the supporting plane, with the core's end nearest
+/// to the other solid, `top` below it, `away` from there to the point across the normal.
+#[inline]
+pub(super) fn lifted<N: Real>(
+    (radius, cosine): (N, N),
+    (room, top): (N, N),
+    away: &Vector<N, 2>,
+) -> N {
+    let away_squared = away.norm_squared();
+    let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+    let lift = if away_squared < turns_squared {
+        room - top + (radius * radius - away_squared).sqrt()
+    } else {
+        radius / cosine
+    };
+    max(min(lift, room), N::ZERO)
+}
+
 /// A corner and the side that leads from it to the next.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<N: Real, const D: usize> {
@@ -113,7 +148,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
     /// Finds the corner that is nearest to the other solid, the first of equals.
     fn find_top(&mut self, frame: &Frame<N, D>) {
         let placed =
-            |corner: &Corner<N, D>| (self.below_witness(&corner.point, frame), corner.flat);
+            |corner: &Corner<N, D>| (self.which.below_witness(&corner.point, frame), corner.flat);
         let nearer = |top: (N, _), corner: (N, _)| if corner.0 < top.0 { corner } else { top };
         self.top = self.corners.iter().map(placed).reduce(nearer).unwrap_or(self.top);
     }
@@ -358,26 +393,9 @@ impl<N: Real, const D: usize> Facet<N, D> {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
-        let room = self.below_witness(core, frame);
-        let (top, place) = self.top;
-        let (radius, cosine) = (self.rounding, self.cosine);
-        let away_squared = (frame.flat(core) - place).norm_squared();
-        let turns_squared = radius * radius * (N::ONE - cosine * cosine);
-        let lift = if away_squared < turns_squared {
-            room - top + (radius * radius - away_squared).sqrt()
-        } else {
-            radius / cosine
-        };
-        max(min(lift, room), N::ZERO)
-    }
-
-    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
-    fn below_witness(&self, point: &Point<N, D>, frame: &Frame<N, D>) -> N {
-        let height = frame.height(point);
-        match self.which {
-            Which::First => -height,
-            Which::Second => height - frame.witness.distance,
-        }
+        let room = self.which.below_witness(core, frame);
+        let (radius, away) = (self.rounding, frame.flat(core) - self.top.1);
+        lifted((radius, self.cosine), (room, self.top.0), &away)
     }
 }
 

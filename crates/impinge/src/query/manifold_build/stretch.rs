@@ -4,7 +4,7 @@
 //! for bit: in the plane a facet is a side or a point, two sides are parallel seen along the normal, and
 //! a place along the line of contact is one number.
 
-use super::facet::{Corner, Which};
+use super::facet::{Corner, Which, lifted};
 use super::frame::{Candidate, Frame};
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
@@ -116,22 +116,13 @@ impl<N: Real> Stretch<N> {
 
     fn find_top(&mut self, frame: &Frame<N, 2>) {
         let [first, second] = &self.corners;
-        let depth = self.below_witness(&first.point, frame);
+        let depth = self.which.below_witness(&first.point, frame);
         self.top = (depth, first.flat);
         if self.is_side {
-            let other = self.below_witness(&second.point, frame);
+            let other = self.which.below_witness(&second.point, frame);
             if other < depth {
                 self.top = (other, second.flat);
             }
-        }
-    }
-
-    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
-    fn below_witness(&self, point: &Point<N, 2>, frame: &Frame<N, 2>) -> N {
-        let height = frame.height(point);
-        match self.which {
-            Which::First => -height,
-            Which::Second => height - frame.witness.distance,
         }
     }
 
@@ -169,17 +160,9 @@ impl<N: Real> Stretch<N> {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
-        let room = self.below_witness(core, frame);
-        let (top, place) = self.top;
-        let (radius, cosine) = (self.rounding, self.cosine);
-        let away_squared = (frame.flat(core) - place).norm_squared();
-        let turns_squared = radius * radius * (N::ONE - cosine * cosine);
-        let lift = if away_squared < turns_squared {
-            room - top + (radius * radius - away_squared).sqrt()
-        } else {
-            radius / cosine
-        };
-        max(min(lift, room), N::ZERO)
+        let room = self.which.below_witness(core, frame);
+        let (radius, away) = (self.rounding, frame.flat(core) - self.top.1);
+        lifted((radius, self.cosine), (room, self.top.0), &away)
     }
 }
 
