@@ -160,11 +160,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         normal: &Vector<N, D>,
     ) -> Option<(N, N, N)> {
         let composite = self.between.composites()[1]?;
-        let origin = anchor(&self.part2(composite, plane));
-        let (part, plane) = (
-            moved(&self.part2(composite, part), &origin),
-            moved(&self.part2(composite, plane), &origin),
-        );
+        let (part, plane) = (self.part2(composite, part), self.part2(composite, plane));
+        let origin = anchor(&plane);
+        let (part, plane) = (moved(&part, &origin), moved(&plane, &origin));
         let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
             let map = Geometry(body.kind()).as_support_map()?;
             let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));

@@ -5,7 +5,7 @@ use fearless_simd::Simd;
 pub(super) use super::super::box_lanes::bits;
 use super::super::frame::ROUNDING_ERRORS;
 pub(super) use crate::math::lanes::{
-    by_axis, cross, dot, either, lit, minus, negated, norm, plus, seen_from, times,
+    by_axis, cross, dot, either, lit, minus, negated, norm, over, plus, seen_from, times,
 };
 use crate::math::{Real, Wide};
 
@@ -30,11 +30,7 @@ pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 ) -> ([V; D], V, V::Mask) {
     let squared = dot(v, v);
     let length = squared.sqrt();
-    let direction = by_axis(
-        #[inline(always)]
-        |axis| v[axis] / length,
-    );
-    (direction, length, is_usual(simd, squared))
+    (over(v, length), length, is_usual(simd, squared))
 }
 
 /// The length of a vector that is zero or of usual length, which the mask says.
