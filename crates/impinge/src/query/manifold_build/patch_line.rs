@@ -5,7 +5,7 @@
 
 use smallvec::SmallVec;
 
-use super::patch::{Kept, Merging, Patch, PatchPoint, are_level, by_depth, merge};
+use super::patch::{Kept, Merging, Patch, PatchPoint, Piece, are_level, by_depth, merge};
 use super::reduce::{ALMOST, NEW_POINT_WEIGHT};
 use super::{deepest_of, tangents2};
 use crate::math::{Real, Vector};
@@ -13,7 +13,7 @@ use crate::query::{PairIds, RawPoint};
 
 /// As many pieces and points are merged here; more are left to the general way.
 const MOST_PIECES: usize = 8;
-const MOST_POINTS: usize = 24;
+const MOST_POINTS: usize = 12;
 
 /// [`merge`](super::merge) in the plane; many pieces are left to it.
 pub(in crate::query) fn merge_in_plane<N: Real>(
@@ -25,9 +25,42 @@ pub(in crate::query) fn merge_in_plane<N: Real>(
     if pieces > MOST_PIECES || points > MOST_POINTS {
         return merge(merging, patches, ids);
     }
-    let kept =
-        if patches.is_empty() { Kept::from_elem(None, points) } else { merging.kept(patches) };
-    patches.clear();
+    let count = match merging.pieces {
+        [] => 0,
+        [piece] if piece.points.len() == 1 => merge_one(merging, piece, (patches, ids)),
+        _ => merge_some(merging, (patches, ids)),
+    };
+    patches.truncate(count);
+}
+
+/// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
+fn merge_one<N: Real>(
+    merging: &Merging<'_, N, 2>,
+    piece: &Piece<N, 2>,
+    (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
+) -> usize {
+    let mut raw = merging.points[piece.points.start];
+    // Written so that what is no number is not near.
+    let is_near = raw.distance <= merging.request.prediction;
+    if !is_near {
+        return 0;
+    }
+    let mut old = patches.iter().flat_map(|patch| &patch.points);
+    let kept = old.find(|old| {
+        let names = (old.raw.feature1, old.raw.feature2);
+        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
+    });
+    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
+    blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
+    1
+}
+
+/// Merges some pieces; answers how many patches there are.
+fn merge_some<N: Real>(
+    merging: &Merging<'_, N, 2>,
+    (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
+) -> usize {
+    let kept = merging.kept(patches);
     let row = Row { merging, kept: &kept };
     let mut order = [Placed { piece: 0, deepest: 0, group: 0 }; MOST_PIECES];
     let count = row.order(&mut order);
@@ -35,12 +68,31 @@ pub(in crate::query) fn merge_in_plane<N: Real>(
     let of_groups = row.group(&mut order[..count], &mut groups);
     let (order, groups) = (&order[..count], &mut groups[..of_groups]);
     groups.sort_unstable_by_key(|group| group.first);
+    let mut made = 0;
     for group in groups.iter() {
         let lead = order[group.lead];
         if merging.points[lead.deepest].distance <= merging.request.prediction {
-            row.push_patch(lead, order, (patches, ids));
+            let points = blank(patches, made, merging.pieces[lead.piece].normal);
+            row.fill_patch(lead, order, (points, ids));
+            made += 1;
         }
     }
+    made
+}
+
+/// A patch without points, in the place of an old one if there is one.
+fn blank<N: Real>(
+    patches: &mut Vec<Patch<N, 2>>,
+    at: usize,
+    normal: Vector<N, 2>,
+) -> &mut SmallVec<[PatchPoint<N, 2>; 4]> {
+    if at == patches.len() {
+        patches.push(Patch { normal, points: SmallVec::new() });
+    }
+    let patch = &mut patches[at];
+    patch.normal = normal;
+    patch.points.clear();
+    &mut patch.points
 }
 
 /// A piece, its deepest point and its group.
@@ -120,17 +172,15 @@ impl<N: Real> Row<'_, N> {
         count
     }
 
-    /// Adds the patch of a group: its deepest point and, of the two ends, those that span most.
-    fn push_patch(
+    /// Fills the patch of a group: its deepest point and, of the two ends, those that span most.
+    fn fill_patch(
         &self,
         lead: Placed,
         order: &[Placed],
-        (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
+        (out, ids): (&mut SmallVec<[PatchPoint<N, 2>; 4]>, &mut PairIds),
     ) {
-        let normal = self.merging.pieces[lead.piece].normal;
-        let blank =
-            Member { flat: Vector::<N, 2>::zeros(), piece: lead.piece, point: lead.deepest };
-        let mut members = [blank; MOST_POINTS];
+        let flat = Vector::<N, 2>::zeros();
+        let mut members = [Member { flat, piece: lead.piece, point: lead.deepest }; MOST_POINTS];
         let count = self.members(lead, order, &mut members);
         let count = self.without_copies(&mut members[..count]);
         let lowest = self.merging.points[lead.deepest].distance;
@@ -140,8 +190,6 @@ impl<N: Real> Row<'_, N> {
             (self.kept[outline[index].point].is_some(), self.distance(&outline[index]))
         });
         let (chosen, count) = self.chosen(&outline[..count], deepest);
-        patches.push(Patch { normal, points: SmallVec::new() });
-        let Some(patch) = patches.last_mut() else { return };
         for &index in &chosen[..count] {
             let Member { piece, point, .. } = outline[index];
             let id = self.kept[point].unwrap_or_else(|| ids.next());
@@ -149,10 +197,9 @@ impl<N: Real> Row<'_, N> {
             if index == deepest {
                 raw.distance = lowest;
             }
-            let parts = self.merging.pieces[piece].parts;
-            patch.points.push(PatchPoint { raw, parts });
+            out.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
         }
-        if let [first, second] = patch.points.as_mut_slice()
+        if let [first, second] = out.as_mut_slice()
             && first.raw.id > second.raw.id
         {
             core::mem::swap(first, second);

@@ -11,6 +11,8 @@ use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangl
 const MOST_KEPT: usize = 64;
 /// The room that is searched around a box to find parts for later, as a share of its half extents.
 const ROOM: f64 = 0.125;
+/// The same where so much room holds no more parts than are looked at side by side.
+const LARGE_ROOM: f64 = 0.5;
 
 /// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
 /// stays in that.
@@ -29,6 +31,8 @@ pub(super) struct Around<N: Real, const D: usize> {
     half: Option<Vector<N, D>>,
     /// There are too many to keep.
     is_crowded: bool,
+    /// There were too many in a large room.
+    is_dense: bool,
 }
 
 impl<N: Space<D>, const D: usize> Around<N, D> {
@@ -48,12 +52,23 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         !self.is_crowded
     }
 
+    /// The parts that are kept are all that overlap a box.
+    pub(super) fn holds(&self, aabb: &Aabb<N, D>) -> bool {
+        !self.is_crowded && self.within.as_ref().is_some_and(|within| within.contains(aabb))
+    }
+
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) {
         let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let roomy = aabb.loosened(most * N::lit(ROOM));
-        self.parts.clear();
+        let mut roomy = aabb.loosened(most * N::lit(LARGE_ROOM));
+        if !self.is_dense {
+            self.search(composite, &roomy);
+            self.is_dense = self.parts.len() > LANES;
+        }
+        if self.is_dense {
+            roomy = aabb.loosened(most * N::lit(ROOM));
+            self.search(composite, &roomy);
+        }
         self.tiles.clear();
-        composite.search().overlapping(&roomy, &mut |part| self.parts.push(part));
         self.is_crowded = self.parts.len() > MOST_KEPT;
         if self.is_crowded {
             self.parts = SmallVec::new();
@@ -61,6 +76,11 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         self.parts.sort_unstable();
         self.within = Some(roomy);
         self.fill_tiles(composite);
+    }
+
+    fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
+        self.parts.clear();
+        composite.search().overlapping(within, &mut |part| self.parts.push(part));
     }
 
     /// Copies the corners of all parts, if all have corners.

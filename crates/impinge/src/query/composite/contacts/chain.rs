@@ -2,19 +2,24 @@
 //! with what all segments have in common worked out once, and nothing made of those beyond reach.
 
 use super::super::between::Between;
+use super::super::bounds::enclosing;
+use super::around::Around;
 use super::candidates::{depth_in, search_box};
 use super::facts::{Finding, Notes, Standing};
 use super::judge::{Case, Verdict, judge};
 use super::near::relative_slack;
 use super::scene::Scene;
 use super::{CompositeContacts, Findings, Query, Way, advanced, middle_of_first, of_parts};
+use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, centroid, min};
+use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
 use crate::query::manifold_build::{Along, Piece, SegmentPair, merge_in_plane};
 use crate::query::separation::{ChainQuestion, Links, links};
 use crate::query::tiles::LANES;
 use crate::query::{ManifoldRequest, Pair, RawPoint};
-use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Segment, SupportMap, Surface};
+use crate::shape::{
+    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, Segment, Siding, SupportMap, Surface,
+};
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
@@ -47,8 +52,9 @@ pub(crate) fn update_chain2<N: Real>(
         reference: &reference,
         request: &chain.request,
     };
-    let scene = Scene::new(between, query.around);
-    query.settle(&scene, &mut findings, &mut notes);
+    if !findings.is_empty() {
+        query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
+    }
     contacts.conclude((request, merge_in_plane), [reference, center], &findings, &notes);
     true
 }
@@ -61,6 +67,7 @@ struct Chain<'b, 'a, N: Real> {
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: &'a dyn Surface<N, 2>,
+    siding: Option<Siding>,
     /// The chain's frame in that of the solid, put through one point.
     turn: Pose<N, 2>,
     /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it is a ball.
@@ -80,6 +87,7 @@ struct Link<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
     parts: [u32; 2],
     segment: Segment<N, 2>,
+    known: KnownSegment<'a, N>,
     found: Separation<N, 2>,
     tolerance: N,
 }
@@ -98,6 +106,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         }
         let [_, parts] = between.composites();
         let (parts, map) = (parts?, Geometry(solid).as_support_map()?);
+        let surface = parts.surface()?;
         let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
         let pose12 = if is_ball { turn } else { Pose::relative(&turn, &Pose::identity()) };
         let center = middle_of_first(between)?;
@@ -106,7 +115,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             request: of_parts(between, request),
             solid,
             parts,
-            surface: parts.surface()?,
+            surface,
+            siding: surface.siding(),
             turn,
             pose12,
             is_ball,
@@ -117,6 +127,21 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         })
     }
 
+    /// A box around all that is within reach of the solid, of which all parts are kept; `None` if some are
+    /// not, or are no segments.
+    fn box_within(&self, around: &mut Around<N, 2>) -> Option<Aabb<N, 2>> {
+        let reach = self.size + self.request.prediction;
+        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(reach));
+        let whole = enclosing(&whole, &self.between.pose21);
+        if around.holds(&whole) {
+            return around.has_segments_alone().then_some(whole);
+        }
+        let exact = search_box(self.between, self.request.prediction);
+        let most = exact.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
+        let aabb = if reach <= N::TWO * most { whole } else { exact };
+        (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
+    }
+
     /// Finds what is to be said of the segments within reach.
     fn find(
         &mut self,
@@ -125,11 +150,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         notes: &mut Notes<N, 2>,
     ) -> Option<()> {
         let limit = self.request.prediction;
-        let aabb = search_box(self.between, limit);
         let around = &mut contacts.around;
-        if !(around.reaches(self.parts, &aabb) && around.has_segments_alone()) {
-            return None;
-        }
+        let aabb = self.box_within(around)?;
         let question = ChainQuestion {
             tiles: around.tiles(),
             count: around.parts().len(),
@@ -161,15 +183,18 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         ends: [Point<N, 2>; 2],
         found: &Separation<N, 2>,
     ) -> Option<Link<'c, 'b, 'a, N>> {
-        let is_met = found.distance.is_finite_number() && self.surface.faces(parts[1], &self.from);
-        if !is_met {
+        if !found.distance.is_finite_number() {
+            return None;
+        }
+        let known = KnownSegment::new(self.surface, self.siding, ends);
+        if !known.faces(parts[1], &self.from) {
             return None;
         }
         let [a, b] = ends.map(|end| end - self.origin.coords);
         let segment = Segment::of_finite(a, b);
         let size = segment.reach() + self.size;
         let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
-        Some(Link { chain: self, parts, segment, found: *found, tolerance })
+        Some(Link { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
     /// A direction from the first of a pair to the second, from the solid to the chain in the solid's frame.
@@ -231,7 +256,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let (part, outward) = (self.parts[1], -chain.turn.inverse_vector(normal));
         let toward = chain.from - middle;
         let case = Case { part, feature: &feature, is_beside: false, outward, toward };
-        judge(Some(chain.surface), &case)
+        judge(Some(&self.known), &case)
     }
 
     /// The segment and the solid, in the order of kinds.
