@@ -1,6 +1,7 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
 use super::seam::{Seam, slack};
+use super::siding::Joining;
 use super::tri_mesh::{aabb_at, sphere_around};
 use super::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
@@ -75,7 +76,8 @@ impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn siding(&self) -> Option<Siding> {
         let (is_left, is_told_by_front) = (false, false);
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided(), self.keeps_internal_edges);
-        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges })
+        let joining = if self.is_moved { Joining::Unknown } else { Joining::All };
+        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges, joining })
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {

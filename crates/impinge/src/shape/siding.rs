@@ -1,7 +1,7 @@
-//! Which normals a segment of a chain in the plane has that are not those of a joint: told by its ends.
+//! Which normals a segment of a chain in the plane has: told by its ends and those of the segments around it.
 
 use super::polyline_parts::across;
-use super::seam::slack;
+use super::seam::{Seam, slack};
 use super::{FeatureId, Surface};
 use crate::math::{Point, Real, Vector, perp, unit};
 
@@ -15,6 +15,27 @@ pub struct Siding {
     /// Of two sides the one that a vector points to is told by the front, else by the vector itself.
     pub(super) is_told_by_front: bool,
     pub(super) keeps_internal_edges: bool,
+    pub(super) joining: Joining,
+}
+
+/// Which segments are joined where their ends are at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Joining {
+    /// All.
+    All,
+    /// Each with that of the next number alone, its second end with the first of that.
+    InRow,
+    /// Only the surface can tell.
+    Unknown,
+}
+
+/// Segments of a chain, among them all that touch a box.
+pub(crate) trait KnownSegments<N: Real>: Sync {
+    /// All segments through a point are among them.
+    fn are_all_at(&self, point: &Point<N, 2>) -> bool;
+
+    /// Visits those that end at a point, by their numbers, ascending, and ends.
+    fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2]));
 }
 
 impl Siding {
@@ -40,11 +61,13 @@ impl Siding {
     }
 }
 
-/// A segment of a chain, with what its ends tell; what lies at joints the surface is asked.
+/// A segment of a chain, with what its ends tell: the answers of its surface, without a look at that.
 pub(crate) struct KnownSegment<'a, N: Real> {
     surface: &'a dyn Surface<N, 2>,
     siding: Option<Siding>,
-    from: Point<N, 2>,
+    /// Those around it.
+    others: &'a dyn KnownSegments<N>,
+    ends: [Point<N, 2>; 2],
     /// Unit, from the first end to the second; `None` without length.
     along: Option<Vector<N, 2>>,
 }
@@ -52,11 +75,37 @@ pub(crate) struct KnownSegment<'a, N: Real> {
 impl<'a, N: Real> KnownSegment<'a, N> {
     /// A segment by its ends, as its surface has them.
     pub(crate) fn new(
-        surface: &'a dyn Surface<N, 2>,
-        siding: Option<Siding>,
-        [a, b]: [Point<N, 2>; 2],
+        (surface, siding): (&'a dyn Surface<N, 2>, Option<Siding>),
+        others: &'a dyn KnownSegments<N>,
+        ends: [Point<N, 2>; 2],
     ) -> Self {
-        Self { surface, siding, from: a, along: unit(&(b - a)).map(|(along, _)| along) }
+        let along = unit(&(ends[1] - ends[0])).map(|(along, _)| along);
+        Self { surface, siding, others, ends, along }
+    }
+
+    /// The rule of [`Seam`] at one of the ends; `None` if it is not known what is joined there.
+    fn joint_admits(
+        &self,
+        siding: Siding,
+        (part, end): (u32, u32),
+        normal: &Vector<N, 2>,
+    ) -> Option<bool> {
+        let at = self.ends.get(end as usize)?;
+        if siding.joining == Joining::Unknown || !self.others.are_all_at(at) {
+            return None;
+        }
+        let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
+        self.others.each_ending_at(at, &mut |other, [a, b]| {
+            let starts_here = a == *at;
+            let is_joined = siding.joining == Joining::All
+                || other == if starts_here { part + end } else { (part + end).wrapping_sub(1) };
+            if let (true, Some((along, _))) = (is_joined, unit(&(b - a))) {
+                let away = if starts_here { along } else { -along };
+                seam.add_segment(&away, siding.height_over(Some(&along), normal));
+            }
+        });
+        Some(seam.admits(siding.is_one_sided))
     }
 }
 
@@ -69,7 +118,10 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
         }
         let own = self.along.map(|along| along.dot(normal).abs() <= slack());
         match feature {
-            FeatureId::Vertex(_) if own != Some(true) => self.surface.admits(part, feature, normal),
+            FeatureId::Vertex(end) if own != Some(true) => {
+                let known = self.joint_admits(siding, (part, end), normal);
+                known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
+            }
             _ => own.is_none_or(|own| own) && height >= N::ZERO,
         }
     }
@@ -84,7 +136,7 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
     fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
         match self.siding {
             Some(siding) => {
-                siding.height_over(self.along.as_ref(), &(center - self.from)) >= N::ZERO
+                siding.height_over(self.along.as_ref(), &(center - self.ends[0])) >= N::ZERO
             }
             None => self.surface.faces(part, center),
         }

@@ -10,15 +10,16 @@ use super::judge::{Case, Verdict, judge};
 use super::near::relative_slack;
 use super::scene::Scene;
 use super::{CompositeContacts, Findings, Query, Way, advanced, middle_of_first, of_parts};
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
 use crate::query::manifold_build::{Along, Piece, SegmentPair, merge_in_plane};
 use crate::query::separation::{ChainQuestion, Links, links};
-use crate::query::tiles::LANES;
+use crate::query::tiles::{LANES, Tiles};
 use crate::query::{ManifoldRequest, Pair, RawPoint};
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, Segment, Siding, SupportMap, Surface,
+    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Siding,
+    SupportMap, Surface,
 };
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
@@ -82,12 +83,44 @@ struct Chain<'b, 'a, N: Real> {
     size: N,
 }
 
+/// The segments that are kept: all that overlap a box.
+struct Kept<'t, N: Real> {
+    tiles: &'t [Tiles<N, 2>],
+    parts: &'t [u32],
+    within: Aabb<N, 2>,
+}
+
+impl<N: Real> Kept<'_, N> {
+    fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
+        let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
+        [a, b]
+    }
+}
+
+impl<N: Real> KnownSegments<N> for Kept<'_, N> {
+    fn are_all_at(&self, point: &Point<N, 2>) -> bool {
+        self.within.contains_point(point)
+    }
+
+    fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2])) {
+        for (index, &part) in self.parts.iter().enumerate() {
+            let [[from_x, from_y], [to_x, to_y], _] = &self.tiles[index / LANES].corners;
+            let lane = index % LANES;
+            let is_start = from_x[lane] == point.x && from_y[lane] == point.y;
+            let is_end = to_x[lane] == point.x && to_y[lane] == point.y;
+            if is_start || is_end {
+                visit(part, self.ends(index));
+            }
+        }
+    }
+}
+
 /// A segment of the chain within reach of the solid.
 struct Link<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
     parts: [u32; 2],
     segment: Segment<N, 2>,
-    known: KnownSegment<'a, N>,
+    known: KnownSegment<'c, N>,
     found: Separation<N, 2>,
     tolerance: N,
 }
@@ -166,27 +199,27 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let slack = relative_slack::<N>() * (near.from_middle + self.size + limit);
         let way = Way { old: contacts.reference, clearance: near.from_middle - slack };
         self.from = advanced(self.between, &way, self.center);
+        let kept = Kept { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
-            let [a, b, _] = around.tiles()[index / LANES].corners(index % LANES);
-            let link = self.link([0, around.parts()[*index]], [a, b], found);
-            if let Some(link) = link {
+            if let Some(link) = self.link(&kept, *index, found) {
                 link.find(findings, &mut notes.points)?;
             }
         }
         Some(())
     }
 
-    /// A segment given by its ends; `None` if it cannot be touched or is not finitely far away.
+    /// One of the segments that are kept; `None` if it cannot be touched or is not finitely far away.
     fn link<'c>(
         &'c self,
-        parts: [u32; 2],
-        ends: [Point<N, 2>; 2],
+        kept: &'c Kept<'_, N>,
+        index: usize,
         found: &Separation<N, 2>,
     ) -> Option<Link<'c, 'b, 'a, N>> {
         if !found.distance.is_finite_number() {
             return None;
         }
-        let known = KnownSegment::new(self.surface, self.siding, ends);
+        let (parts, ends) = ([0, kept.parts[index]], kept.ends(index));
+        let known = KnownSegment::new((self.surface, self.siding), kept, ends);
         if !known.faces(parts[1], &self.from) {
             return None;
         }
