@@ -30,8 +30,7 @@ impl<N: Real> SegmentPair<'_, N> {
             return ball::known_part(&self.pair, found);
         }
         let frame = self.frame(found);
-        let shown = Stretch::of((Which::First, self.pair.first), None, &frame)?;
-        Some(shown.at_witness(&frame))
+        Some(self.first(&frame)?.at_witness(&frame))
     }
 
     /// The contacts that belong to a separation; `None` of solids that show more than a side.
@@ -49,7 +48,7 @@ impl<N: Real> SegmentPair<'_, N> {
             return Some(());
         }
         let frame = self.frame(witness);
-        let [first, second] = self.stretches(&frame)?;
+        let (first, second) = (self.first(&frame)?, self.second(&frame)?);
         let mut candidates = Candidates::new();
         if first.is_side && second.is_side {
             Shared { frame: &frame, first: &first, second: &second }.candidates(&mut candidates);
@@ -75,7 +74,7 @@ impl<N: Real> SegmentPair<'_, N> {
         N: Space<2>,
     {
         let frame = self.frame(&extremes(&self.pair, &along.normal)?);
-        let [first, second] = self.stretches(&frame)?;
+        let (first, second) = (self.first(&frame)?, self.second(&frame)?);
         let shared = Shared { frame: &frame, first: &first, second: &second };
         let (mut candidates, tolerance) = (Candidates::new(), self.tolerance);
         let (at1, at2) = (&first.corners[0], &second.corners[0]);
@@ -109,9 +108,16 @@ impl<N: Real> SegmentPair<'_, N> {
         Frame::known(witness, tangents2(&witness.normal), (self.tolerance, self.prediction))
     }
 
-    fn stretches(&self, frame: &Frame<N, 2>) -> Option<[Stretch<N>; 2]> {
-        let Pair { first, second, pose12 } = &self.pair;
-        let first = Stretch::of((Which::First, *first), None, frame)?;
-        Some([first, Stretch::of((Which::Second, *second), Some(pose12), frame)?])
+    #[inline]
+    fn first(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+        match self.pair.first {
+            Kind::Segment(segment) => Some(Stretch::of_segment(segment, frame)),
+            other => Stretch::of((Which::First, other), None, frame),
+        }
+    }
+
+    #[inline]
+    fn second(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+        Stretch::of((Which::Second, self.pair.second), Some(&self.pair.pose12), frame)
     }
 }

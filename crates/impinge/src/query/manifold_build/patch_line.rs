@@ -87,6 +87,8 @@ fn blank<N: Real>(
     normal: Vector<N, 2>,
 ) -> &mut SmallVec<[PatchPoint<N, 2>; 4]> {
     if at == patches.len() {
+        // Most pairs have one patch at all times.
+        patches.reserve_exact(1);
         patches.push(Patch { normal, points: SmallVec::new() });
     }
     let patch = &mut patches[at];

@@ -9,7 +9,7 @@ use super::frame::{Candidate, Frame};
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
-use crate::shape::{FeatureId, Geometry, Kind, Shown, SupportMap};
+use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
 /// Sides that lean more than 60° count as their nearest end.
 const LEAST_COSINE: f64 = 0.5;
@@ -64,6 +64,7 @@ pub(super) struct Stretch<N: Real> {
 }
 
 impl<N: Real> Stretch<N> {
+    #[inline]
     pub(super) fn of(
         (which, kind): (Which, Kind<'_, N, 2>),
         pose: Option<&Pose<N, 2>>,
@@ -72,6 +73,21 @@ impl<N: Real> Stretch<N> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
         let shown = Shown::of(kind, &direction)?;
+        Some(Self::placed((which, &shown), (rounding(kind), pose), frame))
+    }
+
+    /// That of a segment, the first solid.
+    #[inline]
+    pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &Frame<N, 2>) -> Self {
+        Self::placed((Which::First, &Shown::of_segment(segment)), (N::ZERO, None), frame)
+    }
+
+    #[inline]
+    fn placed(
+        (which, shown): (Which, &Shown<N>),
+        (rounding, pose): (N, Option<&Pose<N, 2>>),
+        frame: &Frame<N, 2>,
+    ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
             let point = pose.map_or(vertex, |pose| pose.point(&vertex));
             Corner { point, flat: frame.flat(&point), id, side: shown.id }
@@ -81,17 +97,17 @@ impl<N: Real> Stretch<N> {
             id: shown.id,
             corners: [corner(shown.ends[0]), corner(shown.ends[1])],
             is_side: shown.is_side,
-            rounding: rounding(kind),
+            rounding,
             cosine: N::ONE,
             along: N::ZERO,
             length: N::ZERO,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         };
-        stretch.settle(&outward, frame.tolerance);
+        stretch.settle(&which.outward(frame), frame.tolerance);
         if stretch.rounding > N::ZERO {
             stretch.find_top(frame);
         }
-        Some(stretch)
+        stretch
     }
 
     /// A side of no extent seen along the normal is its first corner, with the name of the side; one that

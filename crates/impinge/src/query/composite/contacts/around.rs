@@ -85,6 +85,8 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
 
     /// Copies the corners of all parts, if all have corners.
     fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
+        // Not a byte more than that: there are as many of these as pairs.
+        self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
         for parts in self.parts.chunks(LANES) {
             let mut tiles = Tiles::blank();
             for lane in 0..LANES {

@@ -6,6 +6,7 @@ use super::super::bounds::enclosing;
 use super::around::Around;
 use super::candidates::{depth_in, search_box};
 use super::facts::{Finding, Notes, Standing};
+use super::hidden::are_alike;
 use super::judge::{Case, Verdict, judge};
 use super::near::relative_slack;
 use super::scene::Scene;
@@ -53,11 +54,29 @@ pub(crate) fn update_chain2<N: Real>(
         reference: &reference,
         request: &chain.request,
     };
-    if !findings.is_empty() {
+    if !is_settled(&findings) {
         query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
     }
     contacts.conclude((request, merge_in_plane), [reference, center], &findings, &notes);
     true
+}
+
+/// [`Query::settle`] would change nothing: all hold, with faces of about one normal, and as near as the nearest.
+fn is_settled<N: Real>(findings: &[Finding<N, 2>]) -> bool {
+    let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
+    let mut face: Option<Vector<N, 2>> = None;
+    for finding in findings {
+        let is_alike = match (face, finding.face) {
+            (Some(before), Some(own)) => are_alike(&before, &own),
+            _ => true,
+        };
+        if !(is_alike && finding.standing == Standing::Own) {
+            return false;
+        }
+        face = finding.face.or(face);
+        (distance, lowest) = (min(distance, finding.distance), min(lowest, finding.lowest));
+    }
+    findings.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
 /// A convex solid and the chain that it may touch.

@@ -34,16 +34,25 @@ fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
     let is_one_sided = random.pick(3) == 0;
     if random.pick(2) == 0 {
         let extents = Vector::<N, 2>::new(N::lit([6.0, -6.0][random.pick(2)]), N::ONE);
-        let field = HeightField::<N, 2>::new(heights, extents);
+        let hole = random.pick(20);
+        let field = HeightField::<N, 2>::new(heights, extents).with_holes(|cell| cell == hole);
         return Box::new(if is_one_sided { field.one_sided() } else { field });
     }
     let place =
-        |(n, height): (usize, &N)| Point::<N, 2>::new(N::lit(n as f64 * 0.5 - 3.0), *height);
-    let mut points: Vec<_> = heights.iter().enumerate().map(place).collect();
+        |(n, height): (u32, &N)| Point::<N, 2>::new(N::lit(f64::from(n) * 0.5 - 3.0), *height);
+    let mut points: Vec<_> = (0..).zip(&heights).map(place).collect();
     if random.pick(2) == 0 {
         points.reverse();
     }
-    let line = if random.pick(4) == 0 { Polyline::closed(points) } else { Polyline::open(points) };
+    let is_closed = random.pick(4) == 0;
+    let mut line =
+        if is_closed { Polyline::closed(points.clone()) } else { Polyline::open(points.clone()) };
+    if random.pick(4) == 0 {
+        // Two vertices at one place that are no joint.
+        points[9].x += N::HALF;
+        points[6] = points[9];
+        line.set_vertices(&points);
+    }
     let line = if random.pick(5) == 0 { line.with_internal_edges_kept() } else { line };
     Box::new(if is_one_sided { line.one_sided() } else { line })
 }
