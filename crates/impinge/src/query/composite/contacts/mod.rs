@@ -139,6 +139,10 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         for found in findings.iter().filter(|found| found.standing != Standing::Left) {
             pieces.push(found.piece.clone());
         }
+        if !pieces.is_empty() && self.patches.capacity() == 0 {
+            // Most pairs never have more than one: what lies close together is read faster.
+            self.patches.reserve_exact(1);
+        }
         let merging = Merging { request, tolerance, pieces: &pieces, points: &notes.points };
         merge(&merging, &mut self.patches, &mut self.ids);
     }
