@@ -170,17 +170,15 @@ pub(super) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     noise: N,
 ) -> Option<Separation<N, 2>> {
     let is_number = best.gap.is_finite_number();
-    let cores = if !is_number {
-        None
-    } else if best.gap <= N::ZERO {
-        Some(overlapping(simd, own, other, best, noise))
-    } else {
-        apart(simd, own, other, best, noise)
-    };
-    match cores {
-        Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
-        None => None,
+    if !is_number {
+        return None;
     }
+    let cores = if best.gap <= N::ZERO {
+        overlapping(simd, own, other, best, noise)
+    } else {
+        apart(simd, own, other, best, noise)?
+    };
+    Some(cores.rounded(own.rounding, other.rounding))
 }
 
 /// A polygon in some frame.
