@@ -82,9 +82,8 @@ where
     /// its height.
     #[inline(always)]
     pub(super) fn run(mut self) -> M {
-        let [tt, ft, ff, tf] = SIGNS;
-        let above = [self.above(tt), self.above(ft), self.above(ff), self.above(tf)];
-        let mut below = [self.below(tt), self.below(ft), self.below(ff), self.below(tf)];
+        let above = [self.above(0), self.above(1), self.above(2), self.above(3)];
+        let mut below = [self.below(0), self.below(1), self.below(2), self.below(3)];
         drop_coincident(&above, &mut below);
         let [a, b, c, d] = above;
         self.corner(0, &a);
@@ -113,18 +112,22 @@ where
         ([x, y], height)
     }
 
-    /// A corner of the parallelogram as the rectangle sees it.
+    /// A corner of the parallelogram as the rectangle sees it; edges that cross have none.
     #[inline(always)]
-    fn above(&self, signs: [bool; 2]) -> Place<V, M> {
-        let (flat, height) = self.arm_end(signs);
+    fn above(&self, corner: usize) -> Place<V, M> {
+        let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
-        self.place((flat, height), inside, flat)
+        let mut place = self.place((flat, height), inside, flat);
+        place.is_inside &=
+            self.faces.shown_below.is_whole() & self.faces.shown_above.has_corner(corner);
+        place
     }
 
     /// A corner of the rectangle as the parallelogram sees it.
     #[inline(always)]
-    fn below(&self, signs: [bool; 2]) -> Place<V, M> {
+    fn below(&self, corner: usize) -> Place<V, M> {
+        let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
@@ -133,7 +136,10 @@ where
         let inside =
             [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
-        self.place((flat, height), inside, along)
+        let mut place = self.place((flat, height), inside, along);
+        place.is_inside &= faces.shown_below.is_whole()
+            & faces.shown_above.has_place(&place.at_end, &place.beyond);
+        place
     }
 
     /// A place that is `inside` the ends of the other face by this much along each of its axes, and
@@ -171,11 +177,12 @@ where
         let (to, high) = self.arm_end(ends(arm, sign, true));
         let side = [to[0] - from[0], to[1] - from[1]];
         let (from, side) = ((&from, low), (&side, high - low));
-        let to = (&to, high);
-        self.crossing(slot, [from, side, to], (0, true));
-        self.crossing(slot + 1, [from, side, to], (0, false));
-        self.crossing(slot + 2, [from, side, to], (1, true));
-        self.crossing(slot + 3, [from, side, to], (1, false));
+        let ends = [from, side, (&to, high)];
+        let is_shown = self.faces.shown_above.has_side(arm, sign);
+        self.crossing(slot, ends, (0, true), is_shown);
+        self.crossing(slot + 1, ends, (0, false), is_shown);
+        self.crossing(slot + 2, ends, (1, true), is_shown);
+        self.crossing(slot + 3, ends, (1, false), is_shown);
     }
 
     /// The crossing with the side of the rectangle that is at one end of an axis, away from the ends
@@ -186,6 +193,7 @@ where
         slot: usize,
         [from, side, to]: [(&[V; 2], V); 3],
         (axis, is_positive): (usize, bool),
+        is_shown: M,
     ) {
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
@@ -196,7 +204,8 @@ where
         let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
         let height = from.1 + side.1 * along;
-        self.admit(slot, (&flat, height), (leaves | enters) & is_within);
+        let is_shown = is_shown & self.faces.shown_below.has_side(axis, is_positive);
+        self.admit(slot, (&flat, height), (leaves | enters) & is_within & is_shown);
     }
 
     /// Stores a candidate where it is and the prediction admits it.

@@ -1,9 +1,10 @@
-//! Boxes face to face in space: `box_faces.rs` and the separating axis test in lanes.
+//! Boxes in space: `box_faces.rs` and the separating axis test in lanes.
 
 mod axis;
 mod clip;
 mod faces;
 mod names;
+mod shown;
 
 use fearless_simd::Simd;
 
@@ -73,7 +74,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
             bits(faces.is_m[0]),
             bits(faces.is_m[1]),
             bits(faces.is_positive),
-            bits(axis.is_second),
+            bits(faces.is_second),
             0,
         ];
         axis.gap.store(&mut self.gap);
@@ -81,12 +82,11 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         for (row, along) in self.normal.iter_mut().zip(axis.normal) {
             along.store(row);
         }
-        let is_second = axis.is_second;
         self.slots.place(
             simd,
             &limits,
             #[inline(always)]
-            |flat, height| faces.point1(simd, &boxes, is_second, (flat, height)),
+            |flat, height| faces.point1(&boxes, (flat, height)),
         );
     }
 
