@@ -1,10 +1,9 @@
 //! Manifolds read where they are kept.
 
-use core::slice;
-
-use super::manifold_build::{Patch, PatchPoint};
-use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint, TrackedContact};
-use crate::math::{Pose, Real, Unit, Vector};
+use super::manifold::placed;
+use super::manifold_build::Patch;
+use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
+use crate::math::{Real, Unit, Vector};
 use crate::shape::FeatureId;
 
 /// A contact as [`ManifoldView`] gives it: a [`TrackedContact`](super::TrackedContact) without its
@@ -90,17 +89,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     /// The contacts, in the order in which they began.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
-        match self.0 {
-            Kept::Convex(raw, placement) => {
-                let from = Seen::new(&raw.normal, &placement);
-                Contacts::Convex(from, raw.points.iter())
-            }
-            Kept::Patch(patch, placement) => {
-                let from = Seen::new(&patch.normal, &placement);
-                Contacts::Patch(from, patch.points.iter())
-            }
-            Kept::Made(manifold) => Contacts::Made(manifold.contacts().iter()),
-        }
+        let normal = self.own_normal();
+        (0..self.len()).map(move |index| self.contact(index, &normal))
     }
 
     /// The contact of the largest depth, the first of equals.
@@ -112,110 +102,60 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
             Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
         let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
-        let deepest = (1..self.len()).fold(0, deeper);
-        self.contacts().nth(deepest).expect("one of the contacts")
+        self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
     }
-}
 
-/// The contacts of a view that are still to be given.
-enum Contacts<'a, N: Real, const D: usize> {
-    Convex(Seen<'a, N, D>, slice::Iter<'a, RawPoint<N, D>>),
-    Patch(Seen<'a, N, D>, slice::Iter<'a, PatchPoint<N, D>>),
-    Made(slice::Iter<'a, TrackedContact<N, D>>),
-}
-
-impl<N: Real, const D: usize> Iterator for Contacts<'_, N, D> {
-    type Item = ContactPoint<N, D>;
-
+    /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
+    /// nothing of use for manifolds that are made.
     #[inline]
-    fn next(&mut self) -> Option<ContactPoint<N, D>> {
-        match self {
-            Self::Convex(seen, points) => Some(seen.point(points.next()?, [0; 2])),
-            Self::Patch(seen, points) => {
-                let found = points.next()?;
-                Some(seen.point(&found.raw, found.parts))
-            }
-            Self::Made(contacts) => Some(made(contacts.next()?)),
-        }
-    }
-
-    /// Those before it are not placed.
-    fn nth(&mut self, index: usize) -> Option<ContactPoint<N, D>> {
-        if let Some(last) = index.checked_sub(1) {
-            match self {
-                Self::Convex(_, points) => points.nth(last).map(drop)?,
-                Self::Patch(_, points) => points.nth(last).map(drop)?,
-                Self::Made(contacts) => contacts.nth(last).map(drop)?,
-            }
-        }
-        self.next()
-    }
-
-    #[inline]
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        match self {
-            Self::Convex(_, points) => points.size_hint(),
-            Self::Patch(_, points) => points.size_hint(),
-            Self::Made(contacts) => contacts.size_hint(),
-        }
-    }
-}
-
-impl<N: Real, const D: usize> ExactSizeIterator for Contacts<'_, N, D> {}
-
-/// What all points of a manifold are placed in the world by.
-struct Seen<'a, N: Real, const D: usize> {
-    pose1: &'a Pose<N, D>,
-    pair: u64,
-    is_swapped: bool,
-    /// As it is kept.
-    own: Vector<N, D>,
-    /// In the world, from the user's first solid to the second.
-    normal: Vector<N, D>,
-}
-
-impl<'a, N: Real, const D: usize> Seen<'a, N, D> {
-    #[inline]
-    fn new(own: &Vector<N, D>, placement: &Placement<'a, N, D>) -> Self {
-        let Placement { pose1, pair, is_swapped } = *placement;
-        let normal = pose1.vector(own);
-        let normal = if is_swapped { -normal } else { normal };
-        Self { pose1, pair, is_swapped, own: *own, normal }
-    }
-
-    /// A point in the world, with the parts that it lies on in the order in which they are kept: what
-    /// [`placed`](super::manifold::placed) says, flipped if the user has the solids the other way round.
-    #[inline]
-    fn point(&self, raw: &RawPoint<N, D>, parts: [u32; 2]) -> ContactPoint<N, D> {
-        // Which way round is a number, not a way through the program: it changes from pair to pair.
-        let (first, second) = (usize::from(self.is_swapped), usize::from(!self.is_swapped));
-        let points = [raw.point1, raw.point1 + self.own * raw.distance];
-        let features = [raw.feature1, raw.feature2];
-        let contact = Contact {
-            world1: self.pose1.point(&points[first]),
-            world2: self.pose1.point(&points[second]),
-            normal: Unit::new_unchecked(self.normal),
-            depth: -raw.distance,
+    fn own_normal(&self) -> [Vector<N, D>; 2] {
+        let (own, pose1) = match self.0 {
+            Kept::Convex(raw, placement) => (raw.normal, placement.pose1),
+            Kept::Patch(patch, placement) => (patch.normal, placement.pose1),
+            Kept::Made(_) => return [Vector::<N, D>::zeros(); 2],
         };
-        ContactPoint {
-            contact,
-            id: ContactId { pair: self.pair, number: raw.id },
-            feature1: features[first],
-            feature2: features[second],
-            part1: parts[first],
-            part2: parts[second],
+        [own, pose1.vector(&own)]
+    }
+
+    /// The contact at an index; `normal` is [`Self::own_normal`].
+    #[inline]
+    fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
+        match self.0 {
+            Kept::Convex(raw, placement) => point(normal, &raw.points[index], [0; 2], &placement),
+            Kept::Patch(patch, placement) => {
+                let found = &patch.points[index];
+                point(normal, &found.raw, found.parts, &placement)
+            }
+            Kept::Made(manifold) => {
+                let made = &manifold.contacts()[index];
+                ContactPoint {
+                    contact: made.contact,
+                    id: made.id,
+                    feature1: made.kinematic.feature1(),
+                    feature2: made.kinematic.feature2(),
+                    part1: made.part1,
+                    part2: made.part2,
+                }
+            }
         }
     }
 }
 
-/// A contact that an algorithm of the user's own has found.
-fn made<N: Real, const D: usize>(made: &TrackedContact<N, D>) -> ContactPoint<N, D> {
-    ContactPoint {
-        contact: made.contact,
-        id: made.id,
-        feature1: made.kinematic.feature1(),
-        feature2: made.kinematic.feature2(),
-        part1: made.part1,
-        part2: made.part2,
+/// A point in the world, by the normal as it is kept and in the world, as the user's order of the solids has it.
+#[inline]
+fn point<N: Real, const D: usize>(
+    [own, normal]: &[Vector<N, D>; 2],
+    raw: &RawPoint<N, D>,
+    [part1, part2]: [u32; 2],
+    placement: &Placement<'_, N, D>,
+) -> ContactPoint<N, D> {
+    let contact = placed(own, raw, placement.pose1, *normal);
+    let id = ContactId { pair: placement.pair, number: raw.id };
+    let (feature1, feature2) = (raw.feature1, raw.feature2);
+    if placement.is_swapped {
+        let contact = contact.flipped();
+        let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
+        return ContactPoint { contact, id, feature1, feature2, part1, part2 };
     }
+    ContactPoint { contact, id, feature1, feature2, part1, part2 }
 }

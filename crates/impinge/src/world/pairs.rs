@@ -1,7 +1,7 @@
 //! Reading what the last update found: pairs, contacts, proximities, events.
 
-use super::step::in_order;
 use super::narrow_phase::ContactViews;
+use super::step::in_order;
 use super::{CollisionObject, CollisionObjects, CollisionWorld};
 use crate::math::Space;
 use crate::narrow_phase::{

@@ -43,6 +43,8 @@ struct Faces<'a, N: Real> {
     boxes: &'a Boxes<N>,
     /// The rectangle belongs to the second box of the pair.
     is_second: bool,
+    /// It does, and the normal is not its own.
+    is_leaning: bool,
     rectangle: Rectangle<N>,
     above: Parallelogram<N>,
     /// Lengths below this are rounding errors, as for the general builder.
@@ -93,7 +95,8 @@ impl<'a, N: Real> Faces<'a, N> {
         let above = Parallelogram::facing(&rectangle, &other, &pose);
         let is_wide = min(rectangle.across[0], rectangle.across[1]) > N::lit(4.0) * tolerance
             && min(above.widths[0], above.widths[1]) > N::lit(4.0) * tolerance;
-        is_wide.then_some(Self { boxes, is_second, rectangle, above, tolerance })
+        let is_leaning = is_second && matches!(axis.kind, AxisKind::Edges(..));
+        is_wide.then_some(Self { boxes, is_second, is_leaning, rectangle, above, tolerance })
     }
 
     fn build(
@@ -179,13 +182,15 @@ impl<'a, N: Real> Faces<'a, N> {
         let [u, v, w] = self.rectangle.axes;
         let mut point = Point::<N, 3>::origin();
         (point[u], point[v]) = (flat.x, flat.y);
-        point[w] = self.rectangle.sign * self.rectangle.half;
-        if self.is_second {
-            // The first box is above.
+        // The first box is above where the rectangle is the second's.
+        if self.is_leaning {
             let [x, y, z] = self.rectangle.toward;
-            point[u] += x * height;
-            point[v] += y * height;
-            point[w] += z * height;
+            let ground = self.rectangle.sign * self.rectangle.half;
+            (point[u], point[v]) = (flat.x + x * height, flat.y + y * height);
+            point[w] = ground + z * height;
+        } else {
+            let rise = if self.is_second { height } else { N::ZERO };
+            point[w] = self.rectangle.sign * (self.rectangle.half + rise);
         }
         let point1 = if self.is_second { self.boxes.pose12.point(&point) } else { point };
         out.push(Candidate { point1, distance: height, flat, features, kept_id: None });

@@ -48,7 +48,8 @@ impl Shown {
 
     /// A place that is at an end of some axes, on sides of given signs, is part of it.
     pub(super) fn has_place(self, at_end: [bool; 2], signs: [bool; 2]) -> bool {
-        let is_there = |axis: usize| self.0[axis].is_none_or(|end| at_end[axis] && end == signs[axis]);
+        let is_there =
+            |axis: usize| self.0[axis].is_none_or(|end| at_end[axis] && end == signs[axis]);
         is_there(0) && is_there(1)
     }
 }

@@ -10,6 +10,7 @@ use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
 use super::super::masks::bits;
 use super::faces::{Faces, cross};
+use super::shown::Shown;
 use crate::math::{Real, Wide};
 
 /// The first eight slots are corners, above which or below which the other face is to be named.
@@ -52,16 +53,18 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// The clipping of eight pairs under way.
-pub(super) struct Clip<'a, S, N: Real, V, M> {
+/// The clipping of eight pairs under way; `PARTIAL` if one of the faces leans too far.
+pub(super) struct Clip<'a, S, N: Real, V, M, const PARTIAL: bool> {
     simd: S,
     faces: &'a Faces<V, M>,
+    /// What is shown of the rectangle, and of the parallelogram.
+    shown: [Shown<M>; 2],
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS>,
     corners: &'a mut Corners,
 }
 
-impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
+impl<'a, S, N, V, M, const PARTIAL: bool> Clip<'a, S, N, V, M, PARTIAL>
 where
     S: Simd,
     N: Real,
@@ -75,7 +78,8 @@ where
         limits: &Limits<V>,
         (slots, corners): (&'a mut Slots<N, 3, SLOTS>, &'a mut Corners),
     ) -> Self {
-        Self { simd, faces, admission: Admission::new(simd, limits), slots, corners }
+        let (shown, admission) = (faces.shown(simd), Admission::new(simd, limits));
+        Self { simd, faces, shown, admission, slots, corners }
     }
 
     /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
@@ -119,8 +123,9 @@ where
         let across = &self.faces.across;
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut place = self.place((flat, height), inside, flat);
-        place.is_inside &=
-            self.faces.shown_below.is_whole() & self.faces.shown_above.has_corner(corner);
+        if PARTIAL {
+            place.is_inside &= self.shown[0].is_whole() & self.shown[1].has_corner(corner);
+        }
         place
     }
 
@@ -137,8 +142,10 @@ where
             [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
         let mut place = self.place((flat, height), inside, along);
-        place.is_inside &= faces.shown_below.is_whole()
-            & faces.shown_above.has_place(&place.at_end, &place.beyond);
+        if PARTIAL {
+            place.is_inside &=
+                self.shown[0].is_whole() & self.shown[1].has_place(&place.at_end, &place.beyond);
+        }
         place
     }
 
@@ -178,7 +185,7 @@ where
         let side = [to[0] - from[0], to[1] - from[1]];
         let (from, side) = ((&from, low), (&side, high - low));
         let ends = [from, side, (&to, high)];
-        let is_shown = self.faces.shown_above.has_side(arm, sign);
+        let is_shown = self.shown[1].has_side(arm, sign);
         self.crossing(slot, ends, (0, true), is_shown);
         self.crossing(slot + 1, ends, (0, false), is_shown);
         self.crossing(slot + 2, ends, (1, true), is_shown);
@@ -204,8 +211,11 @@ where
         let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
         let height = from.1 + side.1 * along;
-        let is_shown = is_shown & self.faces.shown_below.has_side(axis, is_positive);
-        self.admit(slot, (&flat, height), (leaves | enters) & is_within & is_shown);
+        let mut is_there = (leaves | enters) & is_within;
+        if PARTIAL {
+            is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
+        }
+        self.admit(slot, (&flat, height), is_there);
     }
 
     /// Stores a candidate where it is and the prediction admits it.

@@ -12,6 +12,8 @@ use crate::math::{Real, Wide};
 pub(super) struct Faces<V, M> {
     /// The rectangle is the second box's.
     pub(super) is_second: M,
+    /// It is, and the normal is not its own.
+    is_leaning: M,
     /// The axis across the rectangle is the first, the second.
     pub(super) is_w: [M; 3],
     /// The normal away from the rectangle's box, by its axes in turn.
@@ -20,11 +22,14 @@ pub(super) struct Faces<V, M> {
     /// Half of the rectangle's box across, and of its sides.
     pub(super) half: V,
     pub(super) across: [V; 2],
-    pub(super) shown_below: Shown<M>,
+    /// What leans along these sides, of the normal.
+    leans: [V; 2],
     /// The axis across the parallelogram, in its own box; its normal is on the positive side.
     pub(super) is_m: [M; 3],
     pub(super) is_positive: M,
-    pub(super) shown_above: Shown<M>,
+    leans_above: [V; 2],
+    /// Neither face leans too far: all of both is shown.
+    pub(super) is_whole: M,
     pub(super) center: [V; 2],
     pub(super) arms: [[V; 2]; 2],
     pub(super) height: V,
@@ -70,7 +75,6 @@ struct Below<V, M> {
     in_turn: [V; 3],
     is_upward: M,
     half: [V; 3],
-    shown: Shown<M>,
 }
 
 #[inline(always)]
@@ -94,15 +98,14 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Se
         #[inline(always)]
         |a| axis.is_edges.select(leaning[a], is_face[a].select(straight, zero)),
     );
-    let [w, u, v] = in_turn(&is_w, &toward);
+    let in_turn_w = in_turn(&is_w, &toward);
     Below {
         is_second,
         is_w,
         toward,
-        in_turn: [w, u, v],
-        is_upward: !w.simd_lt(zero),
+        in_turn: in_turn_w,
+        is_upward: !in_turn_w[0].simd_lt(zero),
         half: in_turn(&is_w, &either(is_second, &boxes.half2, &boxes.half1)),
-        shown: Shown::of(simd, is_w[1], [u, v]),
     }
 }
 
@@ -114,14 +117,23 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, M>,
 ) -> ([V; 3], M) {
-    let toward1 = &axis.normal;
-    let toward2 = negated(&seen_from(&boxes.rotation, toward1));
-    let is_whole = |toward: &[V; 3]| {
-        let [_, u, v] = in_turn(&largest(toward), toward);
-        Shown::is_all(simd, [u * u, v * v])
-    };
-    let is_second = axis.is_edges & !is_whole(toward1) & is_whole(&toward2);
-    (either(is_second, &toward2, toward1), axis.is_second | is_second)
+    let leans_too_far = axis.is_edges & !is_shown(simd, &axis.normal);
+    if !leans_too_far.any_true() {
+        return (axis.normal, axis.is_second);
+    }
+    let toward2 = negated(&seen_from(&boxes.rotation, &axis.normal));
+    let is_second = leans_too_far & is_shown(simd, &toward2);
+    (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
+}
+
+/// The face of a box that is most aligned with a unit vector does not lean too far.
+#[inline(always)]
+fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+    simd: S,
+    toward: &[V; 3],
+) -> M {
+    let [_, u, v] = in_turn(&largest(toward), toward);
+    Shown::is_all(simd, [u, v])
 }
 
 /// The axis that each lane names, of three, times a length.
@@ -185,15 +197,17 @@ impl<V, M> Faces<V, M> {
             & widths[0].smaller(widths[1]).simd_gt(narrow);
         Self {
             is_second: below.is_second,
+            is_leaning: below.is_second & axis.is_edges,
             is_w: below.is_w,
             toward,
             is_upward: below.is_upward,
             half: below.half[0],
             across,
-            shown_below: below.shown,
+            leans: [toward[1], toward[2]],
             is_m,
             is_positive,
-            shown_above: Shown::of(simd, is_m[1], [f1, f2]),
+            leans_above: [f1, f2],
+            is_whole: Shown::is_all(simd, [toward[1], toward[2]]) & Shown::is_all(simd, [f1, f2]),
             center,
             arms: [arm1, arm2],
             height,
@@ -205,23 +219,41 @@ impl<V, M> Faces<V, M> {
         }
     }
 
-    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
-    /// `Pose::point` has it for a rectangle of the second box, above which the first one is.
+    /// What the rectangle shows of itself, and the parallelogram.
     #[inline(always)]
-    pub(super) fn point1<S: Simd, N: Real>(
+    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [Shown<M>; 2]
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let below = Shown::of(simd, self.is_w[1], self.leans);
+        [below, Shown::of(simd, self.is_m[1], self.leans_above)]
+    }
+
+    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
+    /// `Pose::point` has it for a rectangle of the second box, above which the first one is. That
+    /// rectangle does not lean unless `PARTIAL`, when a face may lean too far.
+    #[inline(always)]
+    pub(super) fn point1<S: Simd, N: Real, const PARTIAL: bool>(
         &self,
+        simd: S,
         boxes: &Boxes<V, 3>,
-        ([u, v], height): ([V; 2], V),
+        ([mut u, mut v], height): ([V; 2], V),
     ) -> [V; 3]
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
-        let (toward, is_second) = (&self.toward, self.is_second);
-        let w = self.is_upward.select(self.half, -self.half);
-        let w = is_second.select(w + toward[0] * height, w);
-        let u = is_second.select(u + toward[1] * height, u);
-        let v = is_second.select(v + toward[2] * height, v);
+        let is_second = self.is_second;
+        let level = self.half + is_second.select(height, V::all(simd, N::ZERO));
+        let mut w = self.is_upward.select(level, -level);
+        if PARTIAL {
+            let (is_leaning, toward) = (self.is_leaning, &self.toward);
+            let ground = self.is_upward.select(self.half, -self.half);
+            w = is_leaning.select(ground + toward[0] * height, w);
+            u = is_leaning.select(u + toward[1] * height, u);
+            v = is_leaning.select(v + toward[2] * height, v);
+        }
         let [w0, w1, _] = self.is_w;
         let own = [
             w0.select(w, w1.select(v, u)),

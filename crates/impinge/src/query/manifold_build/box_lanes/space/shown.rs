@@ -29,7 +29,7 @@ impl<M> Shown<M> {
     {
         let (zero, limit) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let squares = [leans[0] * leans[0], leans[1] * leans[1]];
-        let is_all = Self::is_all(simd, squares);
+        let is_all = Self::is_all(simd, leans);
         let [one, other] = [leans[0].abs(), leans[1].abs()];
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
@@ -41,13 +41,13 @@ impl<M> Shown<M> {
         }
     }
 
-    /// The face does not lean too far: by the squares of the components along it.
+    /// The face does not lean too far: by the components along it.
     #[inline(always)]
     pub(super) fn is_all<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
-        squares: [V; 2],
+        [u, v]: [V; 2],
     ) -> M {
-        (squares[0] + squares[1]).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED))
+        (u * u + v * v).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED))
     }
 
     /// All of the face is part of it.
