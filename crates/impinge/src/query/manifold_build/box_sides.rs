@@ -186,9 +186,9 @@ fn upper<N: Real>(
     let (near, far) = (end(false), end(true));
     let is_turned = far.place < near.place;
     let ends = if is_turned { [far, near] } else { [near, far] };
-    let faces_far = !(lean < N::ZERO);
+    let faces_near = lean < N::ZERO;
     let is_aligned = lean * lean <= N::lit(FACING_SINE_SQUARED);
-    let alone = if is_aligned { None } else { Some(usize::from(faces_far != is_turned)) };
+    let alone = if is_aligned { None } else { Some(usize::from(faces_near == is_turned)) };
     Stretch { id: side(m, is_positive), ends, alone }
 }
 

@@ -18,10 +18,12 @@ impl Shown {
         if squares[0] + squares[1] <= limit {
             return Self([None; 2]);
         }
-        let mut ends = leans.map(|lean| Some(!(lean < N::ZERO)));
+        let is_negative = leans.map(|lean| lean < N::ZERO);
+        let mut ends = is_negative.map(|is_negative| Some(!is_negative));
         let [one, other] = leans.map(|lean| lean.abs());
         // Of equals the first axis of the box is the weaker one: the last of three comes before it in turn.
-        let weaker = usize::from(!(one < other || one == other && own != 1));
+        let is_first_weaker = one < other || (one == other && own != 1);
+        let weaker = usize::from(!is_first_weaker);
         if squares[weaker] <= limit {
             ends[weaker] = None;
         }
