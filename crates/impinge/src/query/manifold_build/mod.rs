@@ -25,6 +25,7 @@ mod overlap;
 mod patch;
 mod reduce;
 mod segments;
+mod shown;
 mod stretch;
 #[cfg(test)]
 pub(super) mod tests;
