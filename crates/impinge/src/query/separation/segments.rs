@@ -49,13 +49,24 @@ pub(super) fn nearest_of_segments<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
 ) -> (Point<N, 3>, Point<N, 3>) {
+    let crossing = common_perpendicular(ends1, ends2);
+    if let Some(Crossing { points, is_certain: true }) = crossing {
+        return points;
+    }
     let mut best = nearest_of_ends(ends1, ends2);
-    if let Some((point1, point2)) = common_perpendicular(ends1, ends2)
+    if let Some(Crossing { points: (point1, point2), .. }) = crossing
         && (point2 - point1).norm_squared() < (best.1 - best.0).norm_squared()
     {
         best = (point1, point2);
     }
     best
+}
+
+/// Where the common perpendicular of two lines meets two segments.
+struct Crossing<N: Real> {
+    points: (Point<N, 3>, Point<N, 3>),
+    /// All ends are farther by more than rounding.
+    is_certain: bool,
 }
 
 /// The nearest points of two segments if at least one of them is an end, in any dimension.
@@ -86,7 +97,7 @@ pub(super) fn nearest_of_ends<N: Real, const D: usize>(
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
-) -> Option<(Point<N, 3>, Point<N, 3>)> {
+) -> Option<Crossing<N>> {
     let (along1, along2) = (ends1[1] - ends1[0], ends2[1] - ends2[0]);
     // Directions of length about 1, so that fourth powers stay numbers of the type.
     let (size1, size2) =
@@ -95,7 +106,8 @@ fn common_perpendicular<N: Real>(
     let across = cross(&toward1, &toward2);
     let squared = across.norm_squared();
     let tiny = N::lit(64.0) * N::EPSILON * N::EPSILON;
-    if squared <= tiny * toward1.norm_squared() * toward2.norm_squared() {
+    let (squared1, squared2) = (toward1.norm_squared(), toward2.norm_squared());
+    if squared <= tiny * squared1 * squared2 {
         return None;
     }
     let (mut s, mut t) = (N::ZERO, N::ZERO);
@@ -106,7 +118,35 @@ fn common_perpendicular<N: Real>(
         between = (ends2[0] + along2 * t) - (ends1[0] + along1 * s);
     }
     let inside = |u: N| u >= N::ZERO && u <= N::ONE;
-    (inside(s) && inside(t)).then(|| (ends1[0] + along1 * s, ends2[0] + along2 * t))
+    if !(inside(s) && inside(t)) {
+        return None;
+    }
+    let points = (ends1[0] + along1 * s, ends2[0] + along2 * t);
+    let is_inner = [s, t].iter().all(|&u| u > N::lit(INNER) && u < N::lit(1.0 - INNER));
+    // The square of the sine of the angle times that of the shorter length.
+    let across = min(squared / squared1 * size2 * size2, squared / squared2 * size1 * size1);
+    let is_certain = is_inner
+        && squared > N::lit(WIDE) * squared1 * squared2
+        && across > N::lit(CERTAIN) * N::EPSILON * farthest_squared([ends1, ends2]);
+    Some(Crossing { points, is_certain })
+}
+
+/// Lines at an angle with a larger squared sine meet at a place that rounding leaves alone.
+const WIDE: f64 = 1.0 / 64.0;
+/// So far from the ends, as a share of the lengths, a place is in the middle.
+const INNER: f64 = 1.0 / 16.0;
+/// Seen from the place where the perpendicular meets it, an end is farther from the other line by at least
+/// [`INNER`] of its side times the sine of the angle. The square of that must exceed so many rounding units
+/// of the square of all coordinates, of which squared distances may be off by a few hundred.
+const CERTAIN: f64 = 1024.0 / (INNER * INNER);
+
+/// The square of the largest coordinate.
+fn farthest_squared<N: Real>(segments: [&[Point<N, 3>; 2]; 2]) -> N {
+    let mut most = N::ZERO;
+    for end in segments.into_iter().flatten() {
+        most = max(max_component(&end.coords), most);
+    }
+    most * most
 }
 
 /// How far apart two sets of points are along a unit vector from the first to the second.
