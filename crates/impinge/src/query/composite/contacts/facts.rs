@@ -106,7 +106,11 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
         Some(found) => found,
         None => (N::tables().separation)(&placed.pair(), request.prediction)?,
     };
-    let centers = placed.centers()?;
+    let centers = match scene.surfaces[0] {
+        // Of a convex first shape nothing is asked.
+        None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
+        Some(_) => placed.centers()?,
+    };
     of_surfaces(scene, &Meeting { placed, parts, centers, reference, found }, request, notes)
 }
 
