@@ -53,7 +53,7 @@ impl<N: Real> FaceRing<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cuboid, Feature, Polytope, SupportMap};
+    use super::super::{ConvexHull, Cuboid, Feature, Kind, Shape, SupportMap};
     use super::*;
 
     /// What a solid shows of itself in a ring and as a feature.
@@ -78,7 +78,8 @@ mod tests {
             Point::<f64, 3>::new(sign(0), 2.0 * sign(1), sign(2))
         };
         let corners: Vec<_> = (0..8).map(corner).collect();
-        let hull = Polytope::from_points(&corners);
+        let hull = ConvexHull::from_points(&corners);
+        let Kind::Polytope(hull) = hull.geometry().0 else { panic!("a hull is a polytope") };
         for at in 0..1000_usize {
             let way = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
             let way = Vector::<f64, 3>::new(way(7), way(11), way(13)).normalize();

@@ -8,9 +8,8 @@
 //! the solid that are no polygons, nearest points off the faces.
 
 use super::fences::{Base, Fences};
-use super::frame::rounding;
 use super::{Pair, RawManifold, tangents3};
-use crate::math::{Point, Real, Vector, cross2, max, min};
+use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
 use crate::query::RawPoint;
 use crate::shape::{FaceRing, FeatureId, Kind, Triangle};
 
@@ -27,6 +26,8 @@ pub(crate) struct OnFace<N: Real, const D: usize> {
     pub(crate) nearest: Option<N>,
     /// Points farther than this are left out.
     pub(crate) prediction: N,
+    /// Lengths below this are rounding errors of the pair.
+    pub(crate) tolerance: N,
 }
 
 /// In the plane triangles have no faces.
@@ -45,22 +46,22 @@ pub(crate) fn on_face3<N: Real>(
     asked: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
-    let (Kind::Triangle(triangle), pose) = (pair.first, &pair.pose12) else { return false };
-    let (tolerance, normal) = (rounding(pair), asked.normal);
-    let tangents = tangents3(&normal);
-    let Some(ground) = Ground::new(triangle, (&normal, &tangents), tolerance) else { return false };
+    let Pair { first, second, pose12: pose } = pair;
+    let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
+        return false;
+    };
+    let normal = asked.normal;
+    let Some(ground) = Ground::new(triangle, pose, asked) else { return false };
     let toward = pose.inverse_vector(&-normal);
-    let face = match pair.second {
+    let face = match second {
         Kind::Cuboid(cuboid) => cuboid.face_ring(&toward),
         Kind::Polytope(hull) => hull.face_ring(&toward),
         _ => None,
     };
     let Some(face) = &face else { return false };
-    let (flats, inward, origin) = (ground.flats, ground.inward, ground.points[0]);
-    let base = Base { flats, inward, origin, tangents, pose, tolerance };
-    let Some(fences) = &Fences::new(&base, face) else { return false };
+    let Some(fences) = &Fences::new(&ground.base, face) else { return false };
     let (lean, lowest) = (pose.vector(&face.normal), N::INFINITY);
-    let top = Top { face, fences };
+    let (top, tolerance) = (Top { face, fences }, asked.tolerance);
     let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, lowest };
     out.points.clear();
     out.normal = normal;
@@ -70,58 +71,71 @@ pub(crate) fn on_face3<N: Real>(
 }
 
 /// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.
-struct Ground<N: Real> {
+struct Ground<'a, N: Real> {
     id: FeatureId,
     points: [Point<N, 3>; 3],
-    flats: [Vector<N, 2>; 3],
-    /// For each side its unit inward normal.
-    inward: [Vector<N, 2>; 3],
     ids: [FeatureId; 3],
     sides: [FeatureId; 3],
+    base: Base<'a, N>,
 }
 
-impl<N: Real> Ground<N> {
+impl<'a, N: Real> Ground<'a, N> {
     /// `None` of one that is thin or not perpendicular to the normal.
-    fn new(
-        triangle: &Triangle<N, 3>,
-        (normal, tangents): (&Vector<N, 3>, &[Vector<N, 3>; 2]),
-        tolerance: N,
-    ) -> Option<Self> {
-        let corners = triangle.corners();
-        let ways = [corners[1] - corners[0], corners[2] - corners[0]];
-        let flat =
-            |way: &Vector<N, 3>| Vector::<N, 2>::new(tangents[0].dot(way), tangents[1].dot(way));
-        let is_level = ways.iter().all(|way| way.dot(normal).abs() <= tolerance);
+    #[inline]
+    fn new(triangle: &Triangle<N, 3>, pose: &'a Pose<N, 3>, asked: &OnFace<N, 3>) -> Option<Self> {
+        let ([a, b, c], normal, tolerance) = (triangle.corners(), asked.normal, asked.tolerance);
+        let ways = [b - a, c - a];
+        let is_level = ways.iter().all(|way| way.dot(&normal).abs() <= tolerance);
         if !is_level {
             return None;
         }
-        let [b, c] = [flat(&ways[0]), flat(&ways[1])];
-        let area = cross2(&b, &c);
-        let longest = max(max(b.norm_squared(), c.norm_squared()), (c - b).norm_squared());
+        let tangents = tangents3(&normal);
+        let flat =
+            |way: &Vector<N, 3>| Vector::<N, 2>::new(tangents[0].dot(way), tangents[1].dot(way));
+        let (zero, to_b, to_c) = (Vector::<N, 2>::zeros(), flat(&ways[0]), flat(&ways[1]));
+        let area = cross2(&to_b, &to_c);
+        let squared = max(to_b.norm_squared(), to_c.norm_squared());
+        let longest = max(squared, (to_c - to_b).norm_squared());
         // Written so that what is no number is not plain.
         let is_plain = area.abs() > N::lit(LEAST_HEIGHT) * longest
             && longest > N::lit(4096.0) * tolerance * tolerance;
         if !is_plain {
             return None;
         }
-        // The names of corners are their places; a side has that of the corner that it leaves.
-        let is_front = area > N::ZERO;
-        let ring = if is_front { [0, 1, 2] } else { [0, 2, 1] };
-        let sides = if is_front { [0, 1, 2] } else { [2, 1, 0] };
-        let all = [Vector::<N, 2>::zeros(), b, c];
-        let flats = ring.map(|corner: usize| all[corner]);
-        Some(Self {
-            id: FeatureId::Face(u32::from(!is_front)),
-            points: ring.map(|corner: usize| corners[corner]),
+        let base = |flats: [Vector<N, 2>; 3]| Base {
             flats,
-            inward: [0, 1, 2].map(|at: usize| {
-                let side = flats[(at + 1) % 3] - flats[at];
-                Vector::<N, 2>::new(-side.y, side.x) * (N::ONE / side.norm())
-            }),
-            ids: if is_front { [0, 1, 2] } else { [0, 2, 1] }.map(FeatureId::Vertex),
-            sides: sides.map(FeatureId::Edge),
+            inward: [0, 1, 2].map(|at: usize| inward(&(flats[(at + 1) % 3] - flats[at]))),
+            origin: *a,
+            tangents,
+            pose,
+            tolerance,
+        };
+        // The names of corners are their places; a side has that of the corner that it leaves.
+        use FeatureId::{Edge, Face, Vertex};
+        Some(if area > N::ZERO {
+            Self {
+                id: Face(0),
+                points: [*a, *b, *c],
+                ids: [Vertex(0), Vertex(1), Vertex(2)],
+                sides: [Edge(0), Edge(1), Edge(2)],
+                base: base([zero, to_b, to_c]),
+            }
+        } else {
+            Self {
+                id: Face(1),
+                points: [*a, *c, *b],
+                ids: [Vertex(0), Vertex(2), Vertex(1)],
+                sides: [Edge(2), Edge(1), Edge(0)],
+                base: base([zero, to_c, to_b]),
+            }
         })
     }
+}
+
+/// Unit, to the left of a side.
+#[inline]
+fn inward<N: Real>(side: &Vector<N, 2>) -> Vector<N, 2> {
+    Vector::<N, 2>::new(-side.y, side.x) * (N::ONE / side.norm())
 }
 
 /// The face of the solid over the triangle.
@@ -179,7 +193,7 @@ fn on_side<N: Real>(
 /// The triangle and the face of the solid over it.
 struct Meeting<'a, N: Real> {
     asked: &'a OnFace<N, 3>,
-    ground: &'a Ground<N>,
+    ground: &'a Ground<'a, N>,
     top: Top<'a, N>,
     /// The outward normal of the solid's face.
     lean: Vector<N, 3>,
@@ -219,7 +233,7 @@ impl<N: Real> Meeting<'_, N> {
 
     /// The smallest part of the solid's face that has a corner of the triangle, close to some sides.
     fn on_top(&self, corner: usize, touched: u8) -> FeatureId {
-        let (top, place, mut found) = (&self.top, &self.ground.flats[corner], None);
+        let (top, place, mut found) = (&self.top, &self.ground.base.flats[corner], None);
         for at in (0..top.face.count).filter(|at| touched >> at & 1 == 1) {
             let next = top.next(at);
             let names = [top.face.ids[at], top.face.ids[next], top.face.sides[at]];
@@ -236,7 +250,7 @@ impl<N: Real> Meeting<'_, N> {
         for at in (0..3).filter(|&at: &usize| signs[at].inside >> corner & 1 == 0) {
             let next = (at + 1) % 3;
             let names = [ground.ids[at], ground.ids[next], ground.sides[at]];
-            let ends = [ground.flats[at], ground.flats[next]];
+            let ends = [ground.base.flats[at], ground.base.flats[next]];
             found = on_side(ends, names, &place, self.tolerance).or(found);
         }
         found.unwrap_or(ground.id)
