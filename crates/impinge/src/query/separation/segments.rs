@@ -50,16 +50,20 @@ pub(super) fn nearest_of_segments<N: Real>(
     ends2: &[Point<N, 3>; 2],
 ) -> (Point<N, 3>, Point<N, 3>) {
     let crossing = common_perpendicular(ends1, ends2);
-    if let Some(Crossing { points, is_certain: true }) = crossing {
-        return points;
+    match crossing {
+        Some(Crossing { points, is_certain: true }) => points,
+        Some(Crossing { points, .. }) => nearer(nearest_of_ends(ends1, ends2), points),
+        None => nearest_of_ends(ends1, ends2),
     }
-    let mut best = nearest_of_ends(ends1, ends2);
-    if let Some(Crossing { points: (point1, point2), .. }) = crossing
-        && (point2 - point1).norm_squared() < (best.1 - best.0).norm_squared()
-    {
-        best = (point1, point2);
-    }
-    best
+}
+
+/// The second of two pairs of points if that is nearer, else the first.
+fn nearer<N: Real>(
+    first: (Point<N, 3>, Point<N, 3>),
+    second: (Point<N, 3>, Point<N, 3>),
+) -> (Point<N, 3>, Point<N, 3>) {
+    let squared = |(a, b): &(Point<N, 3>, Point<N, 3>)| (b - a).norm_squared();
+    if squared(&second) < squared(&first) { second } else { first }
 }
 
 /// Where the common perpendicular of two lines meets two segments.
@@ -172,6 +176,48 @@ mod tests {
             &[p(1.0, -1.0, 2.0), p(1.0, 1.0, 2.0)],
         );
         assert_eq!((point1, point2), (p(1.0, 0.0, 0.0), p(1.0, 0.0, 2.0)), "one above the other");
+    }
+
+    /// Where the ends are not looked at they are farther, also as computed.
+    fn certain_places_are_the_nearest<N: Real>() {
+        let (mut state, mut certain) = (7_u64, 0);
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for round in 0..20_000 {
+            // Some touch, some are short for where they are, some are nearly parallel.
+            let gap = [0.0, 1e-7, 1e-3, 1.0][round % 4];
+            let (size, turn) = ([1.0, 0.1, 1e-3][round % 3], [1.0, 0.2, 1e-2][round / 4 % 3]);
+            let mut vector = |size: f64| [size * next(), size * next(), size * next()];
+            let (place, along, lean) = (vector(1.0), vector(size), vector(size * turn));
+            let (share1, share2, across) = (vector(0.6), vector(0.6), vector(gap));
+            let point = |share: f64, along: [f64; 3], at: [f64; 3]| {
+                let axis = |axis: usize| N::lit(at[axis] + share * along[axis]);
+                Point::<N, 3>::new(axis(0), axis(1), axis(2))
+            };
+            let other = [0, 1, 2].map(|axis| along[axis] + lean[axis]);
+            let beside = [0, 1, 2].map(|axis| place[axis] + across[axis]);
+            let ends1 =
+                [point(share1[0] - 0.5, along, place), point(share1[0] + 0.5, along, place)];
+            let ends2 =
+                [point(share2[0] - 0.5, other, beside), point(share2[0] + 0.5, other, beside)];
+            let Some(crossing) = common_perpendicular(&ends1, &ends2) else { continue };
+            if crossing.is_certain {
+                let slowly = nearer(nearest_of_ends(&ends1, &ends2), crossing.points);
+                assert_eq!(slowly, crossing.points, "round {round}: {ends1:?} {ends2:?}");
+                certain += 1;
+            }
+        }
+        assert!(certain > 1000, "{certain} are certain");
+    }
+
+    #[test]
+    fn ends_are_left_out_only_where_they_are_farther() {
+        certain_places_are_the_nearest::<f32>();
+        certain_places_are_the_nearest::<f64>();
     }
 
     #[test]

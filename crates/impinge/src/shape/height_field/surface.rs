@@ -255,3 +255,35 @@ impl<N: Real> HeightField<N, 2> {
         seam.admits(self.is_one_sided)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_normals_in_turn_are_as_each_alone() {
+        let noise = |at: usize| ((at * at * 31 + at * 7) % 97) as f64 / 97.0 - 0.5;
+        let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
+        let field = HeightField::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
+        let mut counts = [0; 3];
+        for (field, part) in [field.clone(), field.one_sided()]
+            .iter()
+            .flat_map(|field| (0..50_u32).map(move |part| (field, part)))
+        {
+            let front = field.front_of(&field.corners(part));
+            for at in 0..60 {
+                let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
+                let far = (front + aside).normalize();
+                let near = (front + aside * 0.03).normalize();
+                let feature =
+                    [FeatureId::Edge(at as u32 / 3 % 3), FeatureId::Vertex(at as u32 % 3)];
+                let feature = feature[at % 2];
+                let [first, second] = [far, near].map(|n| field.admits(part, feature, &n));
+                let both = field.admits_in_turn(part, feature, [&far, &near]);
+                assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
+                counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+    }
+}
