@@ -108,8 +108,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         self.reference = if overlaps { reference } else { center };
         let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
         let mut pieces: SmallVec<[Piece<N, D>; 8]> = SmallVec::new();
-        for found in findings.into_iter().filter(|found| found.standing != Standing::Left) {
-            pieces.push(found.piece);
+        for found in findings.iter().filter(|found| found.standing != Standing::Left) {
+            pieces.push(found.piece.clone());
         }
         let merging = Merging { request, tolerance, pieces: &pieces, points: &notes.points };
         merge(&merging, &mut self.patches, &mut self.ids);
@@ -174,6 +174,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut findings, mut slot) = (Findings::new(), None);
+        if let Some(surface) = scene.surfaces[1] {
+            nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
+        }
         let all = scene.separations(nearby, self.request.prediction);
         for (index, &parts) in nearby.parts.iter().enumerate() {
             let known = all.as_ref().map(|all| all[index]);
@@ -183,7 +186,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             let placed = scene.pair_in(&mut slot, parts);
             let asked = (self.reference, self.request);
             let found = facts::finding((&scene, placed), parts, asked, known.flatten(), notes);
-            findings.extend(found);
+            if let Some(found) = found {
+                findings.push(found);
+            }
         }
         resolve::resolve(&scene, &mut findings, notes);
         for finding in findings.iter_mut().filter(|finding| finding.is_owing()) {
