@@ -23,10 +23,10 @@ pub(super) struct Flat<N: Real> {
     pub(super) vertices: SmallVec<[Vector<N, 3>; 16]>,
     /// Unit vectors out of the solid, in its own frame: those of all faces, and where there are not enough of
     /// them others, so that arcs between two cover all normals of the edges.
-    pub(super) own_normals: SmallVec<[Vector<N, 3>; 16]>,
+    pub(super) own_normals: SmallVec<[Vector<N, 3>; 32]>,
     /// The same into the solid, in the frame of the round one, with a vertex that is lowest along it.
-    pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 16]>,
-    pub(super) edges: SmallVec<[Edge; 32]>,
+    pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 32]>,
+    pub(super) edges: SmallVec<[Edge; 48]>,
 }
 
 impl<N: Real> Flat<N> {
