@@ -111,7 +111,7 @@ type DistanceInWorldFn<N, const D: usize> =
 type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
-type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
+type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type SeparationsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;

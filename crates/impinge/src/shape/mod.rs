@@ -21,6 +21,7 @@ mod cuboid;
 mod cylinder;
 mod ellipsoid;
 mod error;
+mod face_ring;
 mod feature;
 #[cfg(test)]
 mod feature_tests;
@@ -67,6 +68,7 @@ pub(crate) use cuboid::FacingPart;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use error::ShapeError;
+pub(crate) use face_ring::FaceRing;
 pub use feature::{Feature, FeatureId};
 pub(crate) use geometry::Kind;
 pub use geometry::{Geometry, ShapeKind};

@@ -2,7 +2,7 @@
 
 use super::polytope::count32;
 use super::tilt::Tilt;
-use super::{ConvexPolyhedron, Feature, FeatureId, Polytope, Shown, SupportMap};
+use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
 use crate::math::{Point, Real, Vector, unit, unit_or};
 
 /// What faces a direction: the indices of a face, a side or a vertex.
@@ -216,6 +216,29 @@ impl<N: Real> Polytope<N, 2> {
         } else {
             Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
         }
+    }
+}
+
+impl<N: Real> Polytope<N, 3> {
+    /// What [`SupportMap::core_feature`] answers, if it is a face of few corners.
+    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        let Part::Face(index) = self.part_toward(direction, Tilt::usual()) else { return None };
+        self.face_ring_at(index)
+    }
+
+    /// A face by its number, which there must be, if it has few corners.
+    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let face = &self.faces[index as usize];
+        let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
+        if !(3..=FaceRing::<N>::MOST).contains(&vertices.len()) {
+            return None;
+        }
+        let mut ring = FaceRing::new(FeatureId::Face(index), face.normal);
+        for (&vertex, &side) in vertices.iter().zip(sides) {
+            let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
+            ring.push(&self.vertices[vertex as usize], names);
+        }
+        Some(ring)
     }
 }
 

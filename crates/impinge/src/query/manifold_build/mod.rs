@@ -19,14 +19,17 @@ mod box_sides;
 mod chain;
 mod closed_lanes;
 mod facet;
+mod fences;
 mod frame;
 mod half_space;
 mod names;
 mod overlap;
 mod patch;
 mod patch_line;
+mod patch_outline;
 mod reduce;
 mod segments;
+mod shown;
 mod stretch;
 #[cfg(test)]
 pub(super) mod tests;

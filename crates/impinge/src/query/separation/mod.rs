@@ -35,6 +35,7 @@ mod polygon_nearest;
 mod polygon_polygon;
 pub(super) mod projection;
 pub(super) mod rectangle_axes;
+mod ridges;
 mod rounded;
 mod segment_segment;
 mod segments;

@@ -10,7 +10,7 @@ use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangl
 /// More parts than this are not kept.
 const MOST_KEPT: usize = 64;
 /// The room that is searched around a box to find parts for later, as a share of its half extents.
-const ROOM: f64 = 0.125;
+const ROOM: f64 = 0.25;
 /// The same where so much room holds no more parts than are looked at side by side.
 const LARGE_ROOM: f64 = 0.5;
 

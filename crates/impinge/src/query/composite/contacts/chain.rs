@@ -333,7 +333,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;
         let least = if distance > N::ZERO { distance } else { -N::INFINITY };
-        let along = Along { normal: inward, least };
+        let along = Along { normal: inward, least, tolerance: self.tolerance };
         self.pair().along(&along, |point| points.push(self.chain.placed(point, &inward)))?;
         Some(self.chain.outward(&inward))
     }

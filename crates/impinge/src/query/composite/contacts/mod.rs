@@ -209,6 +209,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut findings, mut slot) = (Findings::new(), None);
+        if let Some(surface) = scene.surfaces[1] {
+            nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
+        }
         let all = scene.separations(nearby, self.request.prediction);
         for (index, &parts) in nearby.parts.iter().enumerate() {
             let known = all.as_ref().map(|all| all[index]);
@@ -218,7 +221,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             let placed = scene.pair_in(&mut slot, parts);
             let asked = (self.reference, self.request);
             let found = facts::finding((&scene, placed), parts, asked, known.flatten(), notes);
-            findings.extend(found);
+            if let Some(found) = found {
+                findings.push(found);
+            }
         }
         self.settle(&scene, &mut findings, notes);
         findings
