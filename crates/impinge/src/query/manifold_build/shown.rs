@@ -20,7 +20,7 @@ impl Shown {
         }
         let is_negative = leans.map(|lean| lean < N::ZERO);
         let mut ends = is_negative.map(|is_negative| Some(!is_negative));
-        let [one, other] = leans.map(|lean| lean.abs());
+        let [one, other] = [leans[0].abs(), leans[1].abs()];
         // Of equals the first axis of the box is the weaker one: the last of three comes before it in turn.
         let is_first_weaker = one < other || (one == other && own != 1);
         let weaker = usize::from(!is_first_weaker);
