@@ -300,7 +300,7 @@ mod tests {
     fn two_normals_in_turn_are_as_each_alone() {
         let noise = |at: usize| ((at * at * 31 + at * 7) % 97) as f64 / 97.0 - 0.5;
         let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
-        let field = HeightField::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
+        let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
         let mut counts = [0; 3];
         for (field, part) in [field.clone(), field.one_sided()]
             .iter()
