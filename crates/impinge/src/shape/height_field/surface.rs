@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let noise = |at: usize| ((at * at * 31 + at * 7) % 97) as f64 / 97.0 - 0.5;
+        let noise = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
         let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
         let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
         let mut counts = [0; 3];
@@ -307,13 +307,12 @@ mod tests {
             .flat_map(|field| (0..50_u32).map(move |part| (field, part)))
         {
             let front = field.front_of(&field.corners(part));
-            for at in 0..60 {
+            for at in 0..60_u32 {
                 let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
                 let far = (front + aside).normalize();
                 let near = (front + aside * 0.03).normalize();
-                let feature =
-                    [FeatureId::Edge(at as u32 / 3 % 3), FeatureId::Vertex(at as u32 % 3)];
-                let feature = feature[at % 2];
+                let feature = [FeatureId::Edge(at / 3 % 3), FeatureId::Vertex(at % 3)];
+                let feature = feature[at as usize % 2];
                 let [first, second] = [far, near].map(|n| field.admits(part, feature, &n));
                 let both = field.admits_in_turn(part, feature, [&far, &near]);
                 assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
