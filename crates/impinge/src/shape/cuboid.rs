@@ -5,7 +5,7 @@ use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
-    ConvexPolyhedron, FaceRing, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
+    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
     ShapeHandle, Shown, SupportMap,
 };
 use crate::bounding_volume::Aabb;
@@ -107,7 +107,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 /// the others are those of `corner`. Both are sets of axes as bits, `corner` of those with the
 /// positive sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Part<const D: usize> {
+pub(super) struct Part<const D: usize> {
     free: u32,
     corner: u32,
 }
@@ -168,7 +168,7 @@ impl<const D: usize> Part<D> {
 
     /// The part that faces a unit vector: as many axes as the tilt admits are free, the weakest
     /// first, which is the rule for the flattest edge and the most aligned face beside it.
-    fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
+    pub(super) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut leans) = (0, N::ZERO);
         for _ in 1..D {
             let Some(axis) = weakest(direction, free) else { break };
@@ -208,7 +208,7 @@ impl<const D: usize> Part<D> {
     }
 
     /// The number documented at [`Cuboid`].
-    const fn name(self) -> FeatureId {
+    pub(super) const fn name(self) -> FeatureId {
         let dimension = self.dimension();
         let index = if dimension == 0 {
             self.corner
@@ -273,7 +273,7 @@ impl<const D: usize> Part<D> {
     }
 
     /// The rings of all faces, in the order of their names, and the names of their sides.
-    const FACES: [(Ring, [FeatureId; 4]); 6] = {
+    pub(super) const FACES: [(Ring, [FeatureId; 4]); 6] = {
         let (mut faces, mut index) = ([(Ring::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
         while index < 2 * D {
             let axis = 1 << (index / 2);
@@ -319,8 +319,8 @@ impl<const D: usize> Part<D> {
 
 /// The corners of a part that is not the whole box, as sets of axes: four at most.
 #[derive(Clone, Copy)]
-struct Ring {
-    corners: [u32; 4],
+pub(super) struct Ring {
+    pub(super) corners: [u32; 4],
     count: usize,
 }
 
@@ -369,7 +369,7 @@ fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Opt
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
     #[inline]
-    fn corner(&self, corner: u32) -> Point<N, D> {
+    pub(super) fn corner(&self, corner: u32) -> Point<N, D> {
         let mut point = Point::from(self.half_extents);
         for axis in 0..D {
             if !has(corner, axis) {
@@ -432,32 +432,6 @@ impl<N: Real> Cuboid<N, 2> {
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
         let [from, to, ..] = Part::<2>::FACES[index as usize].0.corners;
         (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
-    }
-}
-
-impl<N: Real> Cuboid<N, 3> {
-    /// What [`SupportMap::core_feature`] answers, if it is a face with an area.
-    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        match Part::<3>::facing(direction, Tilt::usual()).name() {
-            FeatureId::Face(index) => self.face_ring_at(index),
-            FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
-        }
-    }
-
-    /// A face by its number, which there must be, if it has an area.
-    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
-        let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
-        if (0..3).any(|other| other != axis && self.half_extents[other] == N::ZERO) {
-            return None;
-        }
-        let (ring, sides) = &Part::<3>::FACES[index as usize];
-        let mut normal = Vector::<N, 3>::zeros();
-        normal[axis] = if is_negative { -N::ONE } else { N::ONE };
-        let mut face = FaceRing::new(FeatureId::Face(index), normal);
-        for (&corner, &side) in ring.corners.iter().zip(sides) {
-            face.push(&self.corner(corner), [FeatureId::Vertex(corner), side]);
-        }
-        Some(face)
     }
 }
 

@@ -1,6 +1,8 @@
 //! The face of a solid in space with few corners, in lists of fixed size.
 
-use super::FeatureId;
+use super::cuboid::Part;
+use super::tilt::Tilt;
+use super::{Cuboid, FeatureId};
 use crate::math::{Point, Real, Vector};
 
 /// So many corners a face may have here: as many as there are lanes.
@@ -51,9 +53,35 @@ impl<N: Real> FaceRing<N> {
     }
 }
 
+impl<N: Real> Cuboid<N, 3> {
+    /// What [`core_feature`](super::SupportMap::core_feature) answers, if it is a face with an area.
+    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        match Part::<3>::facing(direction, Tilt::usual()).name() {
+            FeatureId::Face(index) => self.face_ring_at(index),
+            FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
+        }
+    }
+
+    /// A face by its number, which there must be, if it has an area.
+    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
+        if (0..3).any(|other| other != axis && self.half_extents()[other] == N::ZERO) {
+            return None;
+        }
+        let (ring, sides) = &Part::<3>::FACES[index as usize];
+        let mut normal = Vector::<N, 3>::zeros();
+        normal[axis] = if is_negative { -N::ONE } else { N::ONE };
+        let mut face = FaceRing::new(FeatureId::Face(index), normal);
+        for (&corner, &side) in ring.corners.iter().zip(sides) {
+            face.push(&self.corner(corner), [FeatureId::Vertex(corner), side]);
+        }
+        Some(face)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::{ConvexHull, Cuboid, Feature, Kind, Shape, SupportMap};
+    use super::super::{ConvexHull, Feature, Kind, Shape, SupportMap};
     use super::*;
 
     /// What a solid shows of itself in a ring and as a feature.

@@ -104,7 +104,11 @@ impl<'a, N: Real> Ground<'a, N> {
         }
         let base = |flats: [Vector<N, 2>; 3]| Base {
             flats,
-            inward: [0, 1, 2].map(|at: usize| inward(&(flats[(at + 1) % 3] - flats[at]))),
+            inward: [
+                inward(&(flats[1] - flats[0])),
+                inward(&(flats[2] - flats[1])),
+                inward(&(flats[0] - flats[2])),
+            ],
             origin: *a,
             tangents,
             pose,

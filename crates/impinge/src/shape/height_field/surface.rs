@@ -1,5 +1,7 @@
 //! Which normals a height field has at a face, an edge or a vertex: found from the heights around.
 
+use smallvec::SmallVec;
+
 use super::HeightField;
 use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
@@ -12,7 +14,7 @@ use crate::shape::{FeatureId, Siding, Surface};
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         let own = Face::of(self, self.corners(part));
-        self.face_admits((&own, &mut None), feature, normal)
+        self.face_admits((&own, &mut Beside::unknown()), feature, normal)
     }
 
     fn admits_in_turn(
@@ -21,9 +23,9 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         feature: FeatureId,
         [first, second]: [&Vector<N, 3>; 2],
     ) -> [bool; 2] {
-        let (own, mut fold) = (Face::of(self, self.corners(part)), None);
-        let is_first = self.face_admits((&own, &mut fold), feature, first);
-        [is_first, !is_first && self.face_admits((&own, &mut fold), feature, second)]
+        let (own, mut beside) = (Face::of(self, self.corners(part)), Beside::unknown());
+        let is_first = self.face_admits((&own, &mut beside), feature, first);
+        [is_first, !is_first && self.face_admits((&own, &mut beside), feature, second)]
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
@@ -57,6 +59,18 @@ impl<N: Real> Face<N> {
     fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
         let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
         Some(self.points[at])
+    }
+}
+
+/// What is known of what lies beside one feature of a triangle.
+struct Beside<N: Real> {
+    fold: Option<Fold<N>>,
+    star: Option<Star<N>>,
+}
+
+impl<N: Real> Beside<N> {
+    const fn unknown() -> Self {
+        Self { fold: None, star: None }
     }
 }
 
@@ -129,10 +143,10 @@ impl<N: Real> HeightField<N, 3> {
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 
-    /// Whether a triangle has a normal at a feature; what lies across a side is looked up once.
+    /// Whether a triangle has a normal at a feature; what lies beside it is looked up once.
     fn face_admits(
         &self,
-        (own, fold): (&Face<N>, &mut Option<Fold<N>>),
+        (own, beside): (&Face<N>, &mut Beside<N>),
         feature: FeatureId,
         normal: &Vector<N, 3>,
     ) -> bool {
@@ -144,10 +158,13 @@ impl<N: Real> HeightField<N, 3> {
             || match feature {
                 FeatureId::Face(_) => snapped.is_none(),
                 FeatureId::Edge(side) => {
-                    let fold = fold.get_or_insert_with(|| Fold::at(self, own, side as usize));
+                    let fold =
+                        beside.fold.get_or_insert_with(|| Fold::at(self, own, side as usize));
                     self.edge_admits((own, fold), side as usize, normal)
                 }
-                FeatureId::Vertex(corner) => self.vertex_admits(own, corner as usize, normal),
+                FeatureId::Vertex(corner) => {
+                    self.vertex_admits((own, &mut beside.star), corner as usize, normal)
+                }
             }
     }
 
@@ -172,29 +189,48 @@ impl<N: Real> HeightField<N, 3> {
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
-    fn vertex_admits(&self, own: &Face<N>, corner: usize, normal: &Vector<N, 3>) -> bool {
-        let (at, point) = (own.corners[corner % 3], own.points[corner % 3]);
+    fn vertex_admits(
+        &self,
+        (own, star): (&Face<N>, &mut Option<Star<N>>),
+        corner: usize,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let point = own.points[corner % 3];
         let leads_up = |other: &Point<N, 3>| leads_up_clearly(&(other - point), normal);
-        let rises = |corners: [GridPoint; 3]| self.points_of(&corners).iter().any(leads_up);
         // Most are refused by a side of the triangle that is asked.
-        if own.points.iter().any(leads_up) || self.around_point(at).any(rises) {
+        if own.points.iter().any(leads_up) {
+            return false;
+        }
+        let star = star.get_or_insert_with(|| self.star_of(own.corners[corner % 3]));
+        if star.iter().any(|(points, _)| points.iter().any(leads_up)) {
             return false;
         }
         let mut seam = Seam::of_faces(own.front, normal);
-        for corners in self.around_point(at) {
-            seam.add_face(self.rise_from(at, &corners, normal), &self.front_of(&corners));
+        for (points, at) in star {
+            seam.add_face(rise_from(points, *at, normal), &normal_of(points));
         }
         seam.admits(self.is_one_sided)
     }
 
-    /// How much the steeper of the two sides of a triangle that leave a corner rises along a unit
-    /// vector.
-    fn rise_from(&self, at: GridPoint, corners: &[GridPoint; 3], normal: &Vector<N, 3>) -> N {
-        let point = |[row, column]: GridPoint| self.grid.point(row, column);
-        let others = corners.iter().filter(|&&corner| corner != at);
-        let rises = others.map(|&other| unit_or(&(point(other) - point(at)), -normal).dot(normal));
-        rises.fold(-N::ONE, max)
+    /// The triangles around a point of the grid.
+    fn star_of(&self, at: GridPoint) -> Star<N> {
+        let mut star = Star::new();
+        for corners in self.around_point(at) {
+            let own = corners.iter().position(|corner| *corner == at).unwrap_or(0);
+            star.push((self.points_of(&corners), own));
+        }
+        star
     }
+}
+
+/// The corners of the triangles around a point, and which of them it is.
+type Star<N> = SmallVec<[([Point<N, 3>; 3], usize); 8]>;
+
+/// How much the steeper of the two sides of a triangle that leave a corner rises along a unit vector.
+fn rise_from<N: Real>(points: &[Point<N, 3>; 3], at: usize, normal: &Vector<N, 3>) -> N {
+    let others = (0..3).filter(|other| *other != at).map(|other| points[other]);
+    let rises = others.map(|other| unit_or(&(other - points[at]), -normal).dot(normal));
+    rises.fold(-N::ONE, max)
 }
 
 impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
@@ -270,7 +306,7 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let noise = |at: usize| ((at * at * 31 + at * 7) % 97) as f64 / 97.0 - 0.5;
+        let noise = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
         let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
         let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
         let mut counts = [0; 3];
@@ -279,13 +315,12 @@ mod tests {
             .flat_map(|field| (0..50_u32).map(move |part| (field, part)))
         {
             let front = field.front_of(&field.corners(part));
-            for at in 0..60 {
+            for at in 0..60_u32 {
                 let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
                 let far = (front + aside).normalize();
                 let near = (front + aside * 0.03).normalize();
-                let feature =
-                    [FeatureId::Edge(at as u32 / 3 % 3), FeatureId::Vertex(at as u32 % 3)];
-                let feature = feature[at % 2];
+                let feature = [FeatureId::Edge(at / 3 % 3), FeatureId::Vertex(at % 3)];
+                let feature = feature[at as usize % 2];
                 let [first, second] = [far, near].map(|n| field.admits(part, feature, &n));
                 let both = field.admits_in_turn(part, feature, [&far, &near]);
                 assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
