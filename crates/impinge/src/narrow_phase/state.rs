@@ -8,7 +8,7 @@ use crate::query::{
     BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
     Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
 };
-use crate::shape::{Geometry, Shape};
+use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -219,9 +219,14 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
-        let (PairQuestion { poses, solids, request }, raw) = self.turned(poses, request)?;
-        let [Solid::Cuboid(cuboid1), Solid::Cuboid(cuboid2)] = solids else { return None };
-        Some(BoxJob { poses, cuboids: [cuboid1, cuboid2], request, raw })
+        let Some([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.solids else { return None };
+        let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);
+        let [kind1, kind2] = kinds.map(Geometry);
+        let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
+        self.kept.turn(swapped, RawManifold::flip_names);
+        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let (poses, cuboids) = ([poses[first], poses[second]], [cuboids[first], cuboids[second]]);
+        Some(BoxJob { poses, cuboids, request, raw: &mut self.kept.contacts })
     }
 
     /// The contacts, which are not none, read in place; the pose is that of [`Self::home`] at the last

@@ -19,12 +19,12 @@ pub(super) struct Bend<N: Real> {
     /// The unit normals on the fronts, and the scalar product of the two.
     fronts: [Vector<N, 3>; 2],
     cosine: N,
-    kind: Kind,
+    shape: Shape,
 }
 
 /// How an edge looks from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Shape {
     Flat,
     Ridge,
     Hollow,
@@ -34,27 +34,12 @@ impl<N: Real> Bend<N> {
     /// By the corners of two triangles that share an edge, and their normals; `None` where it is not plain
     /// how they lie.
     pub(super) fn new(corners: [&[Point<N, 3>; 3]; 2], fronts: [Vector<N, 3>; 2]) -> Option<Self> {
-        let cosine = fronts[0].dot(&fronts[1]);
-        // Written so that what is no number is not plain.
-        let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
-        if !is_plain {
-            return None;
-        }
-        let (squared_sine, flat) = (N::ONE - cosine * cosine, N::lit(FLAT_SINE * FLAT_SINE));
-        if squared_sine <= flat * N::lit(1.0 - CLOSE) {
-            return Some(Self { fronts, cosine, kind: Kind::Flat });
-        }
-        let heights = [
-            height_of(corners[1], corners[0], &fronts[0]),
-            height_of(corners[0], corners[1], &fronts[1]),
-        ];
-        let is_bent = squared_sine > flat * N::lit(1.0 + CLOSE);
-        let kind = match heights.map(|height| height > N::ZERO) {
-            [true, true] if is_bent => Kind::Hollow,
-            [false, false] if is_bent => Kind::Ridge,
-            _ => return None,
-        };
-        Some(Self { fronts, cosine, kind })
+        Some(Self::of(Shape::new(corners, &fronts)?, fronts))
+    }
+
+    /// Of two triangles of which it is known how they lie.
+    pub(super) fn of(shape: Shape, fronts: [Vector<N, 3>; 2]) -> Self {
+        Self { fronts, cosine: fronts[0].dot(&fronts[1]), shape }
     }
 
     /// Whether a unit vector that is none of the faces' normals is one that the edge has; `None` where it
@@ -66,17 +51,17 @@ impl<N: Real> Bend<N> {
         if !(is_front || is_back) {
             return None;
         }
-        match (self.kind, is_front) {
-            (Kind::Flat, _) => {
+        match (self.shape, is_front) {
+            (Shape::Flat, _) => {
                 // Close to the faces' normal and yet not flat it may lean along the edge as well.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
                 let is_level = squared_sine < N::lit(1.0 - CLOSE);
                 let is_leaning = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
                 (is_level || is_leaning).then_some(false)
             }
-            (Kind::Hollow, true) | (Kind::Ridge, false) => Some(false),
-            (Kind::Ridge, true) => self.is_between(normal, [along1, along2]),
-            (Kind::Hollow, false) => self
+            (Shape::Hollow, true) | (Shape::Ridge, false) => Some(false),
+            (Shape::Ridge, true) => self.is_between(normal, [along1, along2]),
+            (Shape::Hollow, false) => self
                 .is_between(normal, [along1, along2])
                 .filter(|is_between| !(is_one_sided && *is_between)),
         }
@@ -101,6 +86,35 @@ impl<N: Real> Bend<N> {
             return Some(false);
         }
         (inside > room && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
+    }
+}
+
+impl Shape {
+    /// As [`Bend::new`].
+    pub(super) fn new<N: Real>(
+        corners: [&[Point<N, 3>; 3]; 2],
+        fronts: &[Vector<N, 3>; 2],
+    ) -> Option<Self> {
+        let cosine = fronts[0].dot(&fronts[1]);
+        // Written so that what is no number is not plain.
+        let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
+        if !is_plain {
+            return None;
+        }
+        let (squared_sine, flat) = (N::ONE - cosine * cosine, N::lit(FLAT_SINE * FLAT_SINE));
+        if squared_sine <= flat * N::lit(1.0 - CLOSE) {
+            return Some(Self::Flat);
+        }
+        let heights = [
+            height_of(corners[1], corners[0], &fronts[0]),
+            height_of(corners[0], corners[1], &fronts[1]),
+        ];
+        let is_bent = squared_sine > flat * N::lit(1.0 + CLOSE);
+        match heights.map(|height| height > N::ZERO) {
+            [true, true] if is_bent => Some(Self::Hollow),
+            [false, false] if is_bent => Some(Self::Ridge),
+            _ => None,
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 
 use smallvec::SmallVec;
 
-use super::{FeatureId, Geometry, Segment, Shape, Triangle};
+use super::{FeatureId, Geometry, Segment, Shape, Siding, Triangle};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -149,12 +149,36 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// a tolerance for rounding.
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
+    /// [`Self::admits`] of two normals, of the second only where the first is not admitted: a surface that
+    /// looks up what is around the feature need do so only once.
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        let is_first = self.admits(part, feature, first);
+        [is_first, !is_first && self.admits(part, feature, second)]
+    }
+
     /// The normal that the whole surface has on the part and that stands for `normal`, which it does
     /// not admit: that of the face, on the side that `normal` points to for a surface with two
     /// sides. `None` if the part has no surface of its own, as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
+    /// The part will be asked about next. A surface may read now what it will need then: of several
+    /// parts told of in a row, what lies far apart in memory comes at one time.
+    fn expect(&self, part: u32) {
+        let _ = part;
+    }
+
     /// The part can touch a solid whose middle is `center`: false on the back of a surface with one
     /// side.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
+
+    /// Which sides all segments of a chain in the plane have, for a quicker way to the same answers. `None`,
+    /// the default, of all surfaces but this library's own chains.
+    fn siding(&self) -> Option<Siding> {
+        None
+    }
 }

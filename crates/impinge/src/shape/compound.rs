@@ -279,6 +279,17 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
         })
     }
 
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        let Some((surface, pose, own)) = self.surface_at(part) else { return [true, false] };
+        let [first, second] = normals.map(|normal| pose.inverse_vector(normal));
+        surface.admits_in_turn(own, feature, [&first, &second])
+    }
+
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         let (surface, pose, own) = self.surface_at(part)?;
         let snapped = surface.snapped(own, &pose.inverse_vector(normal))?;

@@ -5,7 +5,7 @@ use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
 use super::{
-    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
     ShapeHandle, Shown, SupportMap,
 };
 use crate::bounding_volume::Aabb;
@@ -285,6 +285,24 @@ impl<const D: usize> Part<D> {
         faces
     };
 
+    /// The ends of all parts that are named as edges, in the order of their names.
+    const EDGES: [Option<[u32; 2]>; 12] = {
+        let (mut edges, mut axis) = ([None; 12], 0);
+        while axis < D {
+            let mut corner = 0;
+            while corner < 1 << D {
+                let part = Self { free: 1 << axis, corner };
+                if let FeatureId::Edge(index) = part.name() {
+                    let ring = part.ring();
+                    edges[index as usize] = Some([ring.corners[0], ring.corners[1]]);
+                }
+                corner += 1;
+            }
+            axis += 1;
+        }
+        edges
+    };
+
     /// The outward unit vector in the middle of the normals of the faces around the part.
     #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
@@ -417,14 +435,47 @@ impl<N: Real> Cuboid<N, 2> {
     }
 }
 
+impl<N: Real> Cuboid<N, 3> {
+    /// What [`SupportMap::core_feature`] answers, if it is a face with an area.
+    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        match Part::<3>::facing(direction, Tilt::usual()).name() {
+            FeatureId::Face(index) => self.face_ring_at(index),
+            FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
+        }
+    }
+
+    /// A face by its number, which there must be, if it has an area.
+    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
+        if (0..3).any(|other| other != axis && self.half_extents[other] == N::ZERO) {
+            return None;
+        }
+        let (ring, sides) = &Part::<3>::FACES[index as usize];
+        let mut normal = Vector::<N, 3>::zeros();
+        normal[axis] = if is_negative { -N::ONE } else { N::ONE };
+        let mut face = FaceRing::new(FeatureId::Face(index), normal);
+        for (&corner, &side) in ring.corners.iter().zip(sides) {
+            face.push(&self.corner(corner), [FeatureId::Vertex(corner), side]);
+        }
+        Some(face)
+    }
+}
+
 impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     fn vertex(&self, id: FeatureId) -> Point<N, D> {
         self.corner(Self::part(id, 0).corner)
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        let [from, to, ..] = Self::part(id, 1).ring().corners;
-        [from, to].map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+        let known = match id {
+            FeatureId::Edge(index) => Part::<D>::EDGES.get(index as usize).copied().flatten(),
+            FeatureId::Vertex(_) | FeatureId::Face(_) => None,
+        };
+        let ends = known.unwrap_or_else(|| {
+            let [from, to, ..] = Self::part(id, 1).ring().corners;
+            [from, to]
+        });
+        ends.map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {

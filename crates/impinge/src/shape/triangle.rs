@@ -80,6 +80,12 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
 
     fn reach(&self) -> N {
         let [a, b, c] = &self.corners;
+        let squares = [a, b, c].map(|corner| corner.coords.norm_squared());
+        let most = max(squares[0], max(squares[1], squares[2]));
+        // The root of the largest is the largest root; see `length_of` for the others.
+        if most > N::MIN_POSITIVE.sqrt() && most < N::MAX.sqrt() {
+            return most.sqrt();
+        }
         max(farther(a, b), length_of(&c.coords))
     }
 

@@ -11,7 +11,7 @@ use super::overlap::{Candidates, Overlap};
 use super::triangle_face::OnFace;
 use super::{build, choose, face};
 use crate::convex::Separation;
-use crate::math::{Space, Vector, min};
+use crate::math::{Real, Space, Vector, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::Geometry;
 
@@ -26,6 +26,8 @@ where
     /// No two points of the solids are nearer than this: what seems to be is below the surface of
     /// the face and beside it.
     pub(in crate::query) least: N,
+    /// Lengths below this are rounding errors of the pair.
+    pub(in crate::query) tolerance: N,
 }
 
 /// Builds the manifold of two convex solids along a normal; empty if no points face each other along
@@ -36,8 +38,8 @@ pub(in crate::query) fn build_along<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
-    let Along { normal, least } = *along;
-    let on_face = OnFace { normal, least, nearest: None, prediction: request.prediction };
+    let (Along { normal, least, tolerance }, prediction) = (*along, request.prediction);
+    let on_face = OnFace { normal, least, nearest: None, prediction, tolerance };
     if request.sine <= N::ZERO && (N::tables().on_face)(pair, &on_face, out) {
         return;
     }
@@ -80,7 +82,7 @@ fn fill<N: Space<D>, const D: usize>(
 
 /// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
 /// of each solid, and need not face each other. `None` if there is a half-space.
-fn extremes<N: Space<D>, const D: usize>(
+pub(super) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
 ) -> Option<Separation<N, D>> {
@@ -94,16 +96,16 @@ fn extremes<N: Space<D>, const D: usize>(
 }
 
 /// The manifold of a pair whose separation is known along the normal of a face of a surface that is the
-/// first solid, or nearly so; as [`build_between`].
+/// first solid, or nearly so, and what counts as rounding; as [`build_between`].
 pub(in crate::query) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    separation: &Separation<N, D>,
+    (separation, tolerance): (&Separation<N, D>, N),
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
     let (normal, prediction) = (separation.normal, request.prediction);
     let (least, nearest) = (-N::INFINITY, Some(separation.distance));
-    let on_face = OnFace { normal, least, nearest, prediction };
+    let on_face = OnFace { normal, least, nearest, prediction, tolerance };
     let is_asked = request.sine <= N::ZERO && separation.distance <= prediction;
     if !(is_asked && (N::tables().on_face)(pair, &on_face, out)) {
         build_between(pair, separation, request, out);

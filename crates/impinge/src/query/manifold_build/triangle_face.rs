@@ -2,18 +2,17 @@
 //!
 //! Such are most contacts of solids on meshes. The triangle lies in the plane of contact, which the
 //! face of the solid is seen on as a convex polygon: the corners of their common area come out of
-//! fixed loops. Names, order and distances are those of the general builder, which is the definition of
+//! fixed loops, and how far inside of all sides all corners are is
+//! found side by side ([`fences`](super::fences)). Names, order and distances are those of the general builder, which is the definition of
 //! this one, and which takes over wherever this one declines: triangles that are thin or lean, parts of
 //! the solid that are no polygons, nearest points off the faces.
 
-use super::frame::rounding;
+use super::fences::{Base, Fences};
 use super::{Pair, RawManifold, tangents3};
-use crate::math::{Point, Real, Vector, cross2, max, min};
+use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
 use crate::query::RawPoint;
-use crate::shape::{ConvexPolyhedron, Feature, FeatureId, Kind, Triangle};
+use crate::shape::{FaceRing, FeatureId, Kind, Triangle};
 
-/// So many corners a face may have here.
-const MOST: usize = 8;
 /// The least ratio of a triangle's height to its longest side.
 const LEAST_HEIGHT: f64 = 1.0 / 32.0;
 
@@ -27,6 +26,8 @@ pub(crate) struct OnFace<N: Real, const D: usize> {
     pub(crate) nearest: Option<N>,
     /// Points farther than this are left out.
     pub(crate) prediction: N,
+    /// Lengths below this are rounding errors of the pair.
+    pub(crate) tolerance: N,
 }
 
 /// In the plane triangles have no faces.
@@ -45,31 +46,23 @@ pub(crate) fn on_face3<N: Real>(
     asked: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
-    let (first, second) = (pair.first, pair.second);
-    let (triangle, solid): (_, &dyn ConvexPolyhedron<N, 3>) = match (first, second) {
-        (Kind::Triangle(triangle), Kind::Cuboid(cuboid)) => (triangle, cuboid),
-        (Kind::Triangle(triangle), Kind::Polytope(hull)) => (triangle, hull),
-        _ => return false,
+    let Pair { first, second, pose12: pose } = pair;
+    let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
+        return false;
     };
-    let (tolerance, normal) = (rounding(pair), asked.normal);
-    let mut base = Outline::blank(tangents3(&normal));
-    if !base.fill_with_triangle(triangle, &normal, tolerance) {
-        return false;
-    }
-    let mut part = Feature::default();
-    solid.core_feature(&pair.pose12.inverse_vector(&-normal), &mut part);
-    for vertex in &mut part.vertices {
-        *vertex = pair.pose12.point(vertex);
-    }
-    let lean = part.normal.map(|own| pair.pose12.vector(&own));
-    let Some(lean) = lean else { return false };
-    let mut top = Outline::blank(base.tangents);
-    if !top.fill_with_part(&part, &base.points[0], tolerance) {
-        return false;
-    }
-    let insides = &[base.insides_of(&top), top.insides_of(&base)];
-    let (base, top, lowest) = (&base, &top, N::INFINITY);
-    let mut meeting = Meeting { asked, base, top, insides, lean, tolerance, lowest };
+    let normal = asked.normal;
+    let Some(ground) = Ground::new(triangle, pose, asked) else { return false };
+    let toward = pose.inverse_vector(&-normal);
+    let face = match second {
+        Kind::Cuboid(cuboid) => cuboid.face_ring(&toward),
+        Kind::Polytope(hull) => hull.face_ring(&toward),
+        _ => None,
+    };
+    let Some(face) = &face else { return false };
+    let Some(fences) = &Fences::new(&ground.base, face) else { return false };
+    let (lean, lowest) = (pose.vector(&face.normal), N::INFINITY);
+    let (top, tolerance) = (Top { face, fences }, asked.tolerance);
+    let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, lowest };
     out.points.clear();
     out.normal = normal;
     meeting.corners(out);
@@ -77,171 +70,131 @@ pub(crate) fn on_face3<N: Real>(
     meeting.settle(out)
 }
 
-/// How far inside of the sides of one outline the corners of another are.
-type Insides<N> = [[N; MOST]; MOST];
-
-/// A convex polygon of the plane of contact.
-struct Outline<N: Real> {
-    count: usize,
+/// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.
+struct Ground<'a, N: Real> {
     id: FeatureId,
-    points: [Point<N, 3>; MOST],
-    flats: [Vector<N, 2>; MOST],
-    /// For each side its unit inward normal.
-    inward: [Vector<N, 2>; MOST],
-    ids: [FeatureId; MOST],
-    sides: [FeatureId; MOST],
-    tangents: [Vector<N, 3>; 2],
+    points: [Point<N, 3>; 3],
+    ids: [FeatureId; 3],
+    sides: [FeatureId; 3],
+    base: Base<'a, N>,
 }
 
-impl<N: Real> Outline<N> {
-    fn blank(tangents: [Vector<N, 3>; 2]) -> Self {
-        let (flats, point) = ([Vector::<N, 2>::zeros(); MOST], Point::<N, 3>::origin());
-        let ids = [FeatureId::Face(0); MOST];
-        let (id, points, inward, sides) = (ids[0], [point; MOST], flats, ids);
-        Self { count: 0, id, points, flats, inward, ids, sides, tangents }
-    }
-
-    /// Seen from where the normal points; answers false of one that is thin or not perpendicular to it.
-    fn fill_with_triangle(
-        &mut self,
-        triangle: &Triangle<N, 3>,
-        normal: &Vector<N, 3>,
-        tolerance: N,
-    ) -> bool {
-        let corners = triangle.corners();
-        let ways = [corners[1] - corners[0], corners[2] - corners[0]];
-        let [b, c] = ways.map(|way| self.flat(&way));
-        let is_level = ways.iter().all(|way| way.dot(normal).abs() <= tolerance);
-        let area = cross2(&b, &c);
-        let longest = max(max(b.norm_squared(), c.norm_squared()), (c - b).norm_squared());
-        // Written so that what is no number is not level.
-        let is_plain = is_level
-            && area.abs() > N::lit(LEAST_HEIGHT) * longest
-            && longest > N::lit(4096.0) * tolerance * tolerance;
-        if !is_plain {
-            return false;
-        }
-        // The names of corners are their places; a side has that of the corner that it leaves.
-        let ring: [(usize, u32, u32); 3] = if area > N::ZERO {
-            [(0, 0, 0), (1, 1, 1), (2, 2, 2)]
-        } else {
-            self.id = FeatureId::Face(1);
-            [(0, 0, 2), (2, 2, 1), (1, 1, 0)]
-        };
-        for (corner, id, side) in ring {
-            let flat = [Vector::<N, 2>::zeros(), b, c][corner];
-            self.push(corners[corner], flat, [FeatureId::Vertex(id), FeatureId::Edge(side)]);
-        }
-        self.fence(N::ONE);
-        true
-    }
-
-    /// A face of the solid, seen from a point; answers false of what is no polygon there.
-    fn fill_with_part(&mut self, part: &Feature<N, 3>, from: &Point<N, 3>, tolerance: N) -> bool {
-        self.id = part.id;
-        let count = part.vertices.len();
-        if !(3..=MOST).contains(&count) || part.side_ids.len() != count {
-            return false;
-        }
-        for (at, vertex) in part.vertices.iter().enumerate() {
-            let flat = self.flat(&(vertex - from));
-            self.push(*vertex, flat, [part.vertex_ids[at], part.side_ids[at]]);
-        }
-        let (mut area, mut shortest, mut longest) = (N::ZERO, N::INFINITY, N::ZERO);
-        for at in 0..count {
-            let squared = self.side(at).norm_squared();
-            (shortest, longest) = (min(shortest, squared), max(longest, squared));
-            area += cross2(&(self.flats[at] - self.flats[0]), &self.side(at));
-        }
-        let room = N::lit(64.0) * tolerance;
-        let is_plain = shortest > room * room && area.abs() > room * longest.sqrt();
-        self.fence(if area < N::ZERO { -N::ONE } else { N::ONE });
-        is_plain
-    }
-
-    fn push(&mut self, point: Point<N, 3>, flat: Vector<N, 2>, [id, side]: [FeatureId; 2]) {
-        let at = self.count;
-        (self.points[at], self.flats[at], self.ids[at], self.sides[at]) = (point, flat, id, side);
-        self.count += 1;
-    }
-
+impl<'a, N: Real> Ground<'a, N> {
+    /// `None` of one that is thin or not perpendicular to the normal.
     #[inline]
-    fn flat(&self, arm: &Vector<N, 3>) -> Vector<N, 2> {
-        Vector::<N, 2>::new(self.tangents[0].dot(arm), self.tangents[1].dot(arm))
-    }
-
-    #[inline]
-    fn next(&self, at: usize) -> usize {
-        if at + 1 < self.count { at + 1 } else { 0 }
-    }
-
-    #[inline]
-    fn side(&self, at: usize) -> Vector<N, 2> {
-        self.flats[self.next(at)] - self.flats[at]
-    }
-
-    /// Finds the inward normals of an outline that runs counter-clockwise, or with -1 clockwise.
-    fn fence(&mut self, turn: N) {
-        for at in 0..self.count {
-            let side = self.side(at);
-            self.inward[at] = Vector::<N, 2>::new(-side.y, side.x) * (turn / side.norm());
-        }
-    }
-
-    /// How far inside of each side the corners of another outline are: a row for each corner.
-    fn insides_of(&self, other: &Self) -> Insides<N> {
-        let mut insides = [[N::ZERO; MOST]; MOST];
-        for (row, place) in insides.iter_mut().zip(&other.flats[..other.count]) {
-            let sides = self.inward.iter().zip(&self.flats).take(self.count);
-            for (inside, (inward, flat)) in row.iter_mut().zip(sides) {
-                *inside = inward.dot(&(place - flat));
-            }
-        }
-        insides
-    }
-
-    /// The smallest part that contains a place; `None` outside.
-    fn locate(&self, place: &Vector<N, 2>, insides: &[N; MOST], tolerance: N) -> Option<FeatureId> {
-        let insides = &insides[..self.count];
-        let least = insides.iter().fold(N::INFINITY, |least, &inside| min(inside, least));
-        let is_inside = least >= -tolerance;
-        if !is_inside {
+    fn new(triangle: &Triangle<N, 3>, pose: &'a Pose<N, 3>, asked: &OnFace<N, 3>) -> Option<Self> {
+        let ([a, b, c], normal, tolerance) = (triangle.corners(), asked.normal, asked.tolerance);
+        let ways = [b - a, c - a];
+        let is_level = ways.iter().all(|way| way.dot(&normal).abs() <= tolerance);
+        if !is_level {
             return None;
         }
-        if least > tolerance {
-            return Some(self.id);
+        let tangents = tangents3(&normal);
+        let flat =
+            |way: &Vector<N, 3>| Vector::<N, 2>::new(tangents[0].dot(way), tangents[1].dot(way));
+        let (zero, to_b, to_c) = (Vector::<N, 2>::zeros(), flat(&ways[0]), flat(&ways[1]));
+        let area = cross2(&to_b, &to_c);
+        let squared = max(to_b.norm_squared(), to_c.norm_squared());
+        let longest = max(squared, (to_c - to_b).norm_squared());
+        // Written so that what is no number is not plain.
+        let is_plain = area.abs() > N::lit(LEAST_HEIGHT) * longest
+            && longest > N::lit(4096.0) * tolerance * tolerance;
+        if !is_plain {
+            return None;
         }
-        let sides = insides.iter().enumerate().filter(|(_, inside)| **inside <= tolerance);
-        let touched = sides.filter_map(|(side, _)| self.on_side(side, place, tolerance)).last();
-        Some(touched.unwrap_or(self.id))
+        let base = |flats: [Vector<N, 2>; 3]| Base {
+            flats,
+            inward: [0, 1, 2].map(|at: usize| inward(&(flats[(at + 1) % 3] - flats[at]))),
+            origin: *a,
+            tangents,
+            pose,
+            tolerance,
+        };
+        // The names of corners are their places; a side has that of the corner that it leaves.
+        use FeatureId::{Edge, Face, Vertex};
+        Some(if area > N::ZERO {
+            Self {
+                id: Face(0),
+                points: [*a, *b, *c],
+                ids: [Vertex(0), Vertex(1), Vertex(2)],
+                sides: [Edge(0), Edge(1), Edge(2)],
+                base: base([zero, to_b, to_c]),
+            }
+        } else {
+            Self {
+                id: Face(1),
+                points: [*a, *c, *b],
+                ids: [Vertex(0), Vertex(2), Vertex(1)],
+                sides: [Edge(2), Edge(1), Edge(0)],
+                base: base([zero, to_c, to_b]),
+            }
+        })
+    }
+}
+
+/// Unit, to the left of a side.
+#[inline]
+fn inward<N: Real>(side: &Vector<N, 2>) -> Vector<N, 2> {
+    Vector::<N, 2>::new(-side.y, side.x) * (N::ONE / side.norm())
+}
+
+/// The face of the solid over the triangle.
+#[derive(Clone, Copy)]
+struct Top<'a, N: Real> {
+    face: &'a FaceRing<N>,
+    fences: &'a Fences<N>,
+}
+
+impl<N: Real> Top<'_, N> {
+    fn point(&self, at: usize) -> Point<N, 3> {
+        let [x, y, z] = &self.fences.points;
+        Point::<N, 3>::new(x[at], y[at], z[at])
     }
 
-    /// The part of a side that contains a place on its line: one of its corners or itself.
-    fn on_side(&self, at: usize, place: &Vector<N, 2>, tolerance: N) -> Option<FeatureId> {
-        let next = self.next(at);
-        let near = |corner: usize| (self.flats[corner] - place).norm() <= N::TWO * tolerance;
-        if near(at) || near(next) {
-            return Some(if near(at) { self.ids[at] } else { self.ids[next] });
-        }
-        let side = self.side(at);
-        let along = (place - self.flats[at]).dot(&side);
-        (along >= N::ZERO && along <= side.norm_squared()).then_some(self.sides[at])
+    fn flat(&self, at: usize) -> Vector<N, 2> {
+        let [x, y] = &self.fences.flats;
+        Vector::<N, 2>::new(x[at], y[at])
     }
 
-    /// The point at a share of a side.
-    fn along_side(&self, at: usize, share: N) -> Point<N, 3> {
-        let (from, to) = (&self.points[at], &self.points[self.next(at)]);
-        from + (to - from) * share
+    fn next(&self, at: usize) -> usize {
+        if at + 1 < self.face.count { at + 1 } else { 0 }
     }
+
+    /// A bit for each corner or side.
+    const fn all(&self) -> u8 {
+        u8::MAX >> (FaceRing::<N>::MOST - self.face.count)
+    }
+
+    /// The same for the next of each corner.
+    const fn of_next(&self, bits: u8) -> u8 {
+        (bits & self.all()) >> 1 | (bits & 1) << (self.face.count - 1)
+    }
+}
+
+/// The part of a side that contains a place on its line: one of its corners or itself.
+fn on_side<N: Real>(
+    ends: [Vector<N, 2>; 2],
+    [from, to, side]: [FeatureId; 3],
+    place: &Vector<N, 2>,
+    tolerance: N,
+) -> Option<FeatureId> {
+    let near = |end: &Vector<N, 2>| (end - place).norm() <= N::TWO * tolerance;
+    if near(&ends[0]) {
+        return Some(from);
+    }
+    if near(&ends[1]) {
+        return Some(to);
+    }
+    let along = ends[1] - ends[0];
+    let share = (place - ends[0]).dot(&along);
+    (share >= N::ZERO && share <= along.norm_squared()).then_some(side)
 }
 
 /// The triangle and the face of the solid over it.
 struct Meeting<'a, N: Real> {
     asked: &'a OnFace<N, 3>,
-    base: &'a Outline<N>,
-    top: &'a Outline<N>,
-    /// Of the corners of the top in the base, and of those of the base in the top.
-    insides: &'a [Insides<N>; 2],
+    ground: &'a Ground<'a, N>,
+    top: Top<'a, N>,
     /// The outward normal of the solid's face.
     lean: Vector<N, 3>,
     tolerance: N,
@@ -252,49 +205,81 @@ struct Meeting<'a, N: Real> {
 impl<N: Real> Meeting<'_, N> {
     /// Corners of either outline within the other.
     fn corners(&mut self, out: &mut RawManifold<N, 3>) {
-        let (normal, tolerance) = (self.asked.normal, self.tolerance);
+        let (ground, top, normal) = (self.ground, self.top, self.asked.normal);
         let slope = normal.dot(&self.lean);
-        for at in 0..self.base.count {
-            let (point, place) = (self.base.points[at], self.base.flats[at]);
-            if let Some(on) = self.top.locate(&place, &self.insides[1][at], tolerance) {
-                let height = (self.top.points[0] - point).dot(&self.lean) / slope;
-                self.push(point, height, [self.base.ids[at], on], out);
+        for (at, signs) in top.fences.top_signs.iter().enumerate() {
+            if signs.outside & top.all() != 0 {
+                continue;
             }
+            let touched = !signs.inside & top.all();
+            let on = if touched == 0 { top.face.id } else { self.on_top(at, touched) };
+            let point = ground.points[at];
+            let height = (top.point(0) - point).dot(&self.lean) / slope;
+            self.push(point, height, [ground.ids[at], on], out);
         }
-        for at in 0..self.top.count {
-            let (point, place) = (self.top.points[at], self.top.flats[at]);
-            if let Some(on) = self.base.locate(&place, &self.insides[0][at], tolerance) {
-                let height = (point - self.base.points[0]).dot(&normal);
-                self.push(point - normal * height, height, [on, self.top.ids[at]], out);
-            }
+        let [first, second, third] = &top.fences.base_signs;
+        let outside = first.outside | second.outside | third.outside;
+        let inside = first.inside & second.inside & third.inside;
+        let mut within = !outside & top.all();
+        while within != 0 {
+            let at = within.trailing_zeros() as usize;
+            within &= within - 1;
+            let on = if inside >> at & 1 == 1 { ground.id } else { self.on_ground(at) };
+            let point = top.point(at);
+            let height = (point - ground.points[0]).dot(&normal);
+            self.push(point - normal * height, height, [on, top.face.ids[at]], out);
         }
+    }
+
+    /// The smallest part of the solid's face that has a corner of the triangle, close to some sides.
+    fn on_top(&self, corner: usize, touched: u8) -> FeatureId {
+        let (top, place, mut found) = (&self.top, &self.ground.base.flats[corner], None);
+        for at in (0..top.face.count).filter(|at| touched >> at & 1 == 1) {
+            let next = top.next(at);
+            let names = [top.face.ids[at], top.face.ids[next], top.face.sides[at]];
+            let on = on_side([top.flat(at), top.flat(next)], names, place, self.tolerance);
+            found = on.or(found);
+        }
+        found.unwrap_or(top.face.id)
+    }
+
+    /// The smallest part of the triangle that has a corner of the solid's face, close to a side.
+    fn on_ground(&self, corner: usize) -> FeatureId {
+        let (ground, place, mut found) = (self.ground, self.top.flat(corner), None);
+        let signs = &self.top.fences.base_signs;
+        for at in (0..3).filter(|&at: &usize| signs[at].inside >> corner & 1 == 0) {
+            let next = (at + 1) % 3;
+            let names = [ground.ids[at], ground.ids[next], ground.sides[at]];
+            let ends = [ground.base.flats[at], ground.base.flats[next]];
+            found = on_side(ends, names, &place, self.tolerance).or(found);
+        }
+        found.unwrap_or(ground.id)
     }
 
     /// Sides that cross well inside both.
     fn crossings(&mut self, out: &mut RawManifold<N, 3>) {
-        for side1 in 0..self.base.count {
-            let next1 = self.base.next(side1);
-            let (from1, to1) = (self.insides[1][side1], self.insides[1][next1]);
-            for side2 in 0..self.top.count {
-                let ends1 = [from1[side2], to1[side2]];
-                let ends2 = [side2, self.top.next(side2)].map(|at| self.insides[0][at][side1]);
-                if self.are_apart(ends1) && self.are_apart(ends2) {
-                    let share = |[from, to]: [N; 2]| from / (from - to);
-                    let core1 = self.base.along_side(side1, share(ends1));
-                    let core2 = self.top.along_side(side2, share(ends2));
-                    let distance = self.asked.normal.dot(&(core2 - core1));
-                    let names = [self.base.sides[side1], self.top.sides[side2]];
-                    self.push(core1, distance, names, out);
-                }
+        let (ground, top, fences) = (self.ground, self.top, self.top.fences);
+        for side1 in 0..3 {
+            let next1 = (side1 + 1) % 3;
+            let [from, to] = [side1, next1].map(|at: usize| fences.top_signs[at]);
+            let parted = from.inside & to.outside | from.outside & to.inside;
+            let own = fences.base_signs[side1];
+            let crossed =
+                own.inside & top.of_next(own.outside) | own.outside & top.of_next(own.inside);
+            let mut both = parted & crossed & top.all();
+            while both != 0 {
+                let side2 = both.trailing_zeros() as usize;
+                both &= both - 1;
+                let ends2 = [side2, top.next(side2)];
+                let insides2 = ends2.map(|at| fences.of_base[side1][at]);
+                let insides1 = [side1, next1].map(|at: usize| fences.of_top[at][side2]);
+                let ends1 = [ground.points[side1], ground.points[next1]];
+                let core1 = along_side(&ends1, insides1);
+                let core2 = along_side(&ends2.map(|at| top.point(at)), insides2);
+                let distance = self.asked.normal.dot(&(core2 - core1));
+                self.push(core1, distance, [ground.sides[side1], top.face.sides[side2]], out);
             }
         }
-    }
-
-    /// The ends of a side lie on different hands of a line, and neither on it.
-    #[inline]
-    fn are_apart(&self, [from, to]: [N; 2]) -> bool {
-        let tolerance = self.tolerance;
-        from > tolerance && to < -tolerance || from < -tolerance && to > tolerance
     }
 
     /// Adds a point that is asked for, once for each pair of names.
@@ -330,4 +315,9 @@ impl<N: Real> Meeting<'_, N> {
         }
         is_found
     }
+}
+
+/// The point of a side that lies on a line, given how far inside of that its ends are.
+fn along_side<N: Real>(ends: &[Point<N, 3>; 2], [from, to]: [N; 2]) -> Point<N, 3> {
+    ends[0] + (ends[1] - ends[0]) * (from / (from - to))
 }

@@ -1,6 +1,7 @@
 //! The fused algorithm for faces of triangles against the general builder.
 
 use super::along::{Along, build_between, build_in_general};
+use super::frame::rounding;
 use super::triangle_face::{OnFace, on_face3};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
@@ -71,10 +72,10 @@ fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>, what: &str)
     let prediction = N::lit(0.05);
     let request = ManifoldRequest { prediction, sine: N::ZERO, max_points: 16 };
     let (mut found, mut expected) = (RawManifold::default(), RawManifold::default());
-    let least = N::lit(-0.2);
-    let on_face = OnFace { normal: *normal, least, nearest: None, prediction };
+    let (least, tolerance) = (N::lit(-0.2), rounding(pair));
+    let on_face = OnFace { normal: *normal, least, nearest: None, prediction, tolerance };
     let is_made = on_face3(pair, &on_face, &mut found);
-    build_in_general(pair, &Along { normal: *normal, least }, &request, &mut expected);
+    build_in_general(pair, &Along { normal: *normal, least, tolerance }, &request, &mut expected);
     if is_made {
         same(&found.points, &expected.points, slack, what);
     }
@@ -84,7 +85,7 @@ fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>, what: &str)
     };
     let witness = Separation { normal: *normal, ..witness };
     let (least, nearest) = (-N::INFINITY, Some(witness.distance));
-    let on_face = OnFace { normal: *normal, least, nearest, prediction };
+    let on_face = OnFace { normal: *normal, least, nearest, prediction, tolerance };
     let is_found = on_face3(pair, &on_face, &mut found);
     build_between(pair, &witness, &request, &mut expected);
     if is_found {

@@ -1,7 +1,7 @@
 //! What the nearest points of two convex solids lie on.
 
 use super::facet::{Facet, Which};
-use super::frame::{Frame, rounding};
+use super::frame::Frame;
 use super::{ManifoldRequest, Pair, at_witness, ball, face, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Real, Vector};
@@ -26,19 +26,19 @@ pub(crate) fn features3<N: Real>(
 /// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
-    separation: &Separation<N, 2>,
+    known: (&Separation<N, 2>, N),
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tangents2, is_second)
+    feature(pair, known, tangents2, is_second)
 }
 
 /// The feature of one of two solids of space, the first or the second: one of [`features3`].
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
-    separation: &Separation<N, 3>,
+    known: (&Separation<N, 3>, N),
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tangents3, is_second)
+    feature(pair, known, tangents3, is_second)
 }
 
 /// The frame of a witness that nothing else is asked of.
@@ -65,7 +65,7 @@ fn features<N: Real, const D: usize>(
 
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
-    separation: &Separation<N, D>,
+    (separation, noise): (&Separation<N, D>, N),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     is_second: bool,
 ) -> FeatureId {
@@ -74,7 +74,7 @@ fn feature<N: Real, const D: usize>(
         Some(_) => return FeatureId::Face(0),
         None => {}
     }
-    let seam = if is_second { None } else { on_seam(pair, separation) };
+    let seam = if is_second { None } else { on_seam(pair, separation, noise) };
     seam.unwrap_or_else(|| {
         shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second)
     })
@@ -85,6 +85,7 @@ fn feature<N: Real, const D: usize>(
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
+    noise: N,
 ) -> Option<FeatureId> {
     let Pair {
         first: Kind::Triangle(triangle), second: Kind::Cuboid(_) | Kind::Polytope(_), ..
@@ -92,7 +93,6 @@ fn on_seam<N: Real, const D: usize>(
     else {
         return None;
     };
-    let noise = rounding(pair);
     let part = triangle.part_at(&separation.point1, &separation.normal, noise);
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }

@@ -19,6 +19,7 @@ mod ball_polytope;
 mod ball_segment;
 pub(super) mod ball_tapered;
 mod ball_triangle;
+mod chain;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
 mod cuboid_cylinder;
@@ -55,6 +56,7 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
+pub(crate) use chain::{ChainQuestion, Links, links};
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};

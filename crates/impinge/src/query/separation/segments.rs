@@ -49,13 +49,28 @@ pub(super) fn nearest_of_segments<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
 ) -> (Point<N, 3>, Point<N, 3>) {
-    let mut best = nearest_of_ends(ends1, ends2);
-    if let Some((point1, point2)) = common_perpendicular(ends1, ends2)
-        && (point2 - point1).norm_squared() < (best.1 - best.0).norm_squared()
-    {
-        best = (point1, point2);
+    let crossing = common_perpendicular(ends1, ends2);
+    match crossing {
+        Some(Crossing { points, is_certain: true }) => points,
+        Some(Crossing { points, .. }) => nearer(nearest_of_ends(ends1, ends2), points),
+        None => nearest_of_ends(ends1, ends2),
     }
-    best
+}
+
+/// The second of two pairs of points if that is nearer, else the first.
+fn nearer<N: Real>(
+    first: (Point<N, 3>, Point<N, 3>),
+    second: (Point<N, 3>, Point<N, 3>),
+) -> (Point<N, 3>, Point<N, 3>) {
+    let squared = |(a, b): &(Point<N, 3>, Point<N, 3>)| (b - a).norm_squared();
+    if squared(&second) < squared(&first) { second } else { first }
+}
+
+/// Where the common perpendicular of two lines meets two segments.
+struct Crossing<N: Real> {
+    points: (Point<N, 3>, Point<N, 3>),
+    /// All ends are farther by more than rounding.
+    is_certain: bool,
 }
 
 /// The nearest points of two segments if at least one of them is an end, in any dimension.
@@ -86,7 +101,7 @@ pub(super) fn nearest_of_ends<N: Real, const D: usize>(
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
-) -> Option<(Point<N, 3>, Point<N, 3>)> {
+) -> Option<Crossing<N>> {
     let (along1, along2) = (ends1[1] - ends1[0], ends2[1] - ends2[0]);
     // Directions of length about 1, so that fourth powers stay numbers of the type.
     let (size1, size2) =
@@ -95,7 +110,8 @@ fn common_perpendicular<N: Real>(
     let across = cross(&toward1, &toward2);
     let squared = across.norm_squared();
     let tiny = N::lit(64.0) * N::EPSILON * N::EPSILON;
-    if squared <= tiny * toward1.norm_squared() * toward2.norm_squared() {
+    let (squared1, squared2) = (toward1.norm_squared(), toward2.norm_squared());
+    if squared <= tiny * squared1 * squared2 {
         return None;
     }
     let (mut s, mut t) = (N::ZERO, N::ZERO);
@@ -106,7 +122,35 @@ fn common_perpendicular<N: Real>(
         between = (ends2[0] + along2 * t) - (ends1[0] + along1 * s);
     }
     let inside = |u: N| u >= N::ZERO && u <= N::ONE;
-    (inside(s) && inside(t)).then(|| (ends1[0] + along1 * s, ends2[0] + along2 * t))
+    if !(inside(s) && inside(t)) {
+        return None;
+    }
+    let points = (ends1[0] + along1 * s, ends2[0] + along2 * t);
+    let is_inner = [s, t].iter().all(|&u| u > N::lit(INNER) && u < N::lit(1.0 - INNER));
+    // The square of the sine of the angle times that of the shorter length.
+    let across = min(squared / squared1 * size2 * size2, squared / squared2 * size1 * size1);
+    let is_certain = is_inner
+        && squared > N::lit(WIDE) * squared1 * squared2
+        && across > N::lit(CERTAIN) * N::EPSILON * farthest_squared([ends1, ends2]);
+    Some(Crossing { points, is_certain })
+}
+
+/// Lines at an angle with a larger squared sine meet at a place that rounding leaves alone.
+const WIDE: f64 = 1.0 / 64.0;
+/// So far from the ends, as a share of the lengths, a place is in the middle.
+const INNER: f64 = 1.0 / 16.0;
+/// Seen from the place where the perpendicular meets it, an end is farther from the other line by at least
+/// [`INNER`] of its side times the sine of the angle. The square of that must exceed so many rounding units
+/// of the square of all coordinates, of which squared distances may be off by a few hundred.
+const CERTAIN: f64 = 1024.0 / (INNER * INNER);
+
+/// The square of the largest coordinate.
+fn farthest_squared<N: Real>(segments: [&[Point<N, 3>; 2]; 2]) -> N {
+    let mut most = N::ZERO;
+    for end in segments.into_iter().flatten() {
+        most = max(max_component(&end.coords), most);
+    }
+    most * most
 }
 
 /// How far apart two sets of points are along a unit vector from the first to the second.
@@ -132,6 +176,48 @@ mod tests {
             &[p(1.0, -1.0, 2.0), p(1.0, 1.0, 2.0)],
         );
         assert_eq!((point1, point2), (p(1.0, 0.0, 0.0), p(1.0, 0.0, 2.0)), "one above the other");
+    }
+
+    /// Where the ends are not looked at they are farther, also as computed.
+    fn certain_places_are_the_nearest<N: Real>() {
+        let (mut state, mut certain) = (7_u64, 0);
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for round in 0..20_000 {
+            // Some touch, some are short for where they are, some are nearly parallel.
+            let gap = [0.0, 1e-7, 1e-3, 1.0][round % 4];
+            let (size, turn) = ([1.0, 0.1, 1e-3][round % 3], [1.0, 0.2, 1e-2][round / 4 % 3]);
+            let mut vector = |size: f64| [size * next(), size * next(), size * next()];
+            let (place, along, lean) = (vector(1.0), vector(size), vector(size * turn));
+            let (share1, share2, across) = (vector(0.6), vector(0.6), vector(gap));
+            let point = |share: f64, along: [f64; 3], at: [f64; 3]| {
+                let axis = |axis: usize| N::lit(at[axis] + share * along[axis]);
+                Point::<N, 3>::new(axis(0), axis(1), axis(2))
+            };
+            let other = [0, 1, 2].map(|axis| along[axis] + lean[axis]);
+            let beside = [0, 1, 2].map(|axis| place[axis] + across[axis]);
+            let ends1 =
+                [point(share1[0] - 0.5, along, place), point(share1[0] + 0.5, along, place)];
+            let ends2 =
+                [point(share2[0] - 0.5, other, beside), point(share2[0] + 0.5, other, beside)];
+            let Some(crossing) = common_perpendicular(&ends1, &ends2) else { continue };
+            if crossing.is_certain {
+                let slowly = nearer(nearest_of_ends(&ends1, &ends2), crossing.points);
+                assert_eq!(slowly, crossing.points, "round {round}: {ends1:?} {ends2:?}");
+                certain += 1;
+            }
+        }
+        assert!(certain > 1000, "{certain} are certain");
+    }
+
+    #[test]
+    fn ends_are_left_out_only_where_they_are_farther() {
+        certain_places_are_the_nearest::<f32>();
+        certain_places_are_the_nearest::<f64>();
     }
 
     #[test]

@@ -12,7 +12,9 @@ use super::segments::nearest_of_segments;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, cross, max, max_component, min};
 use crate::query::Pair;
-use crate::shape::{ConvexPolyhedron, Feature, FeatureId, Kind, Triangle};
+use crate::shape::{
+    ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Kind, Polytope, Triangle,
+};
 
 /// Thinner than this part of its longest side a triangle counts as a segment, and edges at an angle
 /// with a smaller sine as parallel.
@@ -155,11 +157,7 @@ impl<'a, N: Real> Fin<'a, N> {
 
     /// The answer along an axis, in the frame of the triangle; `None` if the points do not lie across
     /// from each other, so that the axis only gives a bound, or if the face of the solid is none.
-    pub(super) fn answer(
-        &self,
-        solid: &dyn ConvexPolyhedron<N, 3>,
-        axis: &Axis<N>,
-    ) -> Option<Separation<N, 3>> {
+    pub(super) fn answer(&self, solid: &impl Faces<N>, axis: &Axis<N>) -> Option<Separation<N, 3>> {
         let [point1, point2] = self.points(solid, axis)?;
         let aside = point2 - point1 - axis.normal * axis.gap;
         // Of solids that overlap the points do lie across from each other, but where other sides or
@@ -176,22 +174,22 @@ impl<'a, N: Real> Fin<'a, N> {
     }
 
     /// The points of the triangle and of the solid where they face each other along an axis.
-    fn points(
-        &self,
-        solid: &dyn ConvexPolyhedron<N, 3>,
-        axis: &Axis<N>,
-    ) -> Option<[Vector<N, 3>; 2]> {
-        let (normal, mut part) = (&axis.normal, Feature::default());
+    fn points(&self, solid: &impl Faces<N>, axis: &Axis<N>) -> Option<[Vector<N, 3>; 2]> {
+        let normal = &axis.normal;
         Some(match axis.kind {
             AxisKind::Triangle => {
-                solid.core_feature(&-normal, &mut part);
                 let base = self.seen_from(normal);
-                let lowest = lowest_over(&self.shrunk(&part), &base, normal);
+                let part = self.shrunk(solid.ring_toward(&-normal), |part| {
+                    solid.core_feature(&-normal, part);
+                });
+                let lowest = lowest_over(&part, &base, normal);
                 [onto(&lowest, &base, normal), lowest]
             }
             AxisKind::Face(face) => {
-                solid.face(FeatureId::Face(face), &mut part);
-                let (base, outward) = (self.shrunk(&part), -normal);
+                let base = self.shrunk(solid.ring_at(face), |part| {
+                    solid.face(FeatureId::Face(face), part);
+                });
+                let outward = -normal;
                 // A flat box has faces without an area.
                 if base.len() < 3 {
                     return None;
@@ -215,8 +213,52 @@ impl<'a, N: Real> Fin<'a, N> {
         if is_front { [a, b, c] } else { [a, c, b] }
     }
 
-    fn shrunk(&self, part: &Feature<N, 3>) -> Polygon<N> {
-        part.vertices.iter().map(|vertex| vertex.coords * self.shrink).collect()
+    /// The corners of a face in the units of the pair; of what is no ring by `fill`.
+    fn shrunk(
+        &self,
+        ring: Option<FaceRing<N>>,
+        fill: impl FnOnce(&mut Feature<N, 3>),
+    ) -> Polygon<N> {
+        let mut polygon = Polygon::new();
+        if let Some(ring) = ring {
+            for at in 0..ring.count {
+                polygon.push(ring.corner(at).coords * self.shrink);
+            }
+            return polygon;
+        }
+        let mut part = Feature::default();
+        fill(&mut part);
+        polygon.extend(part.vertices.iter().map(|vertex| vertex.coords * self.shrink));
+        polygon
+    }
+}
+
+/// A solid whose faces may be given as rings.
+pub(super) trait Faces<N: Real>: ConvexPolyhedron<N, 3> {
+    /// What the solid shows along a direction, if it is a face with few corners.
+    fn ring_toward(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>>;
+
+    /// A face by its number, if it has an area and few corners.
+    fn ring_at(&self, face: u32) -> Option<FaceRing<N>>;
+}
+
+impl<N: Real> Faces<N> for Cuboid<N, 3> {
+    fn ring_toward(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        self.face_ring(direction)
+    }
+
+    fn ring_at(&self, face: u32) -> Option<FaceRing<N>> {
+        self.face_ring_at(face)
+    }
+}
+
+impl<N: Real> Faces<N> for Polytope<N, 3> {
+    fn ring_toward(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        self.face_ring(direction)
+    }
+
+    fn ring_at(&self, face: u32) -> Option<FaceRing<N>> {
+        self.face_ring_at(face)
     }
 }
 

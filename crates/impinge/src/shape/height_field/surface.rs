@@ -5,22 +5,25 @@ use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::bend::Bend;
 use crate::shape::seam::{Seam, is_across, leads_up_clearly, slack};
+use crate::shape::siding::Joining;
 use crate::shape::tri_mesh::{inward_of, normal_of};
-use crate::shape::{FeatureId, Surface};
+use crate::shape::{FeatureId, Siding, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         let own = Face::of(self, self.corners(part));
-        if self.keeps_internal_edges {
-            return !self.is_one_sided || own.front.dot(normal) >= -slack::<N>();
-        }
-        let snapped = self.snapped_to(&own.front, normal);
-        snapped.is_some_and(|snapped| max_component(&(snapped - normal)) <= slack())
-            || match feature {
-                FeatureId::Face(_) => snapped.is_none(),
-                FeatureId::Edge(side) => self.edge_admits(&own, side as usize, normal),
-                FeatureId::Vertex(corner) => self.vertex_admits(&own, corner as usize, normal),
-            }
+        self.face_admits((&own, &mut None), feature, normal)
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        let (own, mut fold) = (Face::of(self, self.corners(part)), None);
+        let is_first = self.face_admits((&own, &mut fold), feature, first);
+        [is_first, !is_first && self.face_admits((&own, &mut fold), feature, second)]
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
@@ -54,6 +57,25 @@ impl<N: Real> Face<N> {
     fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
         let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
         Some(self.points[at])
+    }
+}
+
+/// A side of a triangle.
+struct Fold<N: Real> {
+    ends: [GridPoint; 2],
+    /// The triangle across, and how the two lie, if that is plain.
+    other: Option<Face<N>>,
+    bend: Option<Bend<N>>,
+}
+
+impl<N: Real> Fold<N> {
+    fn at(field: &HeightField<N, 3>, own: &Face<N>, side: usize) -> Self {
+        let ends = [own.corners[side % 3], own.corners[(side + 1) % 3]];
+        let other = field.across(&own.corners, ends).map(|corners| Face::of(field, corners));
+        let bend = other
+            .as_ref()
+            .and_then(|other| Bend::new([&own.points, &other.points], [own.front, other.front]));
+        Self { ends, other, bend }
     }
 }
 
@@ -107,19 +129,42 @@ impl<N: Real> HeightField<N, 3> {
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 
-    fn edge_admits(&self, own: &Face<N>, side: usize, normal: &Vector<N, 3>) -> bool {
-        let ends = [own.corners[side % 3], own.corners[(side + 1) % 3]];
-        let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
-        let other = self.across(&own.corners, ends).map(|corners| Face::of(self, corners));
-        let bend = other
-            .as_ref()
-            .and_then(|other| Bend::new([&own.points, &other.points], [own.front, other.front]));
+    /// Whether a triangle has a normal at a feature; what lies across a side is looked up once.
+    fn face_admits(
+        &self,
+        (own, fold): (&Face<N>, &mut Option<Fold<N>>),
+        feature: FeatureId,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        if self.keeps_internal_edges {
+            return !self.is_one_sided || own.front.dot(normal) >= -slack::<N>();
+        }
+        let snapped = self.snapped_to(&own.front, normal);
+        snapped.is_some_and(|snapped| max_component(&(snapped - normal)) <= slack())
+            || match feature {
+                FeatureId::Face(_) => snapped.is_none(),
+                FeatureId::Edge(side) => {
+                    let fold = fold.get_or_insert_with(|| Fold::at(self, own, side as usize));
+                    self.edge_admits((own, fold), side as usize, normal)
+                }
+                FeatureId::Vertex(corner) => self.vertex_admits(own, corner as usize, normal),
+            }
+    }
+
+    fn edge_admits(
+        &self,
+        (own, fold): (&Face<N>, &Fold<N>),
+        side: usize,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let Fold { ends, other, bend } = fold;
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
             return answer;
         }
+        let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
         let mut seam = Seam::of_faces(own.front, normal);
         for face in [Some(own), other.as_ref()].into_iter().flatten() {
-            let inward = face.beyond(&ends).and_then(|tip| inward_of(&[start, end, tip]));
+            let inward = face.beyond(ends).and_then(|tip| inward_of(&[start, end, tip]));
             if let Some(inward) = inward {
                 seam.add_face(inward.dot(normal), &face.front);
             }
@@ -173,6 +218,13 @@ impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
         Some(if is_front { front } else { -front })
     }
 
+    fn siding(&self) -> Option<Siding> {
+        let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
+        let (is_left, is_told_by_front) = (!self.is_mirrored(), true);
+        let joining = Joining::InRow;
+        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges, joining })
+    }
+
     fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
         self.height_over(part, &(center - self.point(part as usize))) >= N::ZERO
     }
@@ -209,5 +261,37 @@ impl<N: Real> HeightField<N, 2> {
             seam.add_segment(&(along * sign), self.height_over(part, normal));
         }
         seam.admits(self.is_one_sided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_normals_in_turn_are_as_each_alone() {
+        let noise = |at: usize| ((at * at * 31 + at * 7) % 97) as f64 / 97.0 - 0.5;
+        let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
+        let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
+        let mut counts = [0; 3];
+        for (field, part) in [field.clone(), field.one_sided()]
+            .iter()
+            .flat_map(|field| (0..50_u32).map(move |part| (field, part)))
+        {
+            let front = field.front_of(&field.corners(part));
+            for at in 0..60 {
+                let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
+                let far = (front + aside).normalize();
+                let near = (front + aside * 0.03).normalize();
+                let feature =
+                    [FeatureId::Edge(at as u32 / 3 % 3), FeatureId::Vertex(at as u32 % 3)];
+                let feature = feature[at % 2];
+                let [first, second] = [far, near].map(|n| field.admits(part, feature, &n));
+                let both = field.admits_in_turn(part, feature, [&far, &near]);
+                assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
+                counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
     }
 }

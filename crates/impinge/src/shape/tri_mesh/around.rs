@@ -13,6 +13,8 @@ use crate::math::{Point, Real, Vector, max, max_component, unit, unit_or};
 
 /// So many sides of triangles without area are crossed in search of what lies beyond.
 const MOST_CROSSED: usize = 32;
+/// A triangle with a squared height of more than this, of its longest side, is tall.
+const TALL: f64 = 1.0 / 1024.0;
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Calls `visit` with each other triangle at a side, and the side it is to that one.
@@ -67,7 +69,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         for &triangle in self.topology.joints.parts(joint) {
             let at = self.corner_at(triangle, joint);
             let opposite = (at + 1) % 3;
-            if self.inward(triangle, opposite).is_some() {
+            let has_area = self.is_plain(triangle) || self.inward(triangle, opposite).is_some();
+            if has_area {
                 continue;
             }
             let leaving = self.leaving(triangle, joint);
@@ -76,6 +79,11 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 self.each_beyond(triangle, opposite, &mut visit);
             }
         }
+    }
+
+    /// The triangle is so tall for its size that nobody doubts its area; not told of all.
+    fn is_plain(&self, triangle: u32) -> bool {
+        self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
     }
 
     /// Unit, along the sides of a triangle that leave a joint.
@@ -113,6 +121,21 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     let least = height * (length / longest);
     let has_area = least > noise(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
+}
+
+/// The height over the longest side is far more than what counts as an area, see [`inward_of`].
+fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
+    let [a, b, c] = corners;
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let longest = max(ab.norm_squared(), max(ac.norm_squared(), bc.norm_squared()));
+    // Four squared areas.
+    let along = ab.dot(&ac);
+    let area = ab.norm_squared() * ac.norm_squared() - along * along;
+    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
+    let unsure = N::lit(4096.0) * N::EPSILON * farthest;
+    area > N::lit(TALL) * longest * longest
+        && longest > unsure * unsure
+        && area > N::MIN_POSITIVE / N::EPSILON
 }
 
 /// Whether a side is in the list, or the list is full.

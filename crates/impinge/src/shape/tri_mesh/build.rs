@@ -5,6 +5,7 @@ use super::super::mesh_error::{
 };
 use super::super::polyline::refused;
 use super::super::segment::box_of;
+use super::bends::Bends;
 use super::topology::Topology;
 use super::{TriMesh, table};
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -40,6 +41,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         let normals = normals_of(&vertices, &triangles);
         Ok(Self {
             is_cycle: topology.is_cycle,
+            bends: Bends::new(triangles.len()),
             packed: (table::<N, D>().packed)(&tree, &vertices, &triangles),
             vertices,
             triangles,
@@ -127,6 +129,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.try_refit(&boxes).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);
+        self.bends.clear();
         self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
         Ok(())

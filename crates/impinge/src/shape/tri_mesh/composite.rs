@@ -1,5 +1,7 @@
 //! A mesh as a shape: a union of triangles that know their neighbours.
 
+use core::hint::black_box;
+
 use super::super::segment::length_of;
 use super::rays::RayBounds;
 use super::{TriMesh, table};
@@ -51,6 +53,14 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
 
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         (table().snapped)(self, part, normal)
+    }
+
+    fn expect(&self, part: u32) {
+        let beyond = self.topology.all_across(part);
+        let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
+        black_box((normal(part), self.bends.told_of(part), self.triangles[part as usize]));
+        // Where there is no triangle across a side there is none of such a number.
+        black_box(beyond.map(normal));
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {

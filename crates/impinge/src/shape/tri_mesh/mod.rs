@@ -1,6 +1,7 @@
 //! Meshes of triangles: filled in the plane, surfaces in space.
 
 mod around;
+mod bends;
 mod build;
 mod composite;
 mod rays;
@@ -15,6 +16,7 @@ pub(super) use surface3::normal_of;
 pub(crate) use table::MeshTable;
 pub use topology::Neighbor;
 
+use self::bends::Bends;
 use self::topology::Topology;
 use super::Triangle;
 use crate::bvh::Triangles;
@@ -43,7 +45,7 @@ use crate::partitioning::BoxTree;
 /// numbers: it acts as a segment or a point.
 ///
 /// Making a mesh costs O(n log n), a search O(log n + what it finds). A triangle with its share of
-/// vertices takes about 205 bytes in `f32`: 36 of them are a copy of its corners beside those of its
+/// vertices takes about 207 bytes in `f32`: 36 of them are a copy of its corners beside those of its
 /// neighbours, for rays.
 ///
 /// ```
@@ -65,6 +67,7 @@ pub struct TriMesh<N: Real, const D: usize> {
     topology: Topology,
     /// By triangle: unit, on the front; zero without area. None in the plane.
     normals: Vec<Vector<N, D>>,
+    bends: Bends,
     tree: BoxTree<N, D>,
     /// In the order of the tree's blocks: what rays look at. None in the plane.
     packed: Vec<Triangles>,

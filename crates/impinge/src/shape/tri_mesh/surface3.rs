@@ -1,6 +1,6 @@
 //! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
 
-use super::super::bend::Bend;
+use super::super::bend::{Bend, Shape};
 use super::super::seam::{Seam, is_across, leads_up_clearly, slack};
 use super::super::segment::length_of;
 use super::TriMesh;
@@ -69,7 +69,8 @@ impl<N: Real> TriMesh<N, 3> {
         let other = self.topology.single_across(part, side);
         let bend = other.and_then(|other| {
             let fronts = [part, other].map(|face| self.normals[face as usize]);
-            Bend::new([&self.corners(part), &self.corners(other)], fronts)
+            let find = || Shape::new([&self.corners(part), &self.corners(other)], &fronts);
+            Some(Bend::of(self.bends.at(part, side, find)?, fronts))
         });
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
             return answer;
@@ -87,6 +88,18 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && seam.admits(self.is_one_sided)
     }
 
+    /// How much the steeper of the two sides of a triangle that leave a joint rises along a unit vector.
+    fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
+        let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
+        let mut highest = -N::ONE;
+        for turn in [1, 2] {
+            if let Some((along, _)) = unit(&(corners[(at + turn) % 3] - corners[at])) {
+                highest = max(highest, along.dot(normal));
+            }
+        }
+        highest
+    }
+
     /// No side that leaves the corner rises along the normal, and the faces are not flat there.
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
         let joint = self.joint_at(part, corner);
@@ -101,8 +114,7 @@ impl<N: Real> TriMesh<N, 3> {
         }
         let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         for &triangle in self.topology.joints.parts(joint) {
-            let leaving = self.leaving(triangle, joint);
-            let rise = leaving.iter().map(|side| side.dot(normal)).fold(-N::ONE, max);
+            let rise = self.rise_from(triangle, joint, normal);
             seam.add_face(rise, &self.normals[triangle as usize]);
         }
         self.each_beyond_joint(joint, |triangle, inward| {

@@ -106,7 +106,11 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
         Some(found) => found,
         None => (N::tables().separation)(&placed.pair(), request.prediction)?,
     };
-    let centers = placed.centers()?;
+    let centers = match scene.surfaces[0] {
+        // Of a convex first shape nothing is asked.
+        None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
+        Some(_) => placed.centers()?,
+    };
     of_surfaces(scene, &Meeting { placed, parts, centers, reference, found }, request, notes)
 }
 
@@ -145,7 +149,7 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
     fn verdicts(
         &self,
         scene: &Scene<'_, N, D>,
-        found: &Separation<N, D>,
+        (found, tolerance): (&Separation<N, D>, N),
         over: Option<FeatureId>,
     ) -> [Verdict<N, D>; 2] {
         // Where the other solid comes from, and the part itself, as the shape of the part sees it.
@@ -158,8 +162,10 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
             return [Verdict::Nothing; 2];
         }
         let [is_second1, is_second2] = self.placed.turned([false, true]);
-        let feature =
-            |is_second| (N::tables().witness_feature)(&self.placed.pair(), found, is_second);
+        let feature = |is_second| {
+            let pair = self.placed.pair();
+            (N::tables().witness_feature)(&pair, (found, tolerance), is_second)
+        };
         let (feature1, feature2) =
             (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
         let normal = self.placed.outward(&found.normal);
@@ -190,7 +196,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     }
     let tolerance = placed.tolerance();
     let over = over(&pair, tolerance);
-    let verdicts = meeting.verdicts(scene, &found, over);
+    let verdicts = meeting.verdicts(scene, (&found, tolerance), over);
     let normal = placed.outward(&found.normal);
     let raw = notes.blank();
     let mut standing = match settled(placed, &verdicts, &normal) {
@@ -201,13 +207,13 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             let witness = Separation { normal: placed.inward(&normal), ..found };
             match over.filter(|over| is_certain(*over, &verdicts[1])) {
                 Some(over) => of_ball(&witness, over, raw),
-                None => build_on_face(&pair, &witness, request, raw),
+                None => build_on_face(&pair, (&witness, tolerance), request, raw),
             }
             Standing::Own
         }
         Settled::Forced(normal, standing) => {
             let least = if found.distance > N::ZERO { found.distance } else { -N::INFINITY };
-            let along = Along { normal: placed.inward(&normal), least };
+            let along = Along { normal: placed.inward(&normal), least, tolerance };
             build_along(&pair, &along, request, raw);
             standing
         }

@@ -87,27 +87,26 @@ pub(super) fn judge<N: Space<D>, const D: usize>(
     if is_face(feature) && lean <= N::lit(ON_FACE) {
         return Verdict::Face(face);
     }
-    if is_admitted(feature) {
-        return Verdict::Admitted;
-    }
-    if !case.is_beside && is_beyond_ridge(surface, case, feature, &face) {
-        Verdict::Beyond(face)
-    } else {
-        Verdict::Snapped(face)
+    let leaning = if case.is_beside { None } else { leaning(case, &face) };
+    let [is_own, is_beyond] = match leaning {
+        Some(leaning) => surface.admits_in_turn(case.part, feature, [&case.outward, &leaning]),
+        None => [is_admitted(feature), false],
+    };
+    match (is_own, is_beyond) {
+        (true, _) => Verdict::Admitted,
+        (false, true) => Verdict::Beyond(face),
+        (false, false) => Verdict::Snapped(face),
     }
 }
 
-/// The part ends at a ridge, and the normal, which is not one of the ridge's, lies beyond all that
-/// are: seen from the face, normals that lean a little the same way are the ridge's.
-fn is_beyond_ridge<N: Space<D>, const D: usize>(
-    surface: &dyn Surface<N, D>,
+/// What tells that the part ends at a ridge, and that the normal, which is not one of the ridge's, lies
+/// beyond all that are: seen from the face, normals that lean a little the same way are the ridge's.
+fn leaning<N: Space<D>, const D: usize>(
     case: &Case<'_, N, D>,
-    feature: FeatureId,
     face: &Vector<N, D>,
-) -> bool {
+) -> Option<Vector<N, D>> {
     let leaning = face + (case.outward - face) * N::lit(A_LITTLE);
-    let leaning = unit(&leaning).map(|(leaning, _)| leaning);
-    leaning.is_some_and(|leaning| surface.admits(case.part, feature, &leaning))
+    unit(&leaning).map(|(leaning, _)| leaning)
 }
 
 /// A flat piece; for the segments of a surface in the plane that is an edge.

@@ -5,7 +5,7 @@ use core::cell::OnceCell;
 use super::super::between::{Between, anchor, recentred};
 use super::around::Around;
 use super::candidates::Nearby;
-use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::math::{Point, Pose, Real, Space, Vector, min};
 use crate::query::manifold_build::{Piece, Points};
 use crate::query::separation::Separations;
 use crate::query::tiles::TiledParts;
@@ -132,6 +132,10 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
         match self.between.pair.first {
             Kind::Composite(_) | Kind::Plane(_) => false,
+            Kind::Cuboid(cuboid) => (0..D).all(|axis| {
+                let half = cuboid.half_extents()[axis];
+                min(half - point[axis], point[axis] + half) > depth
+            }),
             // A hull without faces is a segment or a point.
             Kind::Polytope(hull) => {
                 let mut faces = hull.faces().iter();
@@ -338,6 +342,19 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
         let [origin1, origin2] = self.origins.map(|origin| origin.coords);
         let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
+    }
+
+    /// Of a convex first shape and a part of the second, of which [`Self::centers`] are known to be: these
+    /// as the second shape sees them, or the first as where it comes from.
+    pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
+        let [first, second] = if self.lying.is_turned { [1, 0] } else { [0, 1] };
+        let origin = self.origins[1].coords;
+        let own = self.bodies[second].center()? + origin;
+        let other = match from {
+            Some(from) => *from,
+            None => self.lying.turn.inverse_point(&self.bodies[first].center()?) + origin,
+        };
+        Some([other, own])
     }
 
     /// Lengths below this are rounding errors of the pair.

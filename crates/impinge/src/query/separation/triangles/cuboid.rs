@@ -94,6 +94,10 @@ fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let is_more = slack.simd_gt(bound.smaller(zero))
                 & sine.simd_gt(least)
                 & slack.simd_gt(bound * sine);
+            // Divisions cost more than all of the rest, and few directions are better than those before.
+            if is_more.to_bitmask() == 0 {
+                continue;
+            }
             let signed = is_above.select(-sine, sine);
             let mut normal = [zero; 3];
             (normal[i1], normal[i2]) = (x / signed, y / signed);

@@ -149,6 +149,10 @@ fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
                 & (bound.simd_lt(zero) | slack.simd_gt(zero))
                 & squared.simd_gt(least)
                 & slack.simd_gt(bound * length);
+            // Divisions cost more than all of the rest, and few directions are better than those before.
+            if is_more.to_bitmask() == 0 {
+                continue;
+            }
             let normal = over(&across, -length);
             best = exchanged(is_more, Best { gap: slack / length, normal, kind, index }, &best);
             bound = is_more.select(slack / length, bound);

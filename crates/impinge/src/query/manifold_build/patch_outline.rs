@@ -1,0 +1,277 @@
+//! The few points that stand for a patch: of those of all its pieces the ones on the outline.
+//!
+//! A patch has few points, most often those of one piece. So all is done in place, in lists that the
+//! patches of a shape share.
+
+use smallvec::SmallVec;
+
+use super::super::{PairIds, RawPoint};
+use super::frame::Candidate;
+use super::patch::{Group, Kept, Merging, Order, Patch, PatchPoint, ordering};
+use super::reduce;
+use crate::math::{Real, Space, Vector, cross2};
+
+/// So many points need no memory for their outline but that of the function.
+const FEW: usize = 16;
+
+/// A point of a patch, seen along its normal.
+#[derive(Clone, Copy)]
+pub(super) struct Member<N> {
+    flat: Vector<N, 2>,
+    /// The index of its piece, and its own.
+    piece: usize,
+    point: usize,
+}
+
+/// The points of a patch.
+pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
+
+/// What the points of a patch are chosen by.
+pub(super) struct Choosing<'a, N: Real, const D: usize> {
+    pub(super) merging: &'a Merging<'a, N, D>,
+    pub(super) kept: &'a Kept,
+}
+
+impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
+    /// A patch of at most as many points as are asked for: the deepest and, of the outline, those that
+    /// span most. The list of members is used again and again.
+    pub(super) fn patch(
+        &self,
+        group: &Group,
+        order: &Order,
+        members: &mut Members<N>,
+        ids: &mut PairIds,
+    ) -> Patch<N, D> {
+        let normal = self.merging.pieces[group.lead].normal;
+        let tangents = (N::tables().tangents)(&normal);
+        self.gather(group, order, &tangents, members);
+        let count = self.drop_copies(members);
+        let members = &members[..count];
+        // In the plane two points delimit all there is.
+        let is_line = tangents[1] == Vector::<N, D>::zeros();
+        let most = self.merging.request.max_points.max(1);
+        let limit = if is_line { most.min(2) } else { most };
+        let lowest = self.merging.points[group.deepest].distance;
+        let (mut few, mut many) = ([0; 2 * FEW + 2], Vec::new());
+        let space: &mut [u32] = if count <= FEW {
+            &mut few
+        } else {
+            many.resize(2 * count + 2, 0);
+            &mut many
+        };
+        let length = self.outline(members, lowest + self.merging.tolerance, space);
+        let points = self.points(members, &space[..length], (lowest, limit), ids);
+        Patch { normal, points }
+    }
+
+    /// The points chosen of an outline, in the order of their numbers; one of them has the distance of
+    /// the deepest.
+    fn points(
+        &self,
+        members: &[Member<N>],
+        outline: &[u32],
+        (lowest, limit): (N, usize),
+        ids: &mut PairIds,
+    ) -> SmallVec<[PatchPoint<N, D>; 4]> {
+        let member = |index: usize| &members[outline[index] as usize];
+        let level = lowest + self.merging.tolerance;
+        let deepest = super::deepest_of(outline.len(), level, |index| {
+            (self.kept[member(index).point].is_some(), self.distance(member(index)))
+        });
+        let mut named: SmallVec<[(u32, usize); 8]> = SmallVec::new();
+        let mut name = |index: usize| {
+            named.push((self.kept[member(index).point].unwrap_or_else(|| ids.next()), index));
+        };
+        if outline.len() <= limit {
+            (0..outline.len()).for_each(&mut name);
+        } else {
+            self.chosen(members, outline, (deepest, limit)).into_iter().for_each(&mut name);
+        }
+        named.sort_unstable();
+        let mut points: SmallVec<[PatchPoint<N, D>; 4]> = SmallVec::new();
+        for &(id, index) in &named {
+            let Member { piece, point, .. } = *member(index);
+            let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
+            if index == deepest {
+                raw.distance = lowest;
+            }
+            points.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+        }
+        points
+    }
+
+    fn distance(&self, member: &Member<N>) -> N {
+        self.merging.points[member.point].distance
+    }
+
+    /// The points of a group that the request asks for, the deepest first; that one always, also
+    /// where its coordinates are no numbers.
+    fn gather(
+        &self,
+        group: &Group,
+        order: &Order,
+        tangents: &[Vector<N, D>; 2],
+        members: &mut Members<N>,
+    ) {
+        let Merging { request, pieces, points, .. } = *self.merging;
+        let origin = points[group.deepest].point1;
+        members.clear();
+        members.push(Member {
+            flat: Vector::<N, 2>::zeros(),
+            piece: group.lead,
+            point: group.deepest,
+        });
+        for (piece, _) in order.iter().filter(|(_, lead)| *lead == group.lead) {
+            for point in pieces[*piece].points.clone().filter(|point| *point != group.deepest) {
+                let arm = points[point].point1 - origin;
+                let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+                let is_turning = request.sine > N::ZERO;
+                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + reach {
+                    members.push(Member { flat, piece: *piece, point });
+                }
+            }
+        }
+    }
+
+    /// The indices of the points on the outline of all, and of the deepest, if no point of the outline
+    /// is at most `level`; answers how many there are. There must be room for twice as many and two.
+    fn outline(&self, members: &[Member<N>], level: N, out: &mut [u32]) -> usize {
+        let length = chain(members, 0..members.len(), (0, &mut *out));
+        // Each chain ends where the other starts.
+        let start = (length - 1).max(1);
+        let end = chain(members, (0..members.len()).rev(), (start, &mut *out));
+        let length = thin(members, (end - 1, &mut *out), self.merging.tolerance);
+        let depth = |index: usize| self.distance(&members[index]);
+        if out[..length].iter().any(|&index| depth(index as usize) <= level) {
+            return length;
+        }
+        let deeper = |best, next| if depth(next) < depth(best) { next } else { best };
+        let deepest = (0..members.len()).reduce(deeper);
+        out[length] = count32(deepest.unwrap_or(0));
+        length + 1
+    }
+
+    /// Sorts the points along the first tangent, then along the second; of points at one place, which
+    /// the parts around it all have, one stays: one with a number, the deepest, or that of the first
+    /// parts. Answers how many stay, which are the first.
+    fn drop_copies(&self, members: &mut [Member<N>]) -> usize {
+        let near = N::lit(4.0) * self.merging.tolerance;
+        members.sort_by(by_place);
+        // The first ones are those kept.
+        let (mut count, mut is_exchanged) = (0, false);
+        for next in 0..members.len() {
+            let member = members[next];
+            let flat = member.flat;
+            // Sorted along the first tangent: only the last few can be at the same place.
+            let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
+            let mut last = (0..count).rev().take_while(in_reach);
+            match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
+                Some(at) if self.is_better(&member, &members[at]) => {
+                    (members[at], is_exchanged) = (member, true);
+                }
+                Some(_) => {}
+                None => {
+                    members[count] = member;
+                    count += 1;
+                }
+            }
+        }
+        if is_exchanged {
+            // An exchange may have taken a point past its neighbours.
+            members[..count].sort_by(by_place);
+        }
+        count
+    }
+
+    fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
+        let tolerance = self.merging.tolerance;
+        let rank = |member: &Member<N>| {
+            (self.kept[member.point].is_none(), self.merging.pieces[member.piece].parts)
+        };
+        let lower = self.distance(old) - self.distance(new);
+        lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
+    }
+
+    /// The indices of at most `limit` points of the outline, which has more.
+    fn chosen(
+        &self,
+        members: &[Member<N>],
+        outline: &[u32],
+        (deepest, limit): (usize, usize),
+    ) -> SmallVec<[usize; 8]> {
+        let mut candidates: SmallVec<[Candidate<N, D>; 16]> = SmallVec::new();
+        for &index in outline {
+            let Member { flat, point, .. } = members[index as usize];
+            let RawPoint { point1, distance, feature1, feature2, .. } = self.merging.points[point];
+            let (features, kept_id) = ([feature1, feature2], self.kept[point]);
+            candidates.push(Candidate { point1, distance, flat, features, kept_id });
+        }
+        reduce::chosen(&candidates, deepest, limit, self.merging.tolerance)
+    }
+}
+
+fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+    let (a, b) = (&a.flat, &b.flat);
+    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
+}
+
+fn count32(index: usize) -> u32 {
+    u32::try_from(index).expect("32 bits number the points of a patch")
+}
+
+/// One side of the hull of sorted points, from the first to the last: every corner turns left. Written
+/// from a place on; answers where it ends.
+///
+/// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
+fn chain<N: Real>(
+    members: &[Member<N>],
+    order: impl Iterator<Item = usize>,
+    (start, out): (usize, &mut [u32]),
+) -> usize {
+    let mut end = start;
+    for member in order {
+        let member = count32(member);
+        while end >= start + 2 {
+            // Positive is left of the whole: inside.
+            if beside(members, [out[end - 2], out[end - 1], member]) < N::ZERO {
+                break;
+            }
+            end -= 1;
+        }
+        out[end] = member;
+        end += 1;
+    }
+    end
+}
+
+/// Twice the area of a triangle; positive if the middle one lies left of the way from the first to the
+/// last.
+#[inline]
+fn beside<N: Real>(members: &[Member<N>], corners: [u32; 3]) -> N {
+    let [from, at, to] = corners.map(|corner| members[corner as usize].flat);
+    cross2(&(to - from), &(at - from))
+}
+
+/// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
+/// next to them; answers how many are left.
+fn thin<N: Real>(
+    members: &[Member<N>],
+    (mut count, outline): (usize, &mut [u32]),
+    tolerance: N,
+) -> usize {
+    let mut at = 0;
+    while count > 2 && at < count {
+        let before = outline[if at == 0 { count - 1 } else { at - 1 }];
+        let after = outline[if at + 1 == count { 0 } else { at + 1 }];
+        let way = members[after as usize].flat - members[before as usize].flat;
+        let area = beside(members, [before, outline[at], after]);
+        if area.abs() <= tolerance * way.norm() {
+            outline.copy_within(at + 1..count, at);
+            count -= 1;
+        } else {
+            at += 1;
+        }
+    }
+    count
+}

@@ -1,0 +1,98 @@
+//! The face of a solid in space with few corners, in lists of fixed size.
+
+use super::FeatureId;
+use crate::math::{Point, Real, Vector};
+
+/// So many corners a face may have here: as many as there are lanes.
+const MOST: usize = 8;
+
+/// A face, its corners and sides in the order of [`Feature`](super::Feature).
+#[derive(Clone, Debug)]
+pub(crate) struct FaceRing<N: Real> {
+    pub(crate) id: FeatureId,
+    /// Three at least.
+    pub(crate) count: usize,
+    /// By coordinate; beyond the last there are zeros.
+    pub(crate) corners: [[N; MOST]; 3],
+    pub(crate) ids: [FeatureId; MOST],
+    /// Of the sides from each corner to the next.
+    pub(crate) sides: [FeatureId; MOST],
+    /// Unit, outward.
+    pub(crate) normal: Vector<N, 3>,
+}
+
+impl<N: Real> FaceRing<N> {
+    /// So many corners a face may have here.
+    pub(crate) const MOST: usize = MOST;
+
+    /// A face without corners.
+    #[inline]
+    pub(crate) fn new(id: FeatureId, normal: Vector<N, 3>) -> Self {
+        let (corners, ids) = ([[N::ZERO; MOST]; 3], [id; MOST]);
+        Self { id, count: 0, corners, ids, sides: ids, normal }
+    }
+
+    /// Appends a corner and the side that leaves it; there must be room.
+    #[inline]
+    pub(crate) fn push(&mut self, corner: &Point<N, 3>, [id, side]: [FeatureId; 2]) {
+        let at = self.count;
+        for (row, value) in self.corners.iter_mut().zip(corner.iter()) {
+            row[at] = *value;
+        }
+        (self.ids[at], self.sides[at]) = (id, side);
+        self.count += 1;
+    }
+
+    /// A corner.
+    #[inline]
+    pub(crate) fn corner(&self, at: usize) -> Point<N, 3> {
+        let [x, y, z] = &self.corners;
+        Point::<N, 3>::new(x[at], y[at], z[at])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ConvexHull, Cuboid, Feature, Kind, Shape, SupportMap};
+    use super::*;
+
+    /// What a solid shows of itself in a ring and as a feature.
+    fn same(ring: Option<FaceRing<f64>>, feature: &Feature<f64, 3>, what: &str) -> bool {
+        let is_face = feature.normal.is_some() && feature.vertices.len() > 2;
+        assert_eq!(ring.is_some(), is_face, "{what}: {feature:?}");
+        let Some(ring) = ring else { return false };
+        let corners: Vec<_> = (0..ring.count).map(|at| ring.corner(at)).collect();
+        assert_eq!(corners, feature.vertices.to_vec(), "{what}");
+        assert_eq!(ring.ids[..ring.count], feature.vertex_ids[..], "{what}");
+        assert_eq!(ring.sides[..ring.count], feature.side_ids[..], "{what}");
+        assert_eq!((ring.id, Some(ring.normal)), (feature.id, feature.normal), "{what}");
+        true
+    }
+
+    #[test]
+    fn rings_are_the_faces_that_solids_show() {
+        let (mut faces, mut feature) = (0, Feature::default());
+        let solids = [[1.0, 2.0, 3.0], [1.0, 0.0, 3.0], [0.0, 0.0, 1.0]];
+        let corner = |at: usize| {
+            let sign = |axis: usize| if at >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            Point::<f64, 3>::new(sign(0), 2.0 * sign(1), sign(2))
+        };
+        let corners: Vec<_> = (0..8).map(corner).collect();
+        let hull = ConvexHull::from_points(&corners);
+        let Kind::Polytope(hull) = hull.geometry().0 else { panic!("a hull is a polytope") };
+        for at in 0..1000_usize {
+            let way = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
+            let way = Vector::<f64, 3>::new(way(7), way(11), way(13)).normalize();
+            // Every other one is close to that of a face.
+            let way = if at % 2 == 0 { way } else { way.map(|x| x.powi(41)).normalize() };
+            for half in solids {
+                let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));
+                cuboid.core_feature(&way, &mut feature);
+                faces += usize::from(same(cuboid.face_ring(&way), &feature, "a box"));
+            }
+            hull.core_feature(&way, &mut feature);
+            faces += usize::from(same(hull.face_ring(&way), &feature, "a hull"));
+        }
+        assert!(faces > 500, "{faces} faces");
+    }
+}
