@@ -73,7 +73,7 @@ impl<N: Real> Arc<N> {
 
     /// A direction of the arc and a lower bound of the depth on all of it, but for its ends. The bound is the
     /// larger height of the two lines there, if there is one.
-    pub(super) fn bound(&self) -> (Vector<N, 2>, N) {
+    fn bound(&self) -> (Vector<N, 2>, N) {
         let Some(crossing) = self.crossing() else {
             let [first, second] = self.lines.map(|line| self.least_of(&line));
             return if second.1 > first.1 { second } else { first };

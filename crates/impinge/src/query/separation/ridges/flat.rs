@@ -23,10 +23,10 @@ pub(super) struct Flat<N: Real> {
     pub(super) vertices: SmallVec<[Vector<N, 3>; 16]>,
     /// Unit vectors out of the solid, in its own frame: those of all faces, and where there are not enough of
     /// them others, so that arcs between two cover all normals of the edges.
-    pub(super) own_normals: SmallVec<[Vector<N, 3>; 32]>,
+    pub(super) own_normals: SmallVec<[Vector<N, 3>; 16]>,
     /// The same into the solid, in the frame of the round one, with a vertex that is lowest along it.
-    pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 32]>,
-    pub(super) edges: SmallVec<[Edge; 48]>,
+    pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 16]>,
+    pub(super) edges: SmallVec<[Edge; 32]>,
 }
 
 impl<N: Real> Flat<N> {
@@ -129,8 +129,8 @@ impl<N: Real> Flat<N> {
         for axis in 0..3_u32 {
             let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
             for (side1, side2) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let low = side1 << next | side2 << after;
-                self.push_edge([low, low | 1 << axis], [2 * next + side1, 2 * after + side2]);
+                let low = (side1 << next) | (side2 << after);
+                self.push_edge([low, low | (1 << axis)], [2 * next + side1, 2 * after + side2]);
             }
         }
     }

@@ -76,35 +76,6 @@ enum Place {
     Side,
 }
 
-/// The plane across an edge, in which the edge is one point.
-struct EdgePlane<N: Real> {
-    /// A point of the edge, and two unit vectors across it and each other.
-    vertex: Vector<N, 3>,
-    from: Vector<N, 3>,
-    across: Vector<N, 3>,
-}
-
-impl<N: Real> EdgePlane<N> {
-    fn lift(&self, u: &Vector<N, 2>) -> Vector<N, 3> {
-        self.from * u.x + self.across * u.y
-    }
-
-    /// The height of a point of the round solid against the edge.
-    fn line(&self, point: &Vector<N, 3>) -> Line<N> {
-        let away = point - self.vertex;
-        let toward = Vector::<N, 2>::new(away.dot(&self.from), away.dot(&self.across));
-        Line { base: N::ZERO, toward }
-    }
-}
-
-/// The arc of normals of an edge, and a lower bound of the depths on it.
-struct EdgeArc<N: Real> {
-    edge: usize,
-    plane: EdgePlane<N>,
-    arc: Arc<N>,
-    bound: N,
-}
-
 /// What is known of two solids, in the frame of the round one and units of the pair. Directions lead from
 /// the round solid to the flat one.
 struct Meeting<'a, N: Real> {
@@ -118,12 +89,11 @@ struct Meeting<'a, N: Real> {
 
 impl<N: Real> Meeting<'_, N> {
     fn search(&mut self, gap: N) -> Option<()> {
-        let mut ends = SmallVec::<[Vector<N, 3>; 32]>::new();
+        let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
-            let point = self.round.support(normal);
-            let depth = normal.dot(&(point - self.flat.vertices[*vertex as usize]));
-            self.note(depth, Place::Face(index), *normal);
-            ends.push(point);
+            let point = self.round.support(normal) - self.flat.vertices[*vertex as usize];
+            self.note(normal.dot(&point), Place::Face(index), *normal);
+            ends.push(self.round.support(normal));
         }
         for &up in self.round.caps() {
             let normal = Vector::<N, 3>::y() * N::lit(up);
@@ -131,15 +101,8 @@ impl<N: Real> Meeting<'_, N> {
             let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
             self.note(depth, Place::Cap, normal);
         }
-        let mut arcs = SmallVec::<[EdgeArc<N>; 48]>::new();
-        arcs.extend((0..self.flat.edges.len()).filter_map(|edge| self.arc_of(edge, &ends, gap)));
-        // The least depth is likely where the bound is least; the sooner it is known, the more is passed over.
-        let least =
-            |best: usize, arc: usize| if arcs[arc].bound < arcs[best].bound { arc } else { best };
-        let first = (0..arcs.len()).fold(0, least);
-        arcs.get(first).map_or(Some(()), |arc| self.search_edge(arc, gap))?;
-        self.search_side(gap)?;
-        arcs.iter().try_for_each(|arc| self.search_edge(arc, gap))
+        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, &ends, gap))?;
+        self.search_side(gap)
     }
 
     fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {
@@ -148,36 +111,32 @@ impl<N: Real> Meeting<'_, N> {
         }
     }
 
-    /// The arc of normals of an edge; `ends` are the support points of the round solid along the normals of
-    /// the flat one. `None` for an arc so short that nothing on it is lower than its ends by as much as the
-    /// gap.
-    fn arc_of(&self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<EdgeArc<N>> {
-        let flat::Edge { vertices, normals: [first, second] } = self.flat.edges[edge];
-        let [vertex, other] = vertices.map(|vertex| self.flat.vertices[vertex as usize]);
+    /// Along the normals of an edge, in whose plane the end of the edge is a point; `ends` are the support
+    /// points of the round solid along the normals of the flat one.
+    fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
+        let (round, vertices) = (self.round, &self.flat.vertices);
+        let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
+        let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
         let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
-        let across = across(&(other - vertex), [&from, &to])?;
+        let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
+        // Between normals so near to each other nothing is lower by as much as the gap.
         if cosine > N::ZERO && sine * sine <= gap * N::TWO {
-            return None;
-        }
-        let plane = EdgePlane { vertex, from, across };
-        let arc = Arc {
-            ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
-            lines: [plane.line(&ends[first as usize]), plane.line(&ends[second as usize])],
-        };
-        Some(EdgeArc { edge, plane, arc, bound: arc.bound().1 })
-    }
-
-    /// Along the normals of an edge.
-    fn search_edge(&mut self, edge: &EdgeArc<N>, gap: N) -> Option<()> {
-        if edge.bound >= self.least - gap {
             return Some(());
         }
-        let (round, plane) = (self.round, &edge.plane);
+        let line = |point: &Vector<N, 3>| {
+            let away = point - vertex;
+            Line { base: N::ZERO, toward: Vector::<N, 2>::new(away.dot(&from), away.dot(&across)) }
+        };
+        let arc = Arc {
+            ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
+            lines: [line(&ends[first as usize]), line(&ends[second as usize])],
+        };
+        let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
         let mut search = Search::new(self.least, gap);
-        search.run(edge.arc, |u| plane.line(&round.support(&plane.lift(u))))?;
+        search.run(arc, |u| line(&round.support(&lift(u))))?;
         if let Some(u) = search.best {
-            self.note(search.least, Place::Edge(edge.edge), plane.lift(&u));
+            self.note(search.least, Place::Edge(edge), lift(&u));
         }
         Some(())
     }

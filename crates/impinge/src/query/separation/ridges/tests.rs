@@ -7,6 +7,8 @@ use crate::query::separation::hulls::tests::Random;
 use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
 type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
+/// A solid of about a size.
+type Make<N> = fn(Vector<N, 3>) -> Box<dyn Shape<N, 3>>;
 
 fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Segment::new(Point::from(-size), Point::from(size * N::lit(0.7))))
@@ -96,7 +98,7 @@ fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>) -> N {
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(5);
     let mut deep = 0;
-    let solids: [(fn(Vector<N, 3>) -> _, fn(Vector<N, 3>) -> _); 7] = [
+    let solids: [(Make<N>, Make<N>); 7] = [
         (segment, cylinder),
         (triangle, cone),
         (cuboid, cylinder),
