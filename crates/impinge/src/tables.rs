@@ -17,7 +17,10 @@ use crate::narrow_phase::{
     update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
-use crate::query::composite::{PartPoint, RayQuestion, each_hit, nearest_part, over2, over3};
+use crate::query::composite::{
+    Between, CompositeContacts, PartPoint, RayQuestion, each_hit, nearest_part, over2, over3,
+    update_chain2, update_chain3,
+};
 use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
@@ -43,6 +46,9 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) separations: SeparationsFn<N, D>,
+    /// Brings the contacts of a convex solid and a chain of segments up to date; answers false where that is
+    /// left to the general way.
+    pub(crate) update_chain: ChainFn<N, D>,
     /// Its distance, and any that is not positive of solids that overlap clearly.
     pub(crate) distance: DistanceFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
@@ -109,6 +115,8 @@ type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), 
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type SeparationsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;
+type ChainFn<N, const D: usize> =
+    fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
@@ -225,6 +233,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     separations: SeparationsFn<N, D>,
+    update_chain: ChainFn<N, D>,
     distance: DistanceFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
@@ -245,6 +254,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         separations: separations2,
+        update_chain: update_chain2,
         distance: distance_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
@@ -266,6 +276,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         separations: separations3,
+        update_chain: update_chain3,
         distance: distance_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
@@ -289,6 +300,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separations: particular.separations,
+            update_chain: particular.update_chain,
             distance: particular.distance,
             are_beyond,
             separation_in_world: in_world,

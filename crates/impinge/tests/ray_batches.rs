@@ -3,10 +3,10 @@
 
 mod query_support;
 
-use impinge::math::{AbstractRotation, Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::{Ray, RayBatch, RayCast, RayIntersection};
-use impinge::shape::{Ball, CompositeShape, Part, Polyline, Shape, ShapeHandle, TriMesh};
+use impinge::shape::{Ball, CompositeShape, Part, Plane, Polyline, Shape, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld, QueryFilter};
 use query_support::random::Random;
 
@@ -169,26 +169,61 @@ fn answers_need_places() {
     RayCast::<f32, 2>::cast_local_rays(&Ball::new(1.0_f32), &RayBatch::new(&rays), &mut []);
 }
 
+/// A world in three layers of blocks, in which some objects stir, some have moved since the last update and
+/// some have no end.
+fn world<N: Space<D>, const D: usize>(
+    random: &mut Random,
+    place: impl Fn(Vector<N, D>) -> N::Isometry,
+) -> CollisionWorld<N, D, ()> {
+    let mut world = CollisionWorld::new(N::lit(0.02));
+    let mut up = Vector::<N, D>::zeros();
+    up[0] = N::ONE;
+    let shapes: [ShapeHandle<N, D>; 2] = [
+        ShapeHandle::new(Ball::new(N::ONE)),
+        ShapeHandle::new(Plane::new(Unit::new_normalize(up))),
+    ];
+    let mut handles = Vec::new();
+    for index in 0..5000 {
+        let shape = &shapes[usize::from(index % 2000 == 0)];
+        let position = place(random.vector::<N, D>() * N::lit(60.0));
+        let proximity = GeometricQueryType::Proximity(N::ZERO);
+        let mut alone = CollisionGroups::new();
+        alone.set_whitelist(&[]);
+        handles.push(world.add(position, shape.clone(), alone, proximity, ()));
+    }
+    for _ in 0..30 {
+        world.update();
+        for &handle in handles.iter().step_by(9) {
+            world.set_position(handle, place(random.vector::<N, D>() * N::lit(60.0)));
+        }
+    }
+    world.remove(&handles[100..200]);
+    world
+}
+
 fn worlds<N: Space<D>, const D: usize>(place: impl Fn(Vector<N, D>) -> N::Isometry) {
     let random = &mut Random(4, false);
-    let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.02));
-    let ball = ShapeHandle::new(Ball::new(N::ONE));
-    let proximity = GeometricQueryType::Proximity(N::ZERO);
-    for _ in 0..300 {
-        let position = place(random.vector::<N, D>() * N::lit(20.0));
-        world.add(position, ball.clone(), CollisionGroups::new(), proximity, ());
+    let world = world(random, place);
+    let start = |random: &mut Random| Point::from(random.vector::<N, D>() * N::lit(70.0));
+    let mut rays: Vec<_> = (0..600).map(|_| Ray::new(start(random), random.vector())).collect();
+    rays[3].dir[0] = N::lit(f64::NAN);
+    rays[50].origin[1] = N::INFINITY;
+    rays[51].dir = Vector::<N, D>::zeros();
+    let mut found = 0;
+    for count in [0, 1, 7, 8, 9, 20, rays.len()] {
+        for (longest, solid) in [(30.0, true), (f64::INFINITY, false), (0.0, true), (-1.0, true)] {
+            let (longest, filter) = (N::lit(longest), QueryFilter::new());
+            let batch = RayBatch { rays: &rays[..count], max_time: longest, solid };
+            let mut hits = vec![None; count];
+            world.cast_rays(&batch, &filter, &mut hits);
+            for (ray, hit) in rays.iter().zip(&hits) {
+                let single = world.first_ray_hit(ray, longest, solid, &filter);
+                assert_eq!(*hit, single.map(|(object, hit)| (object.handle(), hit)), "{ray:?}");
+            }
+            found += hits.iter().flatten().count();
+        }
     }
-    world.update();
-    let start = |random: &mut Random| Point::from(random.vector::<N, D>() * N::lit(25.0));
-    let rays: Vec<_> = (0..600).map(|_| Ray::new(start(random), random.vector())).collect();
-    let (batch, filter) = (RayBatch::new(&rays).until(N::lit(30.0)), QueryFilter::new());
-    let mut hits = vec![None; rays.len()];
-    world.cast_rays(&batch, &filter, &mut hits);
-    for (ray, hit) in rays.iter().zip(&hits) {
-        let single = world.first_ray_hit(ray, N::lit(30.0), true, &filter);
-        assert_eq!(*hit, single.map(|(object, hit)| (object.handle(), hit)), "{ray:?}");
-    }
-    assert!(hits.iter().flatten().count() > 20, "some hit");
+    assert!(found > 1000, "{found} hits");
 }
 
 #[test]

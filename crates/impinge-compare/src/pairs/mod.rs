@@ -30,7 +30,8 @@
 //! of all 256 pairs, far from one another, is told the placements of the second solids and updated, and
 //! the time is a 256th of that. It includes the broad phase, whose boxes are so loose that
 //! all pairs stay pairs in all regimes; it does not include reading the manifolds, which are as the
-//! narrow phase keeps them until they are read.
+//! narrow phase keeps them until they are read. "impinge narrow phase" is the part of the same updates that
+//! the narrow phase takes.
 //!
 //! Manifolds are *cold* if nothing that was kept is of use: alone, each call begins with a new generator
 //! (or an empty list of manifolds); in a world, all second solids jump between two sets of placements
@@ -51,6 +52,7 @@
 //! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --steps 8 --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
 //! ```
 
+mod clocked;
 #[cfg(feature = "coal")]
 mod coal;
 mod form;

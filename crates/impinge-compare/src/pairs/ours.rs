@@ -13,10 +13,13 @@ use impinge::shape::{
 };
 use impinge::world::{CollisionGroups, CollisionWorld};
 
+use super::clocked::{Clock, Clocked};
 use super::form::{Form, up};
 use super::placement::Placement;
 use super::question::{Answer, Contender, LONGEST_TIME, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
+use super::target::PART;
+use crate::measure::Times;
 
 /// How far boxes are loosened: all pairs stay pairs, whatever their regime.
 const MARGIN: f32 = 2.5;
@@ -271,6 +274,9 @@ where
     world: CollisionWorld<f32, D, usize>,
     second: Vec<CollisionObjectHandle>,
     round: usize,
+    /// Tells what the narrow phase takes, and what it took in each round.
+    clock: Clock,
+    narrow: Times,
 }
 
 impl<R: Dimension<D>, const D: usize> World<R, D>
@@ -279,19 +285,22 @@ where
 {
     pub fn new(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         let data = Data::new(pair, poses);
-        let (world, second) = filled(&data);
-        Self { data, world, second, round: 0 }
+        let clock = Clock::default();
+        let (world, second) = filled(&data, &clock);
+        Self { data, world, second, round: 0, clock, narrow: Times::default() }
     }
 }
 
 /// A world with all objects of the first set. First objects meet second ones, and nothing else.
 fn filled<R: Dimension<D>, const D: usize>(
     data: &Data<R, D>,
+    clock: &Clock,
 ) -> (CollisionWorld<f32, D, usize>, Vec<CollisionObjectHandle>)
 where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
 {
     let mut world = CollisionWorld::new(MARGIN);
+    world.set_narrow_phase(Box::new(Clocked::new(clock.clone())));
     let query = GeometricQueryType::Contacts(PREDICTION / 2.0, 0.0);
     let groups = |own: usize| {
         let mut groups = CollisionGroups::new();
@@ -324,8 +333,9 @@ where
     }
 
     fn reset(&mut self, _: Question) {
-        (self.world, self.second) = filled(&self.data);
+        (self.world, self.second) = filled(&self.data, &self.clock);
         self.round = 0;
+        self.narrow = Times::default();
     }
 
     fn ask(&mut self, question: Question) {
@@ -334,7 +344,14 @@ where
             self.world.set_position(*handle, *at);
         }
         self.world.update();
+        if self.round > 0 {
+            self.narrow.push(self.clock.read() / self.second.len() as f64);
+        }
         self.round += 1;
+    }
+
+    fn part(&self) -> Option<(&'static str, Times)> {
+        Some((PART, self.narrow.clone()))
     }
 
     fn answers(&self, _: Question) -> Vec<Answer> {

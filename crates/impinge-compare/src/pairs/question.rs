@@ -1,5 +1,7 @@
 //! What is asked, and what is answered.
 
+use crate::measure::Times;
+
 /// What is asked of every pair of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
@@ -112,6 +114,12 @@ pub trait Contender {
 
     /// The answers of the last round, one for each pair; not timed.
     fn answers(&self, question: Question) -> Vec<Answer>;
+
+    /// A part of what it does that has a row of its own: its name, and its times per pair in the rounds since
+    /// it began anew but the first.
+    fn part(&self) -> Option<(&'static str, Times)> {
+        None
+    }
 }
 
 /// Which placements of the second solids a round is about.

@@ -38,14 +38,22 @@ pub fn race(
     drop(asks);
     let answers: Vec<_> = able.iter().map(|one| one.answers(question)).collect();
     let named = able.iter().zip(times).zip(&answers);
-    let row = |((one, times), found): ((&&mut Box<dyn Contender>, Times), &Vec<Answer>)| Row {
+    let row = |(name, times): (&str, Times), found: &Vec<Answer>| Row {
         case: case.to_owned(),
-        contender: one.name().to_owned(),
+        contender: name.to_owned(),
         answers: found.iter().filter(|answer| answer.is_some()).count(),
         differ: question.differences(&answers[0], found, regime.distance()),
         times,
     };
-    named.map(row).collect()
+    let rows = |((one, times), found): ((&&mut Box<dyn Contender>, Times), &Vec<Answer>)| {
+        let part = one.part().filter(|_| question.is_manifold());
+        [Some((one.name(), times)), part]
+            .into_iter()
+            .flatten()
+            .map(|timed| row(timed, found))
+            .collect::<Vec<_>>()
+    };
+    named.flat_map(rows).collect()
 }
 
 /// How long a contender takes for the first round; `None` if it has no algorithm for the pair, or

@@ -7,6 +7,9 @@ use crate::table::Row;
 /// The manifold of two balls takes parry so many nanoseconds on the machine that targets are for.
 const PARRY_THERE: f64 = 41.0;
 
+/// What the narrow phase takes of an update; its rivals have no such part.
+pub const PART: &str = "impinge narrow phase";
+
 /// A case by its beginning, a question, and the most nanoseconds per pair of the world's update.
 const TARGETS: &[(&str, Question, f64)] = &[
     ("3D ball, ball,", Question::ManifoldWarm, 8.0),
@@ -60,7 +63,8 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 impl Verdicts {
     /// Looks at the rows of one case.
     pub fn add(&mut self, rows: &[Row]) {
-        let ours = least(rows.iter().filter(|row| is_ours(row)));
+        let is_whole = |row: &&Row| is_ours(row) && row.contender != PART;
+        let ours = least(rows.iter().filter(is_whole));
         let is_rival = |row: &&Row| !is_ours(row) && row.contender != "target";
         let rival = least(rows.iter().filter(is_rival));
         let (Some(ours), Some(rival)) = (ours, rival) else { return };

@@ -1,5 +1,6 @@
 //! The difference of two cores as one convex set, in units in which it is about 1 large.
 
+use super::peak::{Peak, Peaks};
 use super::{Separation, Units};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or};
 use crate::shape::SupportMap;
@@ -58,6 +59,11 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// The point of the first or second core that is lowest along the unit vector `normal`, or
     /// highest, on the part of the core that `on` lies on.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
+
+    /// The best normal of a difference that holds the origin, where there are means to name it.
+    fn peak(&self) -> Option<Peak<N, D>> {
+        None
+    }
 }
 
 /// The cores of two solids, in the frame of the first, in their [`Units`].
@@ -70,6 +76,7 @@ pub(super) struct Pair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     /// 1 / `scale`, exactly.
     shrink: N,
     is_flat: bool,
+    peaks: Option<&'a dyn Peaks<N, D>>,
 }
 
 /// A solid's reach; found without squaring where that leaves the range of the numbers.
@@ -103,12 +110,18 @@ where
         let Units { scale, shrink } = Units::of(reaches.0, reaches.1, &pose12.translation);
         let translation = pose12.translation * shrink;
         let rotation = pose12.rotation;
-        Some(Self { solid1, solid2, rotation, translation, scale, shrink, is_flat: false })
+        let (is_flat, peaks) = (false, None);
+        Some(Self { solid1, solid2, rotation, translation, scale, shrink, is_flat, peaks })
     }
 
     /// The same where both cores are known to be hulls of points.
     pub(super) fn between_flat_cores(self) -> Self {
         Self { is_flat: true, ..self }
+    }
+
+    /// The same with means to name the best normal where the cores overlap.
+    pub(super) fn with_peaks(self, peaks: &'a dyn Peaks<N, D>) -> Self {
+        Self { peaks: Some(peaks), ..self }
     }
 
     /// The length of one unit.
@@ -180,6 +193,10 @@ where
             bend: Some(found.bend * self.shrink),
             ..corner
         })
+    }
+
+    fn peak(&self) -> Option<Peak<N, D>> {
+        self.peaks?.best(self.shrink, tolerance())
     }
 }
 

@@ -13,6 +13,7 @@ use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::Hull;
 use super::newton::settles;
+use super::peak::at_peak;
 use super::polish::{lowest, polish};
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
@@ -31,6 +32,9 @@ pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 3>,
     simplex: &Simplex<N, 3>,
 ) -> Separation<N, 3> {
+    if let Some(peak) = difference.peak() {
+        return at_peak(difference, &peak);
+    }
     match from_simplex(difference, simplex) {
         Ok(corners) => grow(difference, &mut Hull::new(corners)),
         Err(flat) => flat,

@@ -21,6 +21,7 @@ mod extent;
 mod gjk;
 mod hull;
 mod newton;
+mod peak;
 mod polish;
 mod refine;
 mod separation;
@@ -32,6 +33,7 @@ mod tests;
 mod units;
 mod witness;
 
+pub(crate) use peak::{Peak, Peaks};
 pub(crate) use separation::Separation;
 pub(crate) use simplex::Simplicial;
 pub(crate) use units::Units;
@@ -89,6 +91,23 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let pair = Pair::new(a, b, pose12)?.between_flat_cores();
+    of_pair(&pair, (a.rounding(), b.rounding()), limit)
+}
+
+/// [`separation`] of solids of which it is known where the best normal of an overlap can lie: that is found
+/// without growing a polytope, and the same up to rounding.
+pub(crate) fn separation_by<N, A, B, const D: usize>(
+    (a, b): (&A, &B),
+    pose12: &Pose<N, D>,
+    limit: N,
+    peaks: &dyn Peaks<N, D>,
+) -> Option<Separation<N, D>>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
     of_pair(&pair, (a.rounding(), b.rounding()), limit)
 }
 

@@ -155,7 +155,8 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
-        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Siding, SupportMap,
+        Surface,
     };
 
     /// Where a curved support point lies, and how it moves.

@@ -30,6 +30,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
         shape1: table.shape(first).as_ref(),
         pose2: table.pose(second),
         shape2: table.shape(second).as_ref(),
+        bounds: Some([table.bounds(first), table.bounds(second)]),
         is_self: first == second,
     }
 }

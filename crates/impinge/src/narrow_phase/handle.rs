@@ -15,22 +15,26 @@ pub struct CollisionObjectHandle {
 
 impl CollisionObjectHandle {
     /// The handle of the `generation`-th object at an index of the table.
+    #[inline]
     pub(crate) const fn new(index: u32, generation: u32) -> Self {
         Self { index, generation }
     }
 
     /// The index in the handle table: dense, and in order of creation until the first removal.
+    #[inline]
     #[must_use]
     pub const fn uid(&self) -> usize {
         self.index as usize
     }
 
     /// The index in the handle table, as it is stored.
+    #[inline]
     pub(crate) const fn index(self) -> u32 {
         self.index
     }
 
     /// How many objects held this index before.
+    #[inline]
     pub(crate) const fn generation(self) -> u32 {
         self.generation
     }

@@ -4,6 +4,7 @@
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::math::{Pose, Real, Space};
 use crate::memory::Look;
+use crate::query::far::Bounds;
 use crate::shape::ShapeHandle;
 
 /// The row of an object that has none.
@@ -25,6 +26,9 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By row, as all below.
     handles: Vec<CollisionObjectHandle>,
     solids: Vec<Solid<N, D>>,
+    /// Balls and boxes that hold the shapes: most pairs that are far apart are told so by these, without a
+    /// look at the shapes, which lie far off in memory.
+    bounds: Vec<Bounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
     /// The poses as the user gave them, for algorithms of the user's own.
     isometries: Vec<N::Isometry>,
@@ -63,6 +67,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             rows: Vec::new(),
             handles: Vec::new(),
             solids: Vec::new(),
+            bounds: Vec::new(),
             queries: Vec::new(),
             isometries: Vec::new(),
             is_written: Vec::new(),
@@ -118,6 +123,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if self.has_row(index) {
             let (place, row) = (self.row(index), row());
             self.handles[place] = row.handle;
+            self.bounds[place] = Bounds::of(row.shape.as_ref());
             self.solids[place].shape = row.shape;
             self.queries[place] = row.query;
             self.set_position(index, &row.isometry);
@@ -130,6 +136,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.changed.push(index);
         self.is_written.push(true);
         self.handles.push(row.handle);
+        self.bounds.push(Bounds::of(row.shape.as_ref()));
         self.solids.push(Solid { pose: N::pose(&row.isometry), shape: row.shape });
         self.isometries.push(row.isometry);
         self.queries.push(row.query);
@@ -182,6 +189,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
         self.handles.truncate(next);
         self.solids.truncate(next);
+        self.bounds.truncate(next);
         self.queries.truncate(next);
         self.isometries.truncate(next);
         self.is_written.truncate(next);
@@ -197,6 +205,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.rows[owner] = u32::try_from(other).expect("no more rows than objects");
         self.handles.swap(row, other);
         self.solids.swap(row, other);
+        self.bounds.swap(row, other);
         self.queries.swap(row, other);
         self.isometries.swap(row, other);
         self.is_written.swap(row, other);
@@ -209,6 +218,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         look.fit(&mut self.rows);
         look.fit(&mut self.handles);
         look.fit(&mut self.solids);
+        look.fit(&mut self.bounds);
         look.fit(&mut self.queries);
         look.fit(&mut self.isometries);
         look.fit(&mut self.is_written);
@@ -246,6 +256,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     #[inline]
     pub(crate) fn shape(&self, index: u32) -> &ShapeHandle<N, D> {
         &self.solids[self.row(index)].shape
+    }
+
+    /// What holds the shape.
+    #[inline]
+    pub(crate) fn bounds(&self, index: u32) -> &Bounds<N, D> {
+        &self.bounds[self.row(index)]
     }
 
     /// The query type at the last update.

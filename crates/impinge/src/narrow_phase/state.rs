@@ -2,13 +2,13 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
-use crate::query::far::Apart;
+use crate::query::far::Bounds;
 use crate::query::pair::is_swapped;
 use crate::query::{
     BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
     Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
 };
-use crate::shape::{Geometry, Shape};
+use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -17,6 +17,8 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) shape1: &'a dyn Shape<N, D>,
     pub(crate) pose2: &'a Pose<N, D>,
     pub(crate) shape2: &'a dyn Shape<N, D>,
+    /// What holds the shapes, if that is known without asking them.
+    pub(crate) bounds: Option<[&'a Bounds<N, D>; 2]>,
     /// Both are one object, which is tested against itself.
     pub(crate) is_self: bool,
 }
@@ -35,9 +37,16 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
 
     /// The solids are certainly farther apart than `limit`.
     fn are_beyond(&self, limit: N) -> bool {
-        let shapes = [self.shape1.geometry(), self.shape2.geometry()];
         let between = self.pose2.translation - self.pose1.translation;
-        Apart { shapes, between }.is_beyond(limit)
+        self.bounds.is_some_and(|[one, other]| one.is_clear_of(other, &between, limit))
+    }
+
+    /// As [`Self::are_beyond`], told by boxes, for the poses of a pair in canonical order.
+    fn have_boxes_beyond(&self, pose12: &Pose<N, D>, is_swapped: bool, limit: N) -> bool {
+        self.bounds.is_some_and(|[one, other]| {
+            let [first, second] = if is_swapped { [other, one] } else { [one, other] };
+            first.has_box_clear_of(second, pose12, limit)
+        })
     }
 
     /// The two poses.
@@ -124,6 +133,9 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return self.clear();
         }
         let (pair, swapped) = posed.canonical();
+        if posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction) {
+            return self.clear();
+        }
         self.kept.turn(swapped, RawManifold::flip_names);
         (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
     }
@@ -207,9 +219,14 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
-        let (PairQuestion { poses, solids, request }, raw) = self.turned(poses, request)?;
-        let [Solid::Cuboid(cuboid1), Solid::Cuboid(cuboid2)] = solids else { return None };
-        Some(BoxJob { poses, cuboids: [cuboid1, cuboid2], request, raw })
+        let Some([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.solids else { return None };
+        let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);
+        let [kind1, kind2] = kinds.map(Geometry);
+        let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
+        self.kept.turn(swapped, RawManifold::flip_names);
+        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let (poses, cuboids) = ([poses[first], poses[second]], [cuboids[first], cuboids[second]]);
+        Some(BoxJob { poses, cuboids, request, raw: &mut self.kept.contacts })
     }
 
     /// The contacts, which are not none, read in place; the pose is that of [`Self::home`] at the last
@@ -280,8 +297,12 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     } else if posed.are_beyond(margin) {
         None
     } else {
-        let (pair, _) = posed.canonical();
-        (N::tables().distance)(&pair, margin)
+        let (pair, swapped) = posed.canonical();
+        if posed.have_boxes_beyond(&pair.pose12, swapped, margin) {
+            None
+        } else {
+            (N::tables().distance)(&pair, margin)
+        }
     };
     match found {
         None => Proximity::Disjoint,

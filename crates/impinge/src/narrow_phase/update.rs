@@ -211,7 +211,10 @@ fn update_convex<N: Space<D>, const D: usize>(
 ) {
     let due = rows.take_all_due(table);
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
-        let places: Places = due.indices().collect();
+        let mut places = Places::new();
+        for place in due.indices() {
+            places.push(place);
+        }
         return update_boxes_at(&mut rows, table, &places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
@@ -240,7 +243,9 @@ fn update_boxes_at<N: Space<D>, const D: usize>(
         ContactView::expire_any(rows.views.get_mut(place));
         let key = rows.keys[place];
         let poses = [table.pose(key.0), table.pose(key.1)];
-        jobs.extend(entry.state.box_job(poses, &entry.request));
+        if let Some(job) = entry.state.box_job(poses, &entry.request) {
+            jobs.push(job);
+        }
     }
     (N::tables().box_contacts)(&mut jobs);
     drop(jobs);

@@ -12,6 +12,28 @@ use crate::math::Space;
 use crate::pairs::PairTable;
 use crate::query::{ContactManifold, ManifoldView, Proximity};
 
+/// The manifolds of convex solids, then all others: a chain that forgets nothing and asks nothing of its
+/// second half until it gets there.
+struct Views<'a, N: Space<D>, I, const D: usize> {
+    convex: ConvexViews<'a, N, D>,
+    others: I,
+}
+
+/// Two objects and a manifold of theirs.
+type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
+
+impl<'a, N: Space<D>, I: Iterator<Item = View<'a, N, D>>, const D: usize> Iterator
+    for Views<'a, N, I, D>
+{
+    type Item = View<'a, N, D>;
+
+    #[inline]
+    fn next(&mut self) -> Option<View<'a, N, D>> {
+        let view = self.convex.next();
+        if view.is_some() { view } else { self.others.next() }
+    }
+}
+
 /// The contacts of a pair of objects, as of the last update.
 #[derive(Clone, Copy)]
 pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
@@ -202,7 +224,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let views = manifolds.filter_map(ManifoldView::of_manifold);
             views.map(move |view| (key.0, key.1, view))
         });
-        ConvexViews::new(&self.lanes.contacts, table).chain(composites).chain(custom)
+        let convex = ConvexViews::new(&self.lanes.contacts, table);
+        Views { convex, others: composites.chain(custom) }
     }
 
     /// All pairs whose proximity is asked for, sorted by handle index.

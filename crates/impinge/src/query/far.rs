@@ -10,8 +10,8 @@
 //! that are told apart are farther from each other than the limit by 2⁻⁸ of that distance, which is
 //! 2¹⁵ rounding errors of `f32`.
 
-use crate::math::{Real, Vector, max, max_component, min};
-use crate::shape::Geometry;
+use crate::math::{Pose, Real, Vector, max, max_component, min};
+use crate::shape::{Geometry, Shape};
 
 /// By how much the square of a distance must exceed that of the lengths it is held against.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
@@ -29,7 +29,12 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     /// `false` says nothing; it is the answer for half-spaces, composites and support maps of users, of
     /// which no ball is known.
     pub(crate) fn is_beyond(&self, limit: N) -> bool {
-        self.is_clear(self.between.norm_squared(), self.reach(limit))
+        exceeds(self.between.norm_squared(), reach(self.extents(), limit))
+    }
+
+    /// The sum of the radii of the balls.
+    fn extents(&self) -> N {
+        self.shapes[0].extent() + self.shapes[1].extent()
     }
 
     /// The same at all times up to `end`, zero included, while the second shape moves with `velocity`
@@ -48,20 +53,67 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         let way = self.between + velocity * max(min(nearest, end), N::ZERO);
         // The way is off by some rounding errors of the distance that it began with.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
-        self.is_clear(way.norm_squared(), self.reach(limit) + rounding)
+        exceeds(way.norm_squared(), reach(self.extents(), limit) + rounding)
+    }
+}
+
+/// What holds a shape in its own frame: a ball around the origin and a box.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds<N: Real, const D: usize> {
+    /// The radius of the ball; infinite where none is known, and the box then says nothing.
+    extent: N,
+    middle: Vector<N, D>,
+    half: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Bounds<N, D> {
+    /// Those of a shape.
+    pub(crate) fn of(shape: &dyn Shape<N, D>) -> Self {
+        let (extent, aabb) = (shape.geometry().extent(), shape.local_aabb());
+        Self { extent, middle: aabb.center().coords, half: aabb.half_extents() }
     }
 
-    /// How far apart the origins are at most where the shapes are no farther apart than `limit`.
-    fn reach(&self, limit: N) -> N {
-        self.shapes[0].extent() + self.shapes[1].extent() + max(limit, N::ZERO)
-    }
-
-    /// Squares that are subnormal numbers are not precise, which they are beside one that is not. NaN
-    /// and infinities on the right are never exceeded; one on the left is too large for its type.
+    /// [`Apart::is_beyond`] for the shapes that these hold.
     #[inline]
-    fn is_clear(&self, squared: N, reach: N) -> bool {
-        squared > reach * reach * N::lit(ROOM) && squared > N::MIN_POSITIVE
+    pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {
+        exceeds(between.norm_squared(), reach(self.extent + other.extent, limit))
     }
+
+    /// The boxes are farther apart than `limit` along an axis of one of them, by 2⁻⁸ of all lengths of the
+    /// pair: 2¹⁵ rounding errors of `f32`. `pose12` is the pose of the other shape in the frame of this one.
+    ///
+    /// `false` says nothing; it is the answer for NaN and where the lengths have no sum.
+    pub(crate) fn has_box_clear_of(&self, other: &Self, pose12: &Pose<N, D>, limit: N) -> bool {
+        let turn = &pose12.rotation;
+        let away = turn * other.middle + pose12.translation - self.middle;
+        let back = turn.tr_mul(&away);
+        let lengths = max_component(&pose12.translation) + self.extent + other.extent;
+        let least = max(limit, N::ZERO) + lengths * N::lit(1.0 / 256.0);
+        let mut widest = -N::INFINITY;
+        for one in 0..D {
+            let (mut first, mut second) = (self.half[one], other.half[one]);
+            for two in 0..D {
+                first += turn[(one, two)].abs() * other.half[two];
+                second += turn[(two, one)].abs() * self.half[two];
+            }
+            widest = max(widest, max(away[one].abs() - first, back[one].abs() - second));
+        }
+        // Lengths that are subnormal numbers are not precise.
+        widest > least && least > N::MIN_POSITIVE
+    }
+}
+
+/// How far apart the origins are at most where the shapes are no farther apart than `limit`.
+#[inline]
+fn reach<N: Real>(extents: N, limit: N) -> N {
+    extents + max(limit, N::ZERO)
+}
+
+/// Squares that are subnormal numbers are not precise, which they are beside one that is not. NaN
+/// and infinities on the right are never exceeded; one on the left is too large for its type.
+#[inline]
+fn exceeds<N: Real>(squared: N, reach: N) -> bool {
+    squared > reach * reach * N::lit(ROOM) && squared > N::MIN_POSITIVE
 }
 
 /// [`Apart::is_beyond`], to be reached from elsewhere.
@@ -134,13 +186,14 @@ mod tests {
         turn: fn(&mut Random) -> Pose<N, D>,
     ) {
         let random = &mut Random(11);
-        let (mut told, mut moved) = (0, 0);
+        let (mut told, mut boxed, mut moved) = (0, 0, 0);
         for round in 0..4000 {
             let shapes = [draw(random, round % kinds), draw(random, round / kinds % kinds)];
+            let bounds = [Bounds::of(shapes[0].as_ref()), Bounds::of(shapes[1].as_ref())];
             let shapes = [shapes[0].geometry(), shapes[1].geometry()];
             let apart = Apart { shapes, between: Vector::<N, D>::zeros() };
             let limit = N::lit([0.0, 0.25, -0.1][round % 3]);
-            let reach = apart.reach(limit);
+            let reach = reach(apart.extents(), limit);
             let pose12 = turn(random);
             let share =
                 N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
@@ -161,6 +214,13 @@ mod tests {
                     pair_poses = pair.pose12
                 );
             }
+            // Nearer than the balls tell.
+            let mut nearer = pair;
+            nearer.pose12.translation *= N::lit([1.0, 0.8, 0.6, 0.4][round % 4]);
+            if bounds[0].has_box_clear_of(&bounds[1], &nearer.pose12, limit) {
+                boxed += 1;
+                assert!(separation(&nearer, limit).is_none(), "in round {round}, told by boxes");
+            }
             let velocity = turn(random).translation;
             if (Apart { between, ..apart }).stays_beyond(limit, &velocity, N::TWO) {
                 moved += 1;
@@ -173,6 +233,7 @@ mod tests {
             }
         }
         assert!(told > 500 && told < 3500, "{told} pairs are told apart");
+        assert!(boxed > 500 && boxed < 3500, "the boxes of {boxed} pairs are told apart");
         assert!(moved > 100 && moved < 3500, "{moved} pairs stay apart");
     }
 

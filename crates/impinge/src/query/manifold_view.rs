@@ -1,9 +1,12 @@
 //! Manifolds read where they are kept.
 
-use super::manifold::placed;
-use super::manifold_build::Patch;
-use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
-use crate::math::{Real, Unit, Vector};
+use core::slice;
+
+use super::manifold_build::{Patch, PatchPoint};
+use super::{
+    Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint, TrackedContact,
+};
+use crate::math::{Point, Real, Unit, Vector};
 use crate::shape::FeatureId;
 
 /// A contact as [`ManifoldView`] gives it: a [`TrackedContact`](super::TrackedContact) without its
@@ -89,8 +92,17 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     /// The contacts, in the order in which they began.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
-        let normal = self.own_normal();
-        (0..self.len()).map(move |index| self.contact(index, &normal))
+        match self.0 {
+            Kept::Convex(raw, placement) => {
+                let from = Seen::new(&raw.normal, &placement);
+                Contacts::Convex(from, raw.points.iter())
+            }
+            Kept::Patch(patch, placement) => {
+                let from = Seen::new(&patch.normal, &placement);
+                Contacts::Patch(from, patch.points.iter())
+            }
+            Kept::Made(manifold) => Contacts::Made(manifold.contacts().iter()),
+        }
     }
 
     /// The contact of the largest depth, the first of equals.
@@ -102,60 +114,152 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
             Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
         let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
-        self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
+        let deepest = (1..self.len()).fold(0, deeper);
+        self.contacts().nth(deepest).expect("one of the contacts")
+    }
+}
+
+/// The contacts of a view that are still to be given.
+enum Contacts<'a, N: Real, const D: usize> {
+    Convex(Seen<N, D>, slice::Iter<'a, RawPoint<N, D>>),
+    Patch(Seen<N, D>, slice::Iter<'a, PatchPoint<N, D>>),
+    Made(slice::Iter<'a, TrackedContact<N, D>>),
+}
+
+impl<N: Real, const D: usize> Iterator for Contacts<'_, N, D> {
+    type Item = ContactPoint<N, D>;
+
+    #[inline]
+    fn next(&mut self) -> Option<ContactPoint<N, D>> {
+        match self {
+            Self::Convex(seen, points) => Some(seen.point(points.next()?, [0; 2])),
+            Self::Patch(seen, points) => {
+                let found = points.next()?;
+                Some(seen.point(&found.raw, found.parts))
+            }
+            Self::Made(contacts) => Some(made(contacts.next()?)),
+        }
     }
 
-    /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
-    /// nothing of use for manifolds that are made.
-    #[inline]
-    fn own_normal(&self) -> [Vector<N, D>; 2] {
-        let (own, pose1) = match self.0 {
-            Kept::Convex(raw, placement) => (raw.normal, placement.pose1),
-            Kept::Patch(patch, placement) => (patch.normal, placement.pose1),
-            Kept::Made(_) => return [Vector::<N, D>::zeros(); 2],
-        };
-        [own, pose1.vector(&own)]
+    /// Those before it are not placed.
+    fn nth(&mut self, index: usize) -> Option<ContactPoint<N, D>> {
+        if let Some(last) = index.checked_sub(1) {
+            match self {
+                Self::Convex(_, points) => points.nth(last).map(drop)?,
+                Self::Patch(_, points) => points.nth(last).map(drop)?,
+                Self::Made(contacts) => contacts.nth(last).map(drop)?,
+            }
+        }
+        self.next()
     }
 
-    /// The contact at an index; `normal` is [`Self::own_normal`].
     #[inline]
-    fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
-        match self.0 {
-            Kept::Convex(raw, placement) => point(normal, &raw.points[index], [0; 2], &placement),
-            Kept::Patch(patch, placement) => {
-                let found = &patch.points[index];
-                point(normal, &found.raw, found.parts, &placement)
-            }
-            Kept::Made(manifold) => {
-                let made = &manifold.contacts()[index];
-                ContactPoint {
-                    contact: made.contact,
-                    id: made.id,
-                    feature1: made.kinematic.feature1(),
-                    feature2: made.kinematic.feature2(),
-                    part1: made.part1,
-                    part2: made.part2,
-                }
-            }
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        match self {
+            Self::Convex(_, points) => points.size_hint(),
+            Self::Patch(_, points) => points.size_hint(),
+            Self::Made(contacts) => contacts.size_hint(),
         }
     }
 }
 
-/// A point in the world, by the normal as it is kept and in the world, as the user's order of the solids has it.
-#[inline]
-fn point<N: Real, const D: usize>(
-    [own, normal]: &[Vector<N, D>; 2],
-    raw: &RawPoint<N, D>,
-    [part1, part2]: [u32; 2],
-    placement: &Placement<'_, N, D>,
-) -> ContactPoint<N, D> {
-    let contact = placed(own, raw, placement.pose1, *normal);
-    let id = ContactId { pair: placement.pair, number: raw.id };
-    let (feature1, feature2) = (raw.feature1, raw.feature2);
-    if placement.is_swapped {
-        let contact = contact.flipped();
-        let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
-        return ContactPoint { contact, id, feature1, feature2, part1, part2 };
+impl<N: Real, const D: usize> ExactSizeIterator for Contacts<'_, N, D> {}
+
+/// How many numbers a vector takes here, those of no meaning included: compilers see vectors of four,
+/// which they put in one register; with three they shuffle more than they compute.
+const PADDED: usize = 4;
+
+/// What all points of a manifold are placed in the world by.
+struct Seen<N: Real, const D: usize> {
+    /// The pose of the solid in whose frame the points are kept, the rotation by columns.
+    columns: [[N; PADDED]; D],
+    translation: [N; PADDED],
+    /// The normal as it is kept.
+    own: [N; PADDED],
+    /// In the world, from the user's first solid to the second.
+    normal: Vector<N, D>,
+    pair: u64,
+    is_swapped: bool,
+}
+
+/// The numbers of a vector, then zeros.
+#[inline(always)]
+fn padded<N: Real, const D: usize>(vector: &Vector<N, D>) -> [N; PADDED] {
+    let mut all = [N::ZERO; PADDED];
+    for (number, component) in all.iter_mut().zip(vector.iter()) {
+        *number = *component;
     }
-    ContactPoint { contact, id, feature1, feature2, part1, part2 }
+    all
+}
+
+impl<N: Real, const D: usize> Seen<N, D> {
+    #[inline]
+    fn new(own: &Vector<N, D>, placement: &Placement<'_, N, D>) -> Self {
+        let Placement { pose1, pair, is_swapped } = *placement;
+        let mut columns = [[N::ZERO; PADDED]; D];
+        for (axis, column) in columns.iter_mut().enumerate() {
+            *column = padded(&pose1.rotation.column(axis).into_owned());
+        }
+        let normal = pose1.vector(own);
+        Self {
+            columns,
+            translation: padded(&pose1.translation),
+            own: padded(own),
+            normal: if is_swapped { -normal } else { normal },
+            pair,
+            is_swapped,
+        }
+    }
+
+    /// A point of the frame of the points in the world: the sums of `Pose::point` in its order.
+    #[inline(always)]
+    fn placed(&self, own: &[N; PADDED]) -> Point<N, D> {
+        let mut sums = [N::ZERO; PADDED];
+        for (sum, number) in sums.iter_mut().zip(&self.columns[0]) {
+            *sum = *number * own[0];
+        }
+        for (column, &length) in self.columns.iter().zip(own).skip(1) {
+            for (sum, number) in sums.iter_mut().zip(column) {
+                *sum += *number * length;
+            }
+        }
+        for (sum, number) in sums.iter_mut().zip(&self.translation) {
+            *sum += *number;
+        }
+        Point::from(Vector::<N, D>::from_fn(|axis, _| sums[axis]))
+    }
+
+    /// A point in the world, with the parts that it lies on in the order in which they are kept: what
+    /// `manifold::placed` says, flipped if the user has the solids the other way round.
+    #[inline]
+    fn point(&self, raw: &RawPoint<N, D>, [part1, part2]: [u32; 2]) -> ContactPoint<N, D> {
+        let point1 = padded(&raw.point1.coords);
+        let mut point2 = point1;
+        for (number, along) in point2.iter_mut().zip(&self.own) {
+            *number += *along * raw.distance;
+        }
+        let (world1, world2) = (self.placed(&point1), self.placed(&point2));
+        let (normal, depth) = (Unit::new_unchecked(self.normal), -raw.distance);
+        let id = ContactId { pair: self.pair, number: raw.id };
+        let (feature1, feature2) = (raw.feature1, raw.feature2);
+        if self.is_swapped {
+            let contact = Contact { world1: world2, world2: world1, normal, depth };
+            let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
+            return ContactPoint { contact, id, feature1, feature2, part1, part2 };
+        }
+        let contact = Contact { world1, world2, normal, depth };
+        ContactPoint { contact, id, feature1, feature2, part1, part2 }
+    }
+}
+
+/// A contact that an algorithm of the user's own has found.
+fn made<N: Real, const D: usize>(made: &TrackedContact<N, D>) -> ContactPoint<N, D> {
+    ContactPoint {
+        contact: made.contact,
+        id: made.id,
+        feature1: made.kinematic.feature1(),
+        feature2: made.kinematic.feature2(),
+        part1: made.part1,
+        part2: made.part2,
+    }
 }

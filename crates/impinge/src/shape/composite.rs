@@ -7,7 +7,7 @@
 
 use smallvec::SmallVec;
 
-use super::{FeatureId, Geometry, Segment, Shape, Triangle};
+use super::{FeatureId, Geometry, Segment, Shape, Siding, Triangle};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 
@@ -175,4 +175,10 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// The part can touch a solid whose middle is `center`: false on the back of a surface with one
     /// side.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
+
+    /// Which sides all segments of a chain in the plane have, for a quicker way to the same answers. `None`,
+    /// the default, of all surfaces but this library's own chains.
+    fn siding(&self) -> Option<Siding> {
+        None
+    }
 }

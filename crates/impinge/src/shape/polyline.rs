@@ -48,6 +48,8 @@ pub struct Polyline<N: Real, const D: usize> {
     pub(super) tree: BoxTree<N, D>,
     /// As many segments start as end at each joint, and ends that belong together lie together.
     is_cycle: bool,
+    /// The vertices are no longer those that the joints were made of.
+    pub(super) is_moved: bool,
     /// The normal on the front of a segment from its direction, of a line with one side: known in
     /// the plane only.
     pub(super) front: Option<Front<N, D>>,
@@ -121,8 +123,17 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let joints = Joints::new(&vertices, &segments);
         let tree = BoxTree::try_from_boxes(&boxes_of(&vertices, &segments)).map_err(refused)?;
         let is_cycle = is_cycle(vertices.len(), &segments, &joints);
-        let (front, keeps_internal_edges) = (None, false);
-        Ok(Self { vertices, segments, joints, tree, is_cycle, front, keeps_internal_edges })
+        let (is_moved, front, keeps_internal_edges) = (false, None, false);
+        Ok(Self {
+            vertices,
+            segments,
+            joints,
+            tree,
+            is_cycle,
+            is_moved,
+            front,
+            keeps_internal_edges,
+        })
     }
 
     /// The line scaled along the axes of its frame, about its origin. Where that mirrors it, each
@@ -161,6 +172,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         check_moved(vertices, self.vertices.len())?;
         self.tree.try_refit(&boxes_of(vertices, &self.segments)).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
+        self.is_moved = true;
         let is_whole = self.joints.are_together(vertices);
         self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
         Ok(())

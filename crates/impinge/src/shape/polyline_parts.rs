@@ -1,10 +1,11 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
 use super::seam::{Seam, slack};
+use super::siding::Joining;
 use super::tri_mesh::{aabb_at, sphere_around};
 use super::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
-    Shape, ShapeHandle, Surface,
+    Shape, ShapeHandle, Siding, Surface,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
@@ -12,6 +13,18 @@ use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
 /// The normal on the right of a direction.
 pub(super) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> {
     -perp(along)
+}
+
+/// The unit vector across a line that leads to the side that a vector points to; `None` if what is left of
+/// that is rounding, which says nothing of the side.
+pub(super) fn across<N: Real, const D: usize>(
+    along: &Vector<N, D>,
+    vector: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let without = |v: &Vector<N, D>| v - along * along.dot(v);
+    let (own, rest) = unit(&without(vector))?;
+    let straight = unit(&without(&own)).filter(|_| rest > slack());
+    straight.map(|(own, _)| own)
 }
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
@@ -57,11 +70,14 @@ impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
         if let Some(front) = self.front {
             return Some(front(&along));
         }
-        let without = |v: &Vector<N, D>| v - along * along.dot(v);
-        let (own, rest) = unit(&without(normal))?;
-        // What is left of a normal along the segment is rounding, and says nothing of the side.
-        let straight = unit(&without(&own)).filter(|_| rest > slack());
-        straight.map(|(own, _)| own)
+        across(&along, normal)
+    }
+
+    fn siding(&self) -> Option<Siding> {
+        let (is_left, is_told_by_front) = (false, false);
+        let (is_one_sided, keeps_internal_edges) = (self.is_one_sided(), self.keeps_internal_edges);
+        let joining = if self.is_moved { Joining::Unknown } else { Joining::All };
+        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges, joining })
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {

@@ -3,7 +3,7 @@
 use super::polytope::count32;
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
-use crate::math::{Point, Real, Vector, unit_or};
+use crate::math::{Point, Real, Vector, unit, unit_or};
 
 /// What faces a direction: the indices of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -165,12 +165,57 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 impl<N: Real> Polytope<N, 2> {
     /// See [`Shown::of`].
     pub(super) fn shown(&self, direction: &Vector<N, 2>) -> Shown<N> {
+        if let ([vertices], [planes]) = (self.blocks(), self.planes())
+            && self.faces.len() == self.vertices.len()
+        {
+            return self.shown_of_few(vertices, &planes.normals, direction);
+        }
         let part = self.part_toward(direction, Tilt::usual());
         if let Some((id, ends)) = self.ends_of(part) {
             return Shown::side(id, ends);
         }
         let vertex = if let Part::Vertex(vertex) = part { vertex } else { 0 };
         Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
+    }
+
+    /// The same of up to eight vertices, by their rows and those of the sides' normals: the rule of
+    /// [`Self::part_toward`] without a look at what is kept of the sides.
+    fn shown_of_few(
+        &self,
+        [xs, ys]: &[[N; 8]; 2],
+        normals: &[[N; 8]; 2],
+        direction: &Vector<N, 2>,
+    ) -> Shown<N> {
+        let count = self.vertices.len().min(8);
+        let at = |vertex: usize| Point::<N, 2>::new(xs[vertex], ys[vertex]);
+        let height = |vertex: usize| xs[vertex] * direction.x + ys[vertex] * direction.y;
+        let (mut vertex, mut highest) = (0, height(0));
+        for next in 1..count {
+            let candidate = height(next);
+            if candidate > highest {
+                (vertex, highest) = (next, candidate);
+            }
+        }
+        let before = if vertex > 0 { vertex - 1 } else { count - 1 };
+        let after = if vertex + 1 < count { vertex + 1 } else { 0 };
+        let slope = |from: usize, to: usize| {
+            let along = unit(&(at(to) - at(from)));
+            along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
+        };
+        let (slope_before, slope_after) = (slope(before, vertex), slope(vertex, after));
+        // Of equal sides that of the lower number counts.
+        let is_after =
+            if vertex > 0 { slope_after < slope_before } else { slope_after <= slope_before };
+        let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
+        let slope = if is_after { slope_after } else { slope_before };
+        let normal = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
+        let (tilt, named) =
+            (Tilt::usual(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
+        if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
+            Shown::side(FeatureId::Face(count32(side)), [named(side), named(to)])
+        } else {
+            Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
+        }
     }
 }
 

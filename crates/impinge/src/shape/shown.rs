@@ -36,7 +36,9 @@ impl<N: Real> Shown<N> {
         own.or_else(|| Self::of_map(Geometry(kind).as_support_map()?, direction))
     }
 
-    fn of_segment(segment: &Segment<N, 2>) -> Self {
+    /// A segment shows itself whatever the direction.
+    #[inline]
+    pub(crate) fn of_segment(segment: &Segment<N, 2>) -> Self {
         let ends = [(FeatureId::Vertex(0), *segment.a()), (FeatureId::Vertex(1), *segment.b())];
         Self::side(FeatureId::Edge(0), ends)
     }

@@ -61,6 +61,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// The object of a handle; `None` for a stale one.
+    #[inline]
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
         self.records.get(self.place(handle)?)

@@ -1,7 +1,8 @@
 //! Reading what the last update found: pairs, contacts, proximities, events.
 
+use super::narrow_phase::ContactViews;
 use super::step::in_order;
-use super::{CollisionObject, CollisionWorld};
+use super::{CollisionObject, CollisionObjects, CollisionWorld};
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactEvent, ContactPair, ProximityEvent, ProximityPair,
@@ -9,6 +10,28 @@ use crate::narrow_phase::{
 use crate::query::{ContactManifold, ManifoldView};
 
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
+
+/// Manifolds with their objects. Written out, since the closure of an adapter would be a call for each.
+struct Views<'a, N: Space<D>, const D: usize, T> {
+    objects: &'a CollisionObjects<N, D, T>,
+    views: ContactViews<'a, N, D>,
+}
+
+impl<'a, N: Space<D>, const D: usize, T> Iterator for Views<'a, N, D, T> {
+    type Item = (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let (handle1, handle2, view) = self.views.next()?;
+            if let (Some(object1), Some(object2)) =
+                (self.objects.get(handle1), self.objects.get(handle2))
+            {
+                return Some((object1, object2, view));
+            }
+        }
+    }
+}
 
 /// Pairs, contacts and events of the last update; pairs of objects that were removed since are gone.
 ///
@@ -110,9 +133,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> {
         let views = self.narrow_phase.contact_views(&self.objects);
-        views.filter_map(|(handle1, handle2, view)| {
-            Some((self.objects.get(handle1)?, self.objects.get(handle2)?, view))
-        })
+        Views { objects: &self.objects, views }
     }
 
     /// Which pairs came to have contact points at the last update, and which lost their last.

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Point, Space};
-use impinge::query::{ClosestPoints, ImpactOptions, Ray};
+use impinge::query::{ClosestPoints, ImpactOptions, Ray, RayBatch};
 use impinge::shape::ShapeHandle;
 use impinge::world::CollisionGroups;
 use impinge_reference::random::Random;
@@ -183,6 +183,12 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         assert_eq!(found, expected, "{ray:?} until {max}, solid: {is_solid}");
         let first = self.world.first_ray_hit(&ray, max, is_solid, &choice.filter);
         assert_eq!(rows(first.into_iter().collect()), expected[..expected.len().min(1)], "{ray:?}");
+        let rays = [ray; 3];
+        let batch = RayBatch { rays: &rays, max_time: max, solid: is_solid };
+        let mut hits = [None; 3];
+        self.world.cast_rays(&batch, &choice.filter, &mut hits);
+        let alone = first.map(|(object, hit)| (object.handle(), hit));
+        assert_eq!(hits, [alone; 3], "{ray:?} in a batch");
         self.answers.rays += expected.len();
     }
 

@@ -14,7 +14,9 @@ mod ray;
 mod separation;
 
 pub(crate) use between::{Between, PartPair};
-pub(crate) use contacts::{CompositeContacts, contact_in_world, over2, over3, own_distance};
+pub(crate) use contacts::{
+    CompositeContacts, contact_in_world, over2, over3, own_distance, update_chain2, update_chain3,
+};
 pub(crate) use impact::first_arrival;
 pub(in crate::query) use point::surface_point;
 pub(crate) use point::{Near, PartPoint, nearest_part};

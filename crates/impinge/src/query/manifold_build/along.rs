@@ -11,7 +11,7 @@ use super::overlap::{Candidates, Overlap};
 use super::triangle_face::OnFace;
 use super::{build, choose, face};
 use crate::convex::Separation;
-use crate::math::{Space, Vector, min};
+use crate::math::{Real, Space, Vector, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::Geometry;
 
@@ -82,7 +82,7 @@ fn fill<N: Space<D>, const D: usize>(
 
 /// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
 /// of each solid, and need not face each other. `None` if there is a half-space.
-fn extremes<N: Space<D>, const D: usize>(
+pub(super) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
 ) -> Option<Separation<N, D>> {

@@ -1,19 +1,21 @@
-//! The common case of two boxes in space, face to face, in one go.
+//! Two boxes in space, face to face, edge on face, corner on face or edge across edge, in one go.
 //!
 //! What the separating axis test found, the general builder would find again through supports and
 //! features. Here the face that faces the other box is a rectangle along two axes of its own box, and
 //! the most aligned face of the other box, seen along the manifold's normal, a parallelogram above
-//! it: the corners of their common area come out of fixed loops. The normal is that of the rectangle,
-//! or leans a little where an edge of each box decides. Names, order and numbers are those of the
-//! general builder, which is the definition of this one, and which takes over wherever this one
-//! declines: faces that lean too far, flat boxes, angular prediction, nearest points off the faces.
+//! it: the corners of their common area come out of fixed loops. Of a face that leans too far only the
+//! edge or the corner counts that comes nearest ([`Shown`]): the same loops pass over the rest. The
+//! normal is that of the rectangle, or leans where an edge of each box decides. Names and numbers are
+//! those of the general builder, which is the definition of this one, and which takes over wherever
+//! this one declines: flat boxes, angular prediction, nearest points off what is shown.
 
 use super::frame::{Candidate, ROUNDING_ERRORS};
 use super::overlap::Candidates;
+use super::shown::Shown;
 use super::{ManifoldRequest, Pair, RawManifold, choose_admitted};
 use crate::math::{Point, Pose, Real, Vector, cross2, min};
 use crate::query::separation::cuboid_axes::{AxisKind, BoxAxis, Boxes};
-use crate::shape::{FACING_SINE_SQUARED, FeatureId, Kind};
+use crate::shape::{FeatureId, Kind};
 
 /// Builds the manifold of two boxes; answers whether it did.
 pub(super) fn build<N: Real>(
@@ -41,6 +43,8 @@ struct Faces<'a, N: Real> {
     boxes: &'a Boxes<N>,
     /// The rectangle belongs to the second box of the pair.
     is_second: bool,
+    /// It does, and the normal is not its own.
+    is_leaning: bool,
     rectangle: Rectangle<N>,
     above: Parallelogram<N>,
     /// Lengths below this are rounding errors, as for the general builder.
@@ -55,6 +59,7 @@ struct Rectangle<N: Real> {
     toward: [N; 3],
     half: N,
     across: [N; 2],
+    shown: Shown,
 }
 
 /// The face of the other box, seen along the axis of the rectangle.
@@ -63,6 +68,7 @@ struct Parallelogram<N: Real> {
     axes: [usize; 3],
     /// Its normal is on the positive side.
     is_positive: bool,
+    shown: Shown,
     center: Vector<N, 2>,
     /// Half of its sides.
     arms: [Vector<N, 2>; 2],
@@ -76,9 +82,9 @@ struct Parallelogram<N: Real> {
 }
 
 impl<'a, N: Real> Faces<'a, N> {
-    /// The two faces, unless one leans too far from the axis.
+    /// The two faces, unless one is too narrow.
     fn meeting(boxes: &'a Boxes<N>, axis: &BoxAxis<N>) -> Option<Self> {
-        let (rectangle, is_second) = Rectangle::facing(boxes, axis)?;
+        let (rectangle, is_second) = Rectangle::facing(boxes, axis);
         let (other, pose) = if is_second {
             (boxes.half1, boxes.pose12.inverse())
         } else {
@@ -86,10 +92,11 @@ impl<'a, N: Real> Faces<'a, N> {
         };
         let size = boxes.half1.norm() + boxes.half2.norm() + boxes.pose12.translation.norm();
         let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
-        let above = Parallelogram::facing(&rectangle, &other, &pose)?;
+        let above = Parallelogram::facing(&rectangle, &other, &pose);
         let is_wide = min(rectangle.across[0], rectangle.across[1]) > N::lit(4.0) * tolerance
             && min(above.widths[0], above.widths[1]) > N::lit(4.0) * tolerance;
-        is_wide.then_some(Self { boxes, is_second, rectangle, above, tolerance })
+        let is_leaning = is_second && matches!(axis.kind, AxisKind::Edges(..));
+        is_wide.then_some(Self { boxes, is_second, is_leaning, rectangle, above, tolerance })
     }
 
     fn build(
@@ -110,9 +117,15 @@ impl<'a, N: Real> Faces<'a, N> {
         is_built
     }
 
-    /// Corners of the parallelogram above the rectangle.
+    /// Corners of the parallelogram above the rectangle; edges that cross have none.
     fn corners_above(&self, out: &mut Candidates<N, 3>) {
+        if !self.rectangle.shown.is_whole() {
+            return;
+        }
         for signs in CORNERS {
+            if !self.above.shown.has_corner(signs) {
+                continue;
+            }
             let (place, height) = self.above.corner(signs);
             if let Some(below) = self.rectangle.locate(&place, self.tolerance) {
                 self.push(place, height, [below, self.above.vertex(signs)], out);
@@ -120,8 +133,11 @@ impl<'a, N: Real> Faces<'a, N> {
         }
     }
 
-    /// Corners of the rectangle below the parallelogram.
+    /// Corners of the rectangle below what the parallelogram shows.
     fn corners_below(&self, out: &mut Candidates<N, 3>) {
+        if !self.rectangle.shown.is_whole() || self.above.shown.is_corner() {
+            return;
+        }
         for signs in CORNERS {
             let place = self.rectangle.corner(signs);
             if let Some((above, height)) = self.above.locate(&place, self.tolerance) {
@@ -132,11 +148,15 @@ impl<'a, N: Real> Faces<'a, N> {
 
     /// Crossings of a side of each.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
-        for (arm, sign) in [(0, true), (0, false), (1, true), (1, false)] {
+        for (arm, sign) in SIDES {
+            if !self.above.shown.has_side(arm, sign) {
+                continue;
+            }
             let (from, low) = self.above.corner(ends(arm, sign, false));
             let (to, high) = self.above.corner(ends(arm, sign, true));
-            for (side, far) in [(0, true), (0, false), (1, true), (1, false)] {
-                let Some(along) = self.rectangle.crossed(&from, &to, (side, far), self.tolerance)
+            for (side, far) in SIDES {
+                let crossed = self.rectangle.crossed(&from, &to, (side, far), self.tolerance);
+                let Some(along) = crossed.filter(|_| self.rectangle.shown.has_side(side, far))
                 else {
                     continue;
                 };
@@ -159,12 +179,19 @@ impl<'a, N: Real> Faces<'a, N> {
         if out.iter().any(|old| old.features == features) {
             return;
         }
-        // The first box is above where the rectangle is the second's, whose normal then is straight.
         let [u, v, w] = self.rectangle.axes;
-        let rise = if self.is_second { height } else { N::ZERO };
         let mut point = Point::<N, 3>::origin();
         (point[u], point[v]) = (flat.x, flat.y);
-        point[w] = self.rectangle.sign * (self.rectangle.half + rise);
+        // The first box is above where the rectangle is the second's.
+        if self.is_leaning {
+            let [x, y, z] = self.rectangle.toward;
+            let ground = self.rectangle.sign * self.rectangle.half;
+            (point[u], point[v]) = (flat.x + x * height, flat.y + y * height);
+            point[w] = ground + z * height;
+        } else {
+            let rise = if self.is_second { height } else { N::ZERO };
+            point[w] = self.rectangle.sign * (self.rectangle.half + rise);
+        }
         let point1 = if self.is_second { self.boxes.pose12.point(&point) } else { point };
         out.push(Candidate { point1, distance: height, flat, features, kept_id: None });
     }
@@ -172,6 +199,9 @@ impl<'a, N: Real> Faces<'a, N> {
 
 /// The corners of a rectangle: whether each of the two coordinates is positive.
 const CORNERS: [[bool; 2]; 4] = [[true, true], [false, true], [false, false], [true, false]];
+
+/// The sides of a rectangle or parallelogram: across which axis, and whether at the positive end.
+const SIDES: [(usize, bool); 4] = [(0, true), (0, false), (1, true), (1, false)];
 
 /// The end of the side that lies at `sign` of `arm`: the lower or the upper one.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
@@ -200,28 +230,39 @@ pub(super) const fn face(axis: usize, is_positive: bool) -> FeatureId {
 }
 
 impl<N: Real> Rectangle<N> {
-    /// The face whose normal the axis is, or, between edges, the face of the first box that is most
-    /// aligned with it; and whether it belongs to the second box. `None` if it leans too far.
-    fn facing(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Option<(Self, bool)> {
+    /// The face whose normal the axis is; and whether it belongs to the second box. Between edges it is
+    /// the most aligned face of the first box or, if that of the second alone does not lean too far, this.
+    fn facing(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> (Self, bool) {
         let straight = |w: usize, along: N| {
             Vector::<N, 3>::ith(w, if along < N::ZERO { -N::ONE } else { N::ONE })
         };
-        let (w, toward, half) = match axis.kind {
-            AxisKind::Face1(w) => (w, straight(w, axis.normal[w]), &boxes.half1),
-            AxisKind::Face2(w) => (w, straight(w, -axis.normal.dot(&boxes.axis2(w))), &boxes.half2),
-            AxisKind::Edges(..) => (axis.normal.iamax(), axis.normal, &boxes.half1),
-        };
+        match axis.kind {
+            AxisKind::Face1(w) => (Self::new(w, &straight(w, axis.normal[w]), &boxes.half1), false),
+            AxisKind::Face2(w) => {
+                let along = -axis.normal.dot(&boxes.axis2(w));
+                (Self::new(w, &straight(w, along), &boxes.half2), true)
+            }
+            AxisKind::Edges(..) => {
+                let toward2 = -boxes.pose12.inverse_vector(&axis.normal);
+                let first = Self::new(axis.normal.iamax(), &axis.normal, &boxes.half1);
+                let second = Self::new(toward2.iamax(), &toward2, &boxes.half2);
+                let is_second = !first.shown.is_whole() && second.shown.is_whole();
+                (if is_second { second } else { first }, is_second)
+            }
+        }
+    }
+
+    /// The face of a box across an axis, where the normal points away from the box.
+    fn new(w: usize, toward: &Vector<N, 3>, half: &Vector<N, 3>) -> Self {
         let (u, v) = ((w + 1) % 3, (w + 2) % 3);
-        let lean = toward[u] * toward[u] + toward[v] * toward[v];
-        let rectangle = Self {
+        Self {
             axes: [u, v, w],
             sign: if toward[w] < N::ZERO { -N::ONE } else { N::ONE },
             toward: [toward[u], toward[v], toward[w]],
             half: half[w],
             across: [half[u], half[v]],
-        };
-        let is_second = matches!(axis.kind, AxisKind::Face2(_));
-        (lean <= N::lit(FACING_SINE_SQUARED)).then_some((rectangle, is_second))
+            shown: Shown::of(w, [toward[u], toward[v]]),
+        }
     }
 
     /// Where a vector that starts on the plane of the rectangle ends, seen along the normal, and how
@@ -293,19 +334,14 @@ impl<N: Real> Rectangle<N> {
 }
 
 impl<N: Real> Parallelogram<N> {
-    /// The face of a box, placed at `pose`, that is most aligned with the normal; `None` if it leans
-    /// too far.
-    fn facing(rectangle: &Rectangle<N>, half: &Vector<N, 3>, pose: &Pose<N, 3>) -> Option<Self> {
+    /// The face of a box, placed at `pose`, that is most aligned with the normal.
+    fn facing(rectangle: &Rectangle<N>, half: &Vector<N, 3>, pose: &Pose<N, 3>) -> Self {
         let [u, v, w] = rectangle.axes;
         let mut toward = Vector::<N, 3>::zeros();
         (toward[u], toward[v], toward[w]) = rectangle.toward.into();
         let facing = -pose.inverse_vector(&toward);
         let m = facing.iamax();
         let (k1, k2) = ((m + 1) % 3, (m + 2) % 3);
-        let lean = facing[k1] * facing[k1] + facing[k2] * facing[k2];
-        if lean > N::lit(FACING_SINE_SQUARED) {
-            return None;
-        }
         let is_positive = facing[m] > N::ZERO;
         let axis = |axis: usize| pose.rotation.column(axis) * half[axis];
         let mut from_plane = pose.translation + axis(m) * signed(N::ONE, is_positive);
@@ -314,16 +350,17 @@ impl<N: Real> Parallelogram<N> {
         let ((arm1, climb1), (arm2, climb2)) =
             (rectangle.seen(&axis(k1)), rectangle.seen(&axis(k2)));
         let area = cross2(&arm1, &arm2);
-        Some(Self {
+        Self {
             axes: [m, k1, k2],
             is_positive,
+            shown: Shown::of(m, [facing[k1], facing[k2]]),
             center,
             arms: [arm1, arm2],
             height,
             climbs: [climb1, climb2],
             area,
             widths: [area.abs() / arm2.norm(), area.abs() / arm1.norm()],
-        })
+        }
     }
 
     /// Where a corner is seen, and its height.
@@ -350,7 +387,7 @@ impl<N: Real> Parallelogram<N> {
         }
     }
 
-    /// The smallest part seen at a place and its height there; `None` outside.
+    /// The smallest part seen at a place and its height there; `None` outside what is shown.
     fn locate(&self, place: &Vector<N, 2>, tolerance: N) -> Option<(FeatureId, N)> {
         let arm = place - self.center;
         let along =
@@ -363,7 +400,11 @@ impl<N: Real> Parallelogram<N> {
             return None;
         }
         let signs = along.map(|part| part > N::ZERO);
-        let id = match inside.map(|depth| depth <= tolerance) {
+        let at_end = inside.map(|depth| depth <= tolerance);
+        if !self.shown.has_place(at_end, signs) {
+            return None;
+        }
+        let id = match at_end {
             [false, false] => face(self.axes[0], self.is_positive),
             [true, false] => self.side(0, signs[0]),
             [false, true] => self.side(1, signs[1]),

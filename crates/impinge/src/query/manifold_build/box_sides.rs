@@ -1,9 +1,10 @@
-//! The common case of two boxes in the plane, side to side, in one go.
+//! Two boxes in the plane, side to side or corner on side, in one go.
 //!
 //! As [`super::box_faces`] in space: the side that the separating axis test names is a stretch along
 //! an axis of its own box, the most aligned side of the other box a slanted stretch above it, and the
-//! contact points are the ends of what they share. The general builder is the definition, and takes
-//! over where this one declines.
+//! contact points are the ends of what they share. Of a side that leans too far the lower end alone
+//! counts, the corner that faces the other box. The general builder is the definition, and takes over
+//! where this one declines.
 
 use super::frame::{Candidate, ROUNDING_ERRORS};
 use super::overlap::Candidates;
@@ -51,6 +52,8 @@ struct Sides<'a, N: Real> {
 struct Stretch<N: Real> {
     id: FeatureId,
     ends: [End<N>; 2],
+    /// The end that faces the other box if the side leans too far.
+    alone: Option<usize>,
 }
 
 #[derive(Clone, Copy)]
@@ -61,7 +64,7 @@ struct End<N: Real> {
 }
 
 impl<'a, N: Real> Sides<'a, N> {
-    /// The two sides, unless the upper one leans too far or one has no length.
+    /// The two sides, unless one has no length.
     fn meeting(boxes: &'a Rectangles<N>, axis: &SideAxis<N>) -> Option<Self> {
         let (half, other, pose) = if axis.is_second {
             (boxes.half2, boxes.half1, boxes.pose12.inverse())
@@ -79,7 +82,7 @@ impl<'a, N: Real> Sides<'a, N> {
             boxes,
             is_second: axis.is_second,
             below: lower(&half, axis.axis, up > N::ZERO),
-            above: upper(&other, &pose, (axis.axis, up), up * half[axis.axis])?,
+            above: upper(&other, &pose, (axis.axis, up), up * half[axis.axis]),
             across: axis.axis,
             level: up * half[axis.axis],
             up,
@@ -96,12 +99,18 @@ impl<'a, N: Real> Sides<'a, N> {
         out: &mut RawManifold<N, 2>,
     ) -> bool {
         let mut candidates = Candidates::new();
-        for end in self.above.ends {
+        for (index, end) in self.above.ends.into_iter().enumerate() {
+            if self.above.alone.is_some_and(|alone| alone != index) {
+                continue;
+            }
             if let Some((id, _)) = self.below.beside(end.place, self.tolerance) {
                 self.push(end.place, end.height, [id, end.id], &mut candidates);
             }
         }
         for end in self.below.ends {
+            if self.above.alone.is_some() {
+                break;
+            }
             if let Some((id, height)) = self.above.beside(end.place, self.tolerance) {
                 self.push(end.place, height, [end.id, id], &mut candidates);
             }
@@ -151,22 +160,20 @@ fn lower<N: Real>(half: &Vector<N, 2>, axis: usize, is_positive: bool) -> Stretc
         let place = if far { half[1 - axis] } else { -half[1 - axis] };
         End { id: vertex(axis, is_positive, far), place, height: N::ZERO }
     };
-    Stretch { id: side(axis, is_positive), ends: [end(false), end(true)] }
+    Stretch { id: side(axis, is_positive), ends: [end(false), end(true)], alone: None }
 }
 
 /// The side of the other box, at `pose`, that is most aligned with the lower one, which lies at
-/// `level` on the axis `across` and faces `up`. `None` if it leans too far.
+/// `level` on the axis `across` and faces `up`.
 fn upper<N: Real>(
     half: &Vector<N, 2>,
     pose: &Pose<N, 2>,
     (across, up): (usize, N),
     level: N,
-) -> Option<Stretch<N>> {
+) -> Stretch<N> {
     let facing = [0, 1].map(|axis| -up * pose.rotation[(across, axis)]);
     let m = usize::from(facing[1].abs() > facing[0].abs());
-    if facing[1 - m] * facing[1 - m] > N::lit(FACING_SINE_SQUARED) {
-        return None;
-    }
+    let lean = facing[1 - m];
     let is_positive = facing[m] > N::ZERO;
     let end = |far: bool| {
         let mut corner = *half;
@@ -177,8 +184,12 @@ fn upper<N: Real>(
         End { id: vertex(m, is_positive, far), place: point[1 - across], height }
     };
     let (near, far) = (end(false), end(true));
-    let ends = if far.place < near.place { [far, near] } else { [near, far] };
-    Some(Stretch { id: side(m, is_positive), ends })
+    let is_turned = far.place < near.place;
+    let ends = if is_turned { [far, near] } else { [near, far] };
+    let faces_near = lean < N::ZERO;
+    let is_aligned = lean * lean <= N::lit(FACING_SINE_SQUARED);
+    let alone = if is_aligned { None } else { Some(usize::from(faces_near == is_turned)) };
+    Stretch { id: side(m, is_positive), ends, alone }
 }
 
 impl<N: Real> Stretch<N> {

@@ -64,6 +64,16 @@ impl<N: Real, const D: usize> Frame<N, D> {
         }
     }
 
+    /// The frame of a request without turning, where the tolerance is known.
+    #[inline]
+    pub(super) fn known(
+        witness: &Separation<N, D>,
+        tangents: [Vector<N, D>; 2],
+        (tolerance, prediction): (N, N),
+    ) -> Self {
+        Self { witness: *witness, tangents, tolerance, prediction, sine: N::ZERO }
+    }
+
     #[inline]
     pub(super) fn normal(&self) -> Vector<N, D> {
         self.witness.normal

@@ -16,6 +16,7 @@ mod ball;
 mod box_faces;
 mod box_lanes;
 mod box_sides;
+mod chain;
 mod closed_lanes;
 mod facet;
 mod fences;
@@ -24,9 +25,11 @@ mod half_space;
 mod names;
 mod overlap;
 mod patch;
+mod patch_line;
 mod patch_outline;
 mod reduce;
 mod segments;
+mod shown;
 mod stretch;
 #[cfg(test)]
 pub(super) mod tests;
@@ -37,11 +40,13 @@ mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between, build_on_face};
 pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
+pub(super) use self::chain::SegmentPair;
 pub(crate) use self::closed_lanes::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
+pub(super) use self::patch_line::merge_in_plane;
 pub(crate) use self::triangle_face::{OnFace, on_face2, on_face3};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,

@@ -84,7 +84,7 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
 impl<N: Real, const D: usize> Merging<'_, N, D> {
     /// Which points have the numbers of old ones: each old number goes to one point on its features,
     /// the nearest, the first of equals.
-    fn kept(&self, old: &[Patch<N, D>]) -> Kept {
+    pub(super) fn kept(&self, old: &[Patch<N, D>]) -> Kept {
         let mut kept = Kept::from_elem(None, self.points.len());
         let mut at = 0;
         for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
@@ -132,7 +132,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
     }
 
     /// The index of the deepest point of a piece, by the order of [`by_depth`].
-    fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
+    pub(super) fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
         let deeper = |best: usize, next: usize| {
             if by_depth(&self.points[next], &self.points[best]).is_lt() { next } else { best }
         };
@@ -199,7 +199,10 @@ impl Layout {
 }
 
 /// Deepest first, then in the order of the features.
-fn by_depth<N: Real, const D: usize>(a: &RawPoint<N, D>, b: &RawPoint<N, D>) -> Ordering {
+pub(super) fn by_depth<N: Real, const D: usize>(
+    a: &RawPoint<N, D>,
+    b: &RawPoint<N, D>,
+) -> Ordering {
     let by_value = ordering(a.distance, b.distance);
     by_value.then_with(|| (a.feature1, a.feature2).cmp(&(b.feature1, b.feature2)))
 }
@@ -218,7 +221,7 @@ pub(super) fn ordering<N: Real>(a: N, b: N) -> Ordering {
 
 /// Two manifolds, of which the first is the deeper, have one normal and lie in one plane: that of
 /// the points of the first shape or that of those of the second.
-fn are_level<N: Real, const D: usize>(
+pub(super) fn are_level<N: Real, const D: usize>(
     normals: [&Vector<N, D>; 2],
     [lead1, lead2]: [&RawPoint<N, D>; 2],
     tolerance: N,

@@ -9,7 +9,7 @@ use super::frame::{Candidate, Frame};
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
-use crate::shape::{FeatureId, Geometry, Kind, Shown, SupportMap};
+use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
 /// Sides that lean more than 60° count as their nearest end.
 const LEAST_COSINE: f64 = 0.5;
@@ -46,12 +46,12 @@ pub(super) fn build<N: Real>(
 }
 
 /// What a solid shows of itself: a side, or a point.
-struct Stretch<N: Real> {
+pub(super) struct Stretch<N: Real> {
     which: Which,
     id: FeatureId,
     /// Of a point the first counts.
-    corners: [Corner<N, 2>; 2],
-    is_side: bool,
+    pub(super) corners: [Corner<N, 2>; 2],
+    pub(super) is_side: bool,
     rounding: N,
     /// Between the side and the line of contact.
     cosine: N,
@@ -64,7 +64,8 @@ struct Stretch<N: Real> {
 }
 
 impl<N: Real> Stretch<N> {
-    fn of(
+    #[inline]
+    pub(super) fn of(
         (which, kind): (Which, Kind<'_, N, 2>),
         pose: Option<&Pose<N, 2>>,
         frame: &Frame<N, 2>,
@@ -72,6 +73,21 @@ impl<N: Real> Stretch<N> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
         let shown = Shown::of(kind, &direction)?;
+        Some(Self::placed((which, &shown), (rounding(kind), pose), frame))
+    }
+
+    /// That of a segment, the first solid.
+    #[inline]
+    pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &Frame<N, 2>) -> Self {
+        Self::placed((Which::First, &Shown::of_segment(segment)), (N::ZERO, None), frame)
+    }
+
+    #[inline]
+    fn placed(
+        (which, shown): (Which, &Shown<N>),
+        (rounding, pose): (N, Option<&Pose<N, 2>>),
+        frame: &Frame<N, 2>,
+    ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
             let point = pose.map_or(vertex, |pose| pose.point(&vertex));
             Corner { point, flat: frame.flat(&point), id, side: shown.id }
@@ -81,17 +97,17 @@ impl<N: Real> Stretch<N> {
             id: shown.id,
             corners: [corner(shown.ends[0]), corner(shown.ends[1])],
             is_side: shown.is_side,
-            rounding: rounding(kind),
+            rounding,
             cosine: N::ONE,
             along: N::ZERO,
             length: N::ZERO,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         };
-        stretch.settle(&outward, frame.tolerance);
+        stretch.settle(&which.outward(frame), frame.tolerance);
         if stretch.rounding > N::ZERO {
             stretch.find_top(frame);
         }
-        Some(stretch)
+        stretch
     }
 
     /// A side of no extent seen along the normal is its first corner, with the name of the side; one that
@@ -127,7 +143,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// The part that the witness lies on.
-    fn at_witness(&self, frame: &Frame<N, 2>) -> FeatureId {
+    pub(super) fn at_witness(&self, frame: &Frame<N, 2>) -> FeatureId {
         let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
         match &self.corners {
             [from, _] if self.is_side && near(from) => from.id,
@@ -137,7 +153,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// The point of the core that is seen at a place.
-    fn under(&self, place: N) -> Point<N, 2> {
+    pub(super) fn under(&self, place: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
         let share = (place - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
@@ -153,6 +169,17 @@ impl<N: Real> Stretch<N> {
         let end = if along <= tolerance { Some(0) } else { None };
         let end = if along >= self.length - tolerance { Some(1) } else { end };
         Some(end.map_or(self.id, |end: usize| self.corners[end].id))
+    }
+
+    /// The part that contains a place, as a facet's [`locate`](super::facet::Facet::locate).
+    pub(super) fn locate(&self, place: N, tolerance: N) -> Option<FeatureId> {
+        let [from, to] = &self.corners;
+        let near = |corner: &Corner<N, 2>| (corner.flat.x - place).abs() <= N::TWO * tolerance;
+        if near(from) || near(to) {
+            return Some(if near(from) { from.id } else { to.id });
+        }
+        let along = (place - from.flat.x) * self.along;
+        (along >= N::ZERO && along <= self.length * self.length).then_some(self.id)
     }
 
     /// How far the rounded surface is above a point of the core, along the normal.
@@ -176,16 +203,16 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
 }
 
 /// Two sides in one frame.
-struct Shared<'a, N: Real> {
-    frame: &'a Frame<N, 2>,
-    first: &'a Stretch<N>,
-    second: &'a Stretch<N>,
+pub(super) struct Shared<'a, N: Real> {
+    pub(super) frame: &'a Frame<N, 2>,
+    pub(super) first: &'a Stretch<N>,
+    pub(super) second: &'a Stretch<N>,
 }
 
 impl<N: Real> Shared<'_, N> {
     /// The ends of the stretch that the sides share: each is an end of one of them and the place beside it
     /// on the other.
-    fn candidates(&self, out: &mut Candidates<N, 2>) {
+    pub(super) fn candidates(&self, out: &mut Candidates<N, 2>) {
         for corner in &self.first.corners {
             if let Some(on) = self.second.beside(corner.flat.x, self.frame.tolerance) {
                 let under = self.second.under(corner.flat.x);
@@ -210,9 +237,20 @@ impl<N: Real> Shared<'_, N> {
     ) {
         let (gap, normal) = (core2 - core1, self.frame.normal());
         let half = (gap - normal * normal.dot(&gap)) * N::HALF;
-        let (core1, core2) = (core1 + half, core2 - half);
-        let lift1 = self.first.lift(&core1, self.frame);
-        let lift2 = self.second.lift(&core2, self.frame);
+        self.push_facing(&(core1 + half), &(core2 - half), features, out);
+    }
+
+    /// Adds a pair of points that face each other, once.
+    pub(super) fn push_facing(
+        &self,
+        core1: &Point<N, 2>,
+        core2: &Point<N, 2>,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, 2>,
+    ) {
+        let normal = self.frame.normal();
+        let lift1 = self.first.lift(core1, self.frame);
+        let lift2 = self.second.lift(core2, self.frame);
         let distance = normal.dot(&(core2 - core1)) - lift1 - lift2;
         let found = self.frame.candidate(core1 + normal * lift1, distance, features);
         let Some(found) = found else { return };

@@ -8,7 +8,7 @@
 
 use super::cylinder_cylinder::{Attempt, Found, Tried, Verdict, radial};
 use super::hulls::{noise, out_of_reach};
-use super::wrong_kinds;
+use super::{ridges, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::{Matrix, Real, Vector, cross, max, min, unit};
 use crate::query::Pair;
@@ -45,7 +45,11 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         (&|| meeting.edge(), false),
         (&|| meeting.corner(), true),
     ];
-    Verdict::of(&tries, out_of_reach(&units, limit)).answer(&units, pair, limit)
+    Verdict::of(&tries, out_of_reach(&units, limit)).answer(
+        &units,
+        (pair, limit),
+        ridges::separation,
+    )
 }
 
 /// A box and a cylinder, in units of the pair.

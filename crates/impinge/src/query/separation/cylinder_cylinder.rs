@@ -9,7 +9,7 @@
 //! that overlap.
 
 use super::hulls::{in_first_frame, noise, out_of_reach};
-use super::{general, wrong_kinds};
+use super::{Algorithm, general, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::query::Pair;
@@ -31,7 +31,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
     let meeting = Meeting::new(first, second, &pair.pose12, units.shrink);
     let verdict = meeting.resolve(out_of_reach(&units, limit));
-    verdict.answer(&units, pair, limit)
+    verdict.answer(&units, (pair, limit), general::separation)
 }
 
 /// How the search ended.
@@ -60,16 +60,16 @@ impl<N: Real> Verdict<N> {
     }
 
     /// The answer in the frame of the first solid and the lengths of the pair; what is not decided is left
-    /// to the general algorithm.
+    /// to another algorithm.
     pub(super) fn answer(
         &self,
         units: &Units<N>,
-        pair: &Pair<'_, N, 3>,
-        limit: N,
+        (pair, limit): (&Pair<'_, N, 3>, N),
+        otherwise: Algorithm<N, 3>,
     ) -> Option<Separation<N, 3>> {
         let found = match self {
             Self::Beyond => return None,
-            Self::Undecided => return general::separation(pair, limit),
+            Self::Undecided => return otherwise(pair, limit),
             Self::Found(found, false) => found.restored(units.scale),
             Self::Found(found, true) => in_first_frame(&found.restored(units.scale), &pair.pose12),
         };

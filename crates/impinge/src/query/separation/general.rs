@@ -21,7 +21,7 @@ fn maps<'a, N: Real, const D: usize>(
 /// A limit that nothing within `limit` exceeds by rounding: the general algorithm may give up on a
 /// bound that is off by rounding, and the exact comparison is made with the final distance. Zero or
 /// more: of solids that overlap, bounds may be off by more than the depth found in the end.
-fn loosened<N: Real, const D: usize>(
+pub(super) fn loosened<N: Real, const D: usize>(
     map1: &(impl SupportMap<N, D> + ?Sized),
     map2: &(impl SupportMap<N, D> + ?Sized),
     pose12: &Pose<N, D>,

@@ -54,7 +54,7 @@ impl<N: Real> Polygon<N> {
         })
     }
 
-    fn of_segment(segment: &Segment<N, 2>, rounding: N) -> Self {
+    pub(super) fn of_segment(segment: &Segment<N, 2>, rounding: N) -> Self {
         let (a, b) = (segment.a(), segment.b());
         let row = |x: N, y: N| [x, y, y, y, y, y, y, y];
         let sides = Sides::Ends([row(b.x, a.x), row(b.y, a.y)]);
@@ -154,36 +154,51 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
         return Verdict::Beyond;
     }
-    let is_number = best.gap.is_finite_number();
-    let cores = if !is_number {
-        None
-    } else if best.gap <= N::ZERO {
-        Some(overlapping(simd, &own, &other, &best, noise))
-    } else {
-        apart(simd, &own, &other, &best, noise)
-    };
-    match cores {
-        Some(cores) => Verdict::Found(cores.rounded(own.rounding, other.rounding)),
+    match of_axis(simd, [&own, &other], &best, noise) {
+        Some(found) => Verdict::Found(found),
         None => Verdict::Undecided,
     }
 }
 
+/// The separation of two outlines whose best axis is known; `None` if that is not the one of the nearest
+/// points.
+#[inline(always)]
+pub(super) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [own, other]: [&Outline<N, V>; 2],
+    best: &Axis<N>,
+    noise: N,
+) -> Option<Separation<N, 2>> {
+    let is_number = best.gap.is_finite_number();
+    let cores = if !is_number {
+        None
+    } else if best.gap <= N::ZERO {
+        Some(overlapping(simd, own, other, best, noise))
+    } else {
+        apart(simd, own, other, best, noise)
+    };
+    match cores {
+        Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
+        None => None,
+    }
+}
+
 /// A polygon in some frame.
-struct Outline<N: Real, V> {
+pub(super) struct Outline<N: Real, V> {
     vertices: [V; 2],
     /// Of a point anything.
-    normals: [V; 2],
+    pub(super) normals: [V; 2],
     /// The same coordinates as numbers.
-    rows: [Row<N>; 2],
-    count: usize,
+    pub(super) rows: [Row<N>; 2],
+    pub(super) count: usize,
     has_sides: bool,
-    rounding: N,
+    pub(super) rounding: N,
 }
 
 impl<N: Real, V> Outline<N, V> {
     /// `None` if the length of a side is no usual number.
     #[inline(always)]
-    fn of<S: Simd>(simd: S, polygon: &Polygon<N>) -> Option<Self>
+    pub(super) fn of<S: Simd>(simd: S, polygon: &Polygon<N>) -> Option<Self>
     where
         V: Wide<S, Scalar = N>,
     {
@@ -211,7 +226,7 @@ impl<N: Real, V> Outline<N, V> {
 
     /// The same outline seen from the frame in which its own has the given pose.
     #[inline(always)]
-    fn placed<S: Simd>(mut self, simd: S, pose: &Pose<N, 2>) -> Self
+    pub(super) fn placed<S: Simd>(mut self, simd: S, pose: &Pose<N, 2>) -> Self
     where
         V: Wide<S, Scalar = N>,
     {
@@ -251,7 +266,7 @@ impl<N: Real, V> Outline<N, V> {
 
     /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
     #[inline(always)]
-    fn size<S: Simd>(&self, simd: S) -> N
+    pub(super) fn size<S: Simd>(&self, simd: S) -> N
     where
         V: Wide<S, Scalar = N>,
     {
@@ -269,7 +284,7 @@ impl<N: Real, V> Outline<N, V> {
 
     /// How far the outline reaches along each of eight directions.
     #[inline(always)]
-    fn reach<S: Simd>(&self, simd: S, directions: &[V; 2]) -> V
+    pub(super) fn reach<S: Simd>(&self, simd: S, directions: &[V; 2]) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -284,7 +299,7 @@ impl<N: Real, V> Outline<N, V> {
     /// The directions half-way between the normals of the sides at each vertex, and where they count:
     /// where the angle is sharper than a right one.
     #[inline(always)]
-    fn tips<S: Simd>(&self, simd: S) -> ([V; 2], V::Mask)
+    pub(super) fn tips<S: Simd>(&self, simd: S) -> ([V; 2], V::Mask)
     where
         V: Wide<S, Scalar = N>,
     {

@@ -11,6 +11,8 @@ use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangl
 const MOST_KEPT: usize = 64;
 /// The room that is searched around a box to find parts for later, as a share of its half extents.
 const ROOM: f64 = 0.25;
+/// The same where so much room holds no more parts than are looked at side by side.
+const LARGE_ROOM: f64 = 0.5;
 
 /// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
 /// stays in that.
@@ -29,6 +31,8 @@ pub(super) struct Around<N: Real, const D: usize> {
     half: Option<Vector<N, D>>,
     /// There are too many to keep.
     is_crowded: bool,
+    /// There were too many in a large room.
+    is_dense: bool,
 }
 
 impl<N: Space<D>, const D: usize> Around<N, D> {
@@ -48,12 +52,23 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         !self.is_crowded
     }
 
+    /// The parts that are kept are all that overlap a box.
+    pub(super) fn holds(&self, aabb: &Aabb<N, D>) -> bool {
+        !self.is_crowded && self.within.as_ref().is_some_and(|within| within.contains(aabb))
+    }
+
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) {
         let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let roomy = aabb.loosened(most * N::lit(ROOM));
-        self.parts.clear();
+        let mut roomy = aabb.loosened(most * N::lit(LARGE_ROOM));
+        if !self.is_dense {
+            self.search(composite, &roomy);
+            self.is_dense = self.parts.len() > LANES;
+        }
+        if self.is_dense {
+            roomy = aabb.loosened(most * N::lit(ROOM));
+            self.search(composite, &roomy);
+        }
         self.tiles.clear();
-        composite.search().overlapping(&roomy, &mut |part| self.parts.push(part));
         self.is_crowded = self.parts.len() > MOST_KEPT;
         if self.is_crowded {
             self.parts = SmallVec::new();
@@ -63,8 +78,15 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         self.fill_tiles(composite);
     }
 
+    fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
+        self.parts.clear();
+        composite.search().overlapping(within, &mut |part| self.parts.push(part));
+    }
+
     /// Copies the corners of all parts, if all have corners.
     fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
+        // Not a byte more than that: there are as many of these as pairs.
+        self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
         for parts in self.parts.chunks(LANES) {
             let mut tiles = Tiles::blank();
             for lane in 0..LANES {
@@ -90,6 +112,11 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
     /// The corners of all parts by eights; empty if they are not kept.
     pub(super) fn tiles(&self) -> &[Tiles<N, D>] {
         &self.tiles
+    }
+
+    /// All parts are segments that are kept by their corners.
+    pub(super) fn has_segments_alone(&self) -> bool {
+        self.parts.is_empty() || self.are_segments && !self.tiles.is_empty()
     }
 
     /// Half the extents of the core of the solid that this is about.

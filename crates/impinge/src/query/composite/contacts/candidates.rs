@@ -94,13 +94,16 @@ fn near_kept<N: Space<D>, const D: usize>(
 }
 
 /// A box in the frame of the second shape around all that is within `reach` of the first.
-fn search_box<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, reach: N) -> Aabb<N, D> {
+pub(super) fn search_box<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    reach: N,
+) -> Aabb<N, D> {
     let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
     enclosing(&aabb, &between.pose21)
 }
 
 /// How far a point is from the outside of a box that holds it.
-fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
+pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
     let (below, above) = (point - aabb.mins(), aabb.maxs() - point);
     below.iter().chain(above.iter()).fold(N::INFINITY, |least, &x| min(x, least))
 }

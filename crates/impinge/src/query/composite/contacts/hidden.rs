@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::facts::{Finding, Standing};
 use super::scene::Scene;
-use crate::math::{Space, Vector, max};
+use crate::math::{Real, Space, Vector, max};
 
 /// Faces whose normals' cosine is above this hide nothing from each other.
 const ALIKE: f64 = 0.99;
@@ -35,10 +35,9 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     if !scene.first_is_convex() {
         return;
     }
-    let is_alike = |a: &Vector<N, D>, b: &Vector<N, D>| a.dot(b) > N::lit(ALIKE);
     let (all, next) = (findings.iter(), findings.iter());
     let (all, next) = (all.filter_map(|one| one.face), next.filter_map(|one| one.face).skip(1));
-    if all.zip(next).all(|(a, b)| is_alike(&a, &b)) {
+    if all.zip(next).all(|(a, b)| are_alike(&a, &b)) {
         return;
     }
     let faces = findings.iter().enumerate();
@@ -47,7 +46,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     let mut hidden: SmallVec<[usize; 8]> = SmallVec::new();
     for &(back, normal) in &faces {
         let hides = |&(front, other): &(usize, Vector<N, D>)| {
-            !is_alike(&normal, &other)
+            !are_alike(&normal, &other)
                 && is_hidden(scene, (&findings[back], &normal), (&findings[front], &other))
         };
         if faces.iter().any(hides) {
@@ -57,6 +56,11 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     for index in hidden {
         findings[index].standing = Standing::Left;
     }
+}
+
+/// Faces with these normals hide nothing from each other.
+pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> bool {
+    a.dot(b) > N::lit(ALIKE)
 }
 
 /// The part of `back` is behind that of `front`, which it hangs together with, but not the other way

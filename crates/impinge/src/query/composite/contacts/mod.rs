@@ -12,6 +12,9 @@
 
 mod around;
 mod candidates;
+mod chain;
+#[cfg(test)]
+mod chain_tests;
 mod facts;
 mod hidden;
 mod judge;
@@ -26,6 +29,7 @@ use smallvec::SmallVec;
 
 use self::around::Around;
 use self::candidates::Nearby;
+pub(crate) use self::chain::{update_chain2, update_chain3};
 use self::facts::{Finding, Notes, Reference, Standing};
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
@@ -94,6 +98,18 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
+        if !(N::tables().update_chain)(self, between, request) {
+            self.update_in_general(between, is_self, request);
+        }
+    }
+
+    /// [`Self::update`] of any two shapes.
+    fn update_in_general(
+        &mut self,
+        between: &Between<'_, N, D>,
+        is_self: bool,
+        request: &ManifoldRequest<N>,
+    ) {
         let of_parts = of_parts(between, request);
         let around = Some(&mut self.around);
         let nearby = candidates::nearby(between, is_self, of_parts.prediction, around);
@@ -104,6 +120,18 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
         let findings = query.findings(&nearby, &mut notes);
+        self.conclude((request, merge), [reference, center], &findings, &notes);
+    }
+
+    /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
+    /// shapes overlap, else where it is.
+    fn conclude(
+        &mut self,
+        (request, merge): (&ManifoldRequest<N>, MergeFn<N, D>),
+        [reference, center]: [Reference<N, D>; 2],
+        findings: &[Finding<N, D>],
+        notes: &Notes<N, D>,
+    ) {
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
         let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
@@ -115,6 +143,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         merge(&merging, &mut self.patches, &mut self.ids);
     }
 }
+
+/// Merges pieces into patches.
+type MergeFn<N, const D: usize> = fn(&Merging<'_, N, D>, &mut Vec<Patch<N, D>>, &mut PairIds);
 
 /// The middle of a convex first shape, in the frame of the second.
 fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
@@ -190,11 +221,21 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
                 findings.push(found);
             }
         }
-        resolve::resolve(&scene, &mut findings, notes);
-        for finding in findings.iter_mut().filter(|finding| finding.is_owing()) {
-            finding.note(facts::nearest_points(&scene, finding.parts(), self.request, notes));
-        }
+        self.settle(&scene, &mut findings, notes);
         findings
+    }
+
+    /// Settles which of the findings hold.
+    fn settle(
+        &self,
+        scene: &Scene<'_, N, D>,
+        found: &mut [Finding<N, D>],
+        notes: &mut Notes<N, D>,
+    ) {
+        resolve::resolve(scene, found, notes);
+        for finding in found.iter_mut().filter(|finding| finding.is_owing()) {
+            finding.note(facts::nearest_points(scene, finding.parts(), self.request, notes));
+        }
     }
 }
 

@@ -93,15 +93,6 @@ struct Chosen {
 
 impl Chosen {
     #[inline(always)]
-    fn all(valid: u32) -> Self {
-        let mut all = Self { len: 0, slots: [0; SLOTS], mask: 0 };
-        for slot in ones(valid) {
-            all.push(slot);
-        }
-        all
-    }
-
-    #[inline(always)]
     fn push(&mut self, slot: usize) {
         self.slots[self.len] = slot.to_le_bytes()[0];
         self.mask |= 1 << slot;
@@ -109,7 +100,7 @@ impl Chosen {
     }
 
     #[inline(always)]
-    fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+    fn iter(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         self.slots[..self.len].iter().map(|&slot| usize::from(slot))
     }
 
@@ -124,12 +115,27 @@ impl Chosen {
 
 /// The numbers of the bits that are set, upwards.
 #[inline(always)]
-fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let slot = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
+const fn ones(bits: u32) -> Ones {
+    Ones(bits)
+}
+
+#[derive(Clone)]
+struct Ones(u32);
+
+impl Iterator for Ones {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let slot = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
         (slot < SLOTS).then_some(slot)
-    })
+    }
+
+    #[inline(always)]
+    fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
 }
 
 impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
@@ -138,18 +144,25 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let kept = Kept::of(&raw.points, naming, self.valid);
         let deepest = self.deepest(kept.slots);
-        let chosen = if self.valid.count_ones() as usize > limit {
-            self.outline(deepest, limit, kept.slots)
-        } else {
-            Chosen::all(self.valid)
-        };
-        if kept.is_still && kept.slots == chosen.mask {
-            // Nothing has changed but places.
-            for point in &mut raw.points {
-                self.put(slot_of(point.code), deepest, point);
+        if self.valid.count_ones() as usize > limit {
+            let chosen = self.outline(deepest, limit, kept.slots);
+            if kept.is_still && kept.slots == chosen.mask {
+                self.put_all(deepest, raw);
+            } else {
+                self.replace(chosen.iter(), deepest, (&kept, naming), raw);
             }
+        } else if kept.is_still && kept.slots == self.valid {
+            self.put_all(deepest, raw);
         } else {
-            self.replace((&chosen, deepest), &kept, naming, raw);
+            self.replace(ones(self.valid), deepest, (&kept, naming), raw);
+        }
+    }
+
+    /// Nothing has changed but places.
+    #[inline(always)]
+    fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
+        for point in &mut raw.points {
+            self.put(slot_of(point.code), deepest, point);
         }
     }
 
@@ -157,14 +170,14 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
     #[inline(always)]
     fn replace(
         &self,
-        (chosen, deepest): (&Chosen, usize),
-        kept: &Kept,
-        naming: &impl Naming,
+        chosen: impl Iterator<Item = usize> + Clone,
+        deepest: usize,
+        (kept, naming): (&Kept, &impl Naming),
         raw: &mut RawManifold<N, D>,
     ) {
-        raw.points.resize(chosen.len, RawPoint::default());
+        raw.points.resize(chosen.clone().count(), RawPoint::default());
         let (mut last, mut is_sorted) = (0, true);
-        for (slot, point) in chosen.iter().zip(&mut raw.points) {
+        for (slot, point) in chosen.zip(&mut raw.points) {
             point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
             is_sorted &= last <= point.id;
             last = point.id;

@@ -6,7 +6,7 @@ use crate::convex::Separation;
 use crate::math::{Isometry2, Isometry3, Pose, Real, Vector, min};
 use crate::query::separation::{separation_in_plane, separation_in_space};
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
-use crate::shape::{Cuboid, Shape};
+use crate::shape::{Cuboid, FeatureId, Shape};
 
 /// A box upon, beside or below another; on half of the draws turned by multiples of a quarter only
 /// and shifted on a grid, so that sides and corners coincide.
@@ -108,6 +108,59 @@ fn fused_boxes_are_what_the_general_builder_makes() {
     check::<f32>(1e-4);
 }
 
+/// How many contacts there are of an edge above a face, of a corner, and of an edge across an edge.
+#[derive(Debug, Default)]
+struct Leaning {
+    edges: usize,
+    corners: usize,
+    crossings: usize,
+}
+
+impl Leaning {
+    fn count<N: Real>(&mut self, points: &[RawPoint<N, 3>]) {
+        let is =
+            |of: fn(FeatureId) -> bool| move |p: &RawPoint<N, 3>| of(p.feature1) || of(p.feature2);
+        let has_face = points.iter().any(is(|id| matches!(id, FeatureId::Face(_))));
+        let has_corner = points.iter().any(is(|id| matches!(id, FeatureId::Vertex(_))));
+        self.edges += usize::from(points.len() == 2);
+        self.corners += usize::from(points.len() == 1 && has_face && has_corner);
+        self.crossings += usize::from(points.len() == 1 && !has_face && !has_corner);
+    }
+}
+
+/// Boxes that reach into each other, both turned freely; some that do not.
+fn check_turned<N: Real>(tolerance: f64) {
+    let (mut random, mut counts, mut built) = (Random(11), Leaning::default(), 0);
+    for round in 0..4000 {
+        let mut draw = |most: f64| Vector::<f64, 3>::from_fn(|_, _| random.between(-most, most));
+        let (shift, turn) = (draw(1.2), draw(2.0));
+        let mut half = || draw(0.4).map(|x| N::lit(x + 0.7));
+        let (cuboid1, cuboid2) = (Cuboid::new(half()), Cuboid::new(half()));
+        let pose12 = rounded(&Pose::from_isometry(&Isometry3::new(shift, turn)));
+        let pair = Pair { first: cuboid1.geometry().0, second: cuboid2.geometry().0, pose12 };
+        let (mut fused, mut general) = (RawManifold::default(), RawManifold::default());
+        let separation = separation_in_space(&pair, request::<N>().prediction);
+        if let (Some(separation), true) =
+            (separation, box_faces::build(&pair, &request(), &mut fused))
+        {
+            build3(&pair, &separation, &request(), &mut general);
+            compare([&fused, &general], &separation, tolerance, round);
+            counts.count(&fused.points);
+            built += 1;
+        }
+    }
+    let Leaning { edges, corners, crossings } = counts;
+    assert!(built > 1500 && edges > 300, "{built}, {counts:?}");
+    assert!(corners > 50 && crossings > 50, "{counts:?}");
+}
+
+#[test]
+fn fused_boxes_that_lean_are_what_the_general_builder_makes() {
+    check_turned::<f64>(1e-10);
+    // Seen along the normal, edges cross at any angle.
+    check_turned::<f32>(1e-3);
+}
+
 fn check_sides<N: Real>(tolerance: f64) {
     let mut random = Random(9);
     let (mut built, mut touching, mut pairs) = (0, 0, 0);
@@ -133,8 +186,32 @@ fn check_sides<N: Real>(tolerance: f64) {
         compare([&fused, &general], &separation, tolerance, round);
         pairs += usize::from(fused.points.len() == 2);
     }
+    check_corners::<N>(tolerance);
     assert!(built > touching && touching > 1500, "{built} built, {touching} touching");
     assert!(pairs > 500, "{pairs} with two points");
+}
+
+/// Boxes turned freely, most of which meet with a corner.
+fn check_corners<N: Real>(tolerance: f64) {
+    let (mut random, mut corners) = (Random(13), 0);
+    for round in 0..4000 {
+        let mut draw = |most: f64| Vector::<f64, 2>::from_fn(|_, _| random.between(-most, most));
+        let (shift, turn) = (draw(1.0), draw(3.0).x);
+        let mut half = || draw(0.4).map(|x| N::lit(x + 0.7));
+        let (cuboid1, cuboid2) = (Cuboid::new(half()), Cuboid::new(half()));
+        let pose12 = rounded(&Pose::from_isometry(&Isometry2::new(shift, turn)));
+        let pair = Pair { first: cuboid1.geometry().0, second: cuboid2.geometry().0, pose12 };
+        let (mut fused, mut general) = (RawManifold::default(), RawManifold::default());
+        let separation = separation_in_plane(&pair, request::<N>().prediction);
+        if let (Some(separation), true) =
+            (separation, box_sides::build(&pair, &request(), &mut fused))
+        {
+            build2(&pair, &separation, &request(), &mut general);
+            compare([&fused, &general], &separation, tolerance, round);
+            corners += usize::from(fused.points.len() == 1);
+        }
+    }
+    assert!(corners > 500, "{corners} corners on sides");
 }
 
 #[test]

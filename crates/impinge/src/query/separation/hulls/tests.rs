@@ -46,7 +46,7 @@ impl Random {
         pose
     }
 
-    pub(in super::super) fn pick(&mut self, count: usize) -> usize {
+    pub(in crate::query) fn pick(&mut self, count: usize) -> usize {
         let share = (self.next() + 1.0) / 2.0;
         (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
     }

@@ -1,4 +1,4 @@
-//! Boxes side to side in the plane: `box_sides.rs` and the separating axis test in lanes.
+//! Boxes in the plane: `box_sides.rs` and the separating axis test in lanes.
 
 mod axis;
 mod names;

@@ -28,8 +28,11 @@ pub(super) struct Sides<V, M> {
     /// The ends of the upper side, the one with the smaller place first.
     ends: [End<V>; 2],
     length: V,
+    /// The upper side leans too far, and of its ends the second is the one that faces the other box.
+    is_corner: M,
+    is_second_lower: M,
     pub(super) tolerance: V,
-    /// The upper side does not lean too far, and neither is too short.
+    /// Neither side is too short.
     pub(super) is_fit: M,
 }
 
@@ -92,8 +95,10 @@ impl<V, M> Sides<V, M> {
             is_turned: upper.is_turned,
             ends: upper.ends,
             length,
+            is_corner: !upper.is_aligned,
+            is_second_lower: upper.is_second_lower,
             tolerance,
-            is_fit: is_long & upper.is_aligned,
+            is_fit: is_long,
         }
     }
 
@@ -110,10 +115,13 @@ impl<V, M> Sides<V, M> {
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
-        let above = [self.above(simd, 0), self.above(simd, 1)];
+        let mut above = [self.above(simd, 0), self.above(simd, 1)];
+        above[0].is_inside &= !self.is_corner | !self.is_second_lower;
+        above[1].is_inside &= !self.is_corner | self.is_second_lower;
         let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
         // Ends of both sides are there already.
         for (end, found) in below.iter_mut().enumerate() {
+            found.is_inside &= !self.is_corner;
             for (other, known) in above.iter().enumerate() {
                 let is_same = found.at_end[other] & known.at_end[end] & known.is_inside;
                 found.is_inside &= !is_same;
@@ -208,6 +216,7 @@ struct Upper<V, M> {
     is_positive: M,
     is_turned: M,
     ends: [End<V>; 2],
+    is_second_lower: M,
     is_aligned: M,
 }
 
@@ -234,8 +243,9 @@ impl<V, M> Upper<V, M> {
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
         let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
-        let is_aligned = !(lean * lean).simd_gt(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
-        let is_positive = across.simd_gt(V::all(simd, N::ZERO));
+        let is_aligned = (lean * lean).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
+        let zero = V::all(simd, N::ZERO);
+        let is_positive = across.simd_gt(zero);
         let half = either(axis.is_second, &boxes.half1, &boxes.half2);
         let out = on(is_own_y, &half);
         let out = is_positive.select(out, -out);
@@ -259,7 +269,9 @@ impl<V, M> Upper<V, M> {
         );
         let is_turned = far.place.simd_lt(near.place);
         let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
-        Self { is_own_y, is_positive, is_turned, ends, is_aligned }
+        // The far end faces the other box, and the ends are not exchanged, or neither.
+        let is_second_lower = is_turned ^ !lean.simd_lt(zero);
+        Self { is_own_y, is_positive, is_turned, ends, is_second_lower, is_aligned }
     }
 }
 

@@ -10,6 +10,7 @@ use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
 use super::super::masks::bits;
 use super::faces::{Faces, cross};
+use super::shown::Shown;
 use crate::math::{Real, Wide};
 
 /// The first eight slots are corners, above which or below which the other face is to be named.
@@ -52,16 +53,18 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// The clipping of eight pairs under way.
-pub(super) struct Clip<'a, S, N: Real, V, M> {
+/// The clipping of eight pairs under way; `PARTIAL` if one of the faces leans too far.
+pub(super) struct Clip<'a, S, N: Real, V, M, const PARTIAL: bool> {
     simd: S,
     faces: &'a Faces<V, M>,
+    /// What is shown of the rectangle, and of the parallelogram.
+    shown: [Shown<M>; 2],
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS>,
     corners: &'a mut Corners,
 }
 
-impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
+impl<'a, S, N, V, M, const PARTIAL: bool> Clip<'a, S, N, V, M, PARTIAL>
 where
     S: Simd,
     N: Real,
@@ -75,16 +78,16 @@ where
         limits: &Limits<V>,
         (slots, corners): (&'a mut Slots<N, 3, SLOTS>, &'a mut Corners),
     ) -> Self {
-        Self { simd, faces, admission: Admission::new(simd, limits), slots, corners }
+        let (shown, admission) = (faces.shown(simd), Admission::new(simd, limits));
+        Self { simd, faces, shown, admission, slots, corners }
     }
 
     /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
     /// its height.
     #[inline(always)]
     pub(super) fn run(mut self) -> M {
-        let [tt, ft, ff, tf] = SIGNS;
-        let above = [self.above(tt), self.above(ft), self.above(ff), self.above(tf)];
-        let mut below = [self.below(tt), self.below(ft), self.below(ff), self.below(tf)];
+        let above = [self.above(0), self.above(1), self.above(2), self.above(3)];
+        let mut below = [self.below(0), self.below(1), self.below(2), self.below(3)];
         drop_coincident(&above, &mut below);
         let [a, b, c, d] = above;
         self.corner(0, &a);
@@ -113,18 +116,23 @@ where
         ([x, y], height)
     }
 
-    /// A corner of the parallelogram as the rectangle sees it.
+    /// A corner of the parallelogram as the rectangle sees it; edges that cross have none.
     #[inline(always)]
-    fn above(&self, signs: [bool; 2]) -> Place<V, M> {
-        let (flat, height) = self.arm_end(signs);
+    fn above(&self, corner: usize) -> Place<V, M> {
+        let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
-        self.place((flat, height), inside, flat)
+        let mut place = self.place((flat, height), inside, flat);
+        if PARTIAL {
+            place.is_inside &= self.shown[0].is_whole() & self.shown[1].has_corner(corner);
+        }
+        place
     }
 
     /// A corner of the rectangle as the parallelogram sees it.
     #[inline(always)]
-    fn below(&self, signs: [bool; 2]) -> Place<V, M> {
+    fn below(&self, corner: usize) -> Place<V, M> {
+        let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
@@ -133,7 +141,12 @@ where
         let inside =
             [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
-        self.place((flat, height), inside, along)
+        let mut place = self.place((flat, height), inside, along);
+        if PARTIAL {
+            place.is_inside &=
+                self.shown[0].is_whole() & self.shown[1].has_place(&place.at_end, &place.beyond);
+        }
+        place
     }
 
     /// A place that is `inside` the ends of the other face by this much along each of its axes, and
@@ -171,11 +184,12 @@ where
         let (to, high) = self.arm_end(ends(arm, sign, true));
         let side = [to[0] - from[0], to[1] - from[1]];
         let (from, side) = ((&from, low), (&side, high - low));
-        let to = (&to, high);
-        self.crossing(slot, [from, side, to], (0, true));
-        self.crossing(slot + 1, [from, side, to], (0, false));
-        self.crossing(slot + 2, [from, side, to], (1, true));
-        self.crossing(slot + 3, [from, side, to], (1, false));
+        let ends = [from, side, (&to, high)];
+        let is_shown = self.shown[1].has_side(arm, sign);
+        self.crossing(slot, ends, (0, true), is_shown);
+        self.crossing(slot + 1, ends, (0, false), is_shown);
+        self.crossing(slot + 2, ends, (1, true), is_shown);
+        self.crossing(slot + 3, ends, (1, false), is_shown);
     }
 
     /// The crossing with the side of the rectangle that is at one end of an axis, away from the ends
@@ -186,6 +200,7 @@ where
         slot: usize,
         [from, side, to]: [(&[V; 2], V); 3],
         (axis, is_positive): (usize, bool),
+        is_shown: M,
     ) {
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
@@ -196,7 +211,11 @@ where
         let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
         let height = from.1 + side.1 * along;
-        self.admit(slot, (&flat, height), (leaves | enters) & is_within);
+        let mut is_there = (leaves | enters) & is_within;
+        if PARTIAL {
+            is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
+        }
+        self.admit(slot, (&flat, height), is_there);
     }
 
     /// Stores a candidate where it is and the prediction admits it.

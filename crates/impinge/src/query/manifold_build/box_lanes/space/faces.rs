@@ -4,21 +4,32 @@ use fearless_simd::{Select, Simd, SimdMask};
 
 use super::super::gather::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
-use crate::math::lanes::{by_axis, dot, either, lit, norm, seen_from};
+use super::shown::Shown;
+use crate::math::lanes::{by_axis, dot, either, lit, negated, norm, seen_from};
 use crate::math::{Real, Wide};
-use crate::shape::FACING_SINE_SQUARED;
 
 /// A face of a box, and the face of the other above it, in the frame of the first of these.
 pub(super) struct Faces<V, M> {
+    /// The rectangle is the second box's.
+    pub(super) is_second: M,
+    /// It is, and the normal is not its own.
+    is_leaning: M,
     /// The axis across the rectangle is the first, the second.
     pub(super) is_w: [M; 3],
+    /// The normal away from the rectangle's box, by its axes in turn.
+    toward: [V; 3],
     pub(super) is_upward: M,
     /// Half of the rectangle's box across, and of its sides.
     pub(super) half: V,
     pub(super) across: [V; 2],
+    /// What leans along these sides, of the normal.
+    leans: [V; 2],
     /// The axis across the parallelogram, in its own box; its normal is on the positive side.
     pub(super) is_m: [M; 3],
     pub(super) is_positive: M,
+    leans_above: [V; 2],
+    /// Neither face leans too far: all of both is shown.
+    pub(super) is_whole: M,
     pub(super) center: [V; 2],
     pub(super) arms: [[V; 2]; 2],
     pub(super) height: V,
@@ -26,7 +37,7 @@ pub(super) struct Faces<V, M> {
     pub(super) area: V,
     pub(super) widths: [V; 2],
     pub(super) tolerance: V,
-    /// Neither face leans too far or is too narrow.
+    /// Neither face is too narrow.
     pub(super) is_fit: M,
 }
 
@@ -56,42 +67,73 @@ fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask)
 
 /// The rectangle's side of the two.
 struct Below<V, M> {
+    is_second: M,
     is_w: [M; 3],
     /// By the axes of the box.
     toward: [V; 3],
+    /// The same in turn.
+    in_turn: [V; 3],
     is_upward: M,
     half: [V; 3],
-    lean: V,
 }
 
 #[inline(always)]
-fn below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
     simd: S,
     boxes: &Boxes<V, 3>,
-    axis: &BestAxis<V, V::Mask>,
-) -> Below<V, V::Mask> {
+    axis: &BestAxis<V, M>,
+) -> Below<V, M> {
     let (zero, normal) = (V::all(simd, N::ZERO), &axis.normal);
     let is_face = which(simd, axis.face);
     let along1 = in_turn(&is_face, normal)[0];
     let along2 = -dot(normal, &of_three(&is_face, boxes.rotation.each_ref()));
     let straight = sign(simd, !axis.is_second.select(along2, along1).simd_lt(zero));
-    let most = largest(normal);
+    let (leaning, is_second) = between_edges(simd, boxes, axis);
+    let most = largest(&leaning);
     let is_w = by_axis(
         #[inline(always)]
         |a| (axis.is_edges & most[a]) | (!axis.is_edges & is_face[a]),
     );
     let toward = by_axis(
         #[inline(always)]
-        |a| axis.is_edges.select(normal[a], is_face[a].select(straight, zero)),
+        |a| axis.is_edges.select(leaning[a], is_face[a].select(straight, zero)),
     );
-    let [w, u, v] = in_turn(&is_w, &toward);
+    let in_turn_w = in_turn(&is_w, &toward);
     Below {
+        is_second,
         is_w,
         toward,
-        is_upward: !w.simd_lt(zero),
-        half: in_turn(&is_w, &either(axis.is_second, &boxes.half2, &boxes.half1)),
-        lean: u * u + v * v,
+        in_turn: in_turn_w,
+        is_upward: !in_turn_w[0].simd_lt(zero),
+        half: in_turn(&is_w, &either(is_second, &boxes.half2, &boxes.half1)),
     }
+}
+
+/// The normal away from the box whose face is to be the rectangle where edges decide, and whether that
+/// is the second box, there and elsewhere.
+#[inline(always)]
+fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+    simd: S,
+    boxes: &Boxes<V, 3>,
+    axis: &BestAxis<V, M>,
+) -> ([V; 3], M) {
+    let leans_too_far = axis.is_edges & !is_shown(simd, &axis.normal);
+    if !leans_too_far.any_true() {
+        return (axis.normal, axis.is_second);
+    }
+    let toward2 = negated(&seen_from(&boxes.rotation, &axis.normal));
+    let is_second = leans_too_far & is_shown(simd, &toward2);
+    (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
+}
+
+/// The face of a box that is most aligned with a unit vector does not lean too far.
+#[inline(always)]
+fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+    simd: S,
+    toward: &[V; 3],
+) -> M {
+    let [_, u, v] = in_turn(&largest(toward), toward);
+    Shown::is_all(simd, [u, v])
 }
 
 /// The axis that each lane names, of three, times a length.
@@ -123,17 +165,17 @@ impl<V, M> Faces<V, M> {
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S>,
+        M: SimdMask<S> + Select<V>,
     {
         let below = below(simd, boxes, axis);
-        let (rotation, shift) = other(boxes, axis.is_second);
-        let toward = in_turn(&below.is_w, &below.toward);
+        let (rotation, shift) = other(boxes, below.is_second);
+        let toward = below.in_turn;
         let facing = seen_from(&rotation, &below.toward);
         let facing = [-facing[0], -facing[1], -facing[2]];
         let is_m = largest(&facing);
         let [f0, f1, f2] = in_turn(&is_m, &facing);
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
-        let half = in_turn(&is_m, &either(axis.is_second, &boxes.half1, &boxes.half2));
+        let half = in_turn(&is_m, &either(below.is_second, &boxes.half1, &boxes.half2));
         let [x, y, z] = &rotation;
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
@@ -151,18 +193,21 @@ impl<V, M> Faces<V, M> {
         let across = [below.half[1], below.half[2]];
         let tolerance = tolerance(simd, boxes);
         let narrow = lit::<S, N, V>(simd, 4.0) * tolerance;
-        let limit = lit::<S, N, V>(simd, FACING_SINE_SQUARED);
-        let is_fit = below.lean.simd_le(limit)
-            & !(f1 * f1 + f2 * f2).simd_gt(limit)
-            & across[0].smaller(across[1]).simd_gt(narrow)
+        let is_fit = across[0].smaller(across[1]).simd_gt(narrow)
             & widths[0].smaller(widths[1]).simd_gt(narrow);
         Self {
+            is_second: below.is_second,
+            is_leaning: below.is_second & axis.is_edges,
             is_w: below.is_w,
+            toward,
             is_upward: below.is_upward,
             half: below.half[0],
             across,
+            leans: [toward[1], toward[2]],
             is_m,
             is_positive,
+            leans_above: [f1, f2],
+            is_whole: Shown::is_all(simd, [toward[1], toward[2]]) & Shown::is_all(simd, [f1, f2]),
             center,
             arms: [arm1, arm2],
             height,
@@ -174,22 +219,41 @@ impl<V, M> Faces<V, M> {
         }
     }
 
-    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
-    /// `Pose::point` has it for a rectangle of the second box, above which the first one is.
+    /// What the rectangle shows of itself, and the parallelogram.
     #[inline(always)]
-    pub(super) fn point1<S: Simd, N: Real>(
+    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [Shown<M>; 2]
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let below = Shown::of(simd, self.is_w[1], self.leans);
+        [below, Shown::of(simd, self.is_m[1], self.leans_above)]
+    }
+
+    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
+    /// `Pose::point` has it for a rectangle of the second box, above which the first one is. That
+    /// rectangle does not lean unless `PARTIAL`, when a face may lean too far.
+    #[inline(always)]
+    pub(super) fn point1<S: Simd, N: Real, const PARTIAL: bool>(
         &self,
         simd: S,
         boxes: &Boxes<V, 3>,
-        is_second: M,
-        ([u, v], height): ([V; 2], V),
+        ([mut u, mut v], height): ([V; 2], V),
     ) -> [V; 3]
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
+        let is_second = self.is_second;
         let level = self.half + is_second.select(height, V::all(simd, N::ZERO));
-        let w = self.is_upward.select(level, -level);
+        let mut w = self.is_upward.select(level, -level);
+        if PARTIAL {
+            let (is_leaning, toward) = (self.is_leaning, &self.toward);
+            let ground = self.is_upward.select(self.half, -self.half);
+            w = is_leaning.select(ground + toward[0] * height, w);
+            u = is_leaning.select(u + toward[1] * height, u);
+            v = is_leaning.select(v + toward[2] * height, v);
+        }
         let [w0, w1, _] = self.is_w;
         let own = [
             w0.select(w, w1.select(v, u)),

@@ -1,9 +1,10 @@
-//! Boxes face to face in space: `box_faces.rs` and the separating axis test in lanes.
+//! Boxes in space: `box_faces.rs` and the separating axis test in lanes.
 
 mod axis;
 mod clip;
 mod faces;
 mod names;
+mod shown;
 
 use fearless_simd::Simd;
 
@@ -12,7 +13,7 @@ use self::faces::Faces;
 use self::names::{Names, Side, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::{Choice, SLOTS};
-use super::gather::Inputs;
+use super::gather::{Boxes, Inputs};
 use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
 use crate::math::lanes::lit;
@@ -63,8 +64,11 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         }
         let faces = Faces::meeting(simd, &boxes, &axis);
         let limits = Limits { gap: axis.gap, prediction, tolerance: faces.tolerance };
-        let slots = (&mut self.slots, &mut self.corners);
-        let is_found = Clip::new(simd, &faces, &limits, slots).run();
+        let is_found = if bits(!faces.is_whole) & is_ordinary == 0 {
+            self.fill::<S, V, false>(simd, &boxes, &faces, &limits)
+        } else {
+            self.fill::<S, V, true>(simd, &boxes, &faces, &limits)
+        };
         self.is_built = bits(is_found & faces.is_fit) & is_ordinary;
         self.sides = [
             bits(faces.is_w[0]),
@@ -73,7 +77,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
             bits(faces.is_m[0]),
             bits(faces.is_m[1]),
             bits(faces.is_positive),
-            bits(axis.is_second),
+            bits(faces.is_second),
             0,
         ];
         axis.gap.store(&mut self.gap);
@@ -81,13 +85,6 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         for (row, along) in self.normal.iter_mut().zip(axis.normal) {
             along.store(row);
         }
-        let is_second = axis.is_second;
-        self.slots.place(
-            simd,
-            &limits,
-            #[inline(always)]
-            |flat, height| faces.point1(simd, &boxes, is_second, (flat, height)),
-        );
     }
 
     #[inline(always)]
@@ -110,6 +107,27 @@ impl<N: Real> Eights<N, 3> for Found<N> {
 }
 
 impl<N: Real> Found<N> {
+    /// Fills the slots, `PARTIAL` where one of the faces leans too far; answers where they hold the
+    /// separation.
+    #[inline(always)]
+    fn fill<S: Simd, V: Wide<S, Scalar = N>, const PARTIAL: bool>(
+        &mut self,
+        simd: S,
+        boxes: &Boxes<V, 3>,
+        faces: &Faces<V, V::Mask>,
+        limits: &Limits<V>,
+    ) -> V::Mask {
+        let slots = (&mut self.slots, &mut self.corners);
+        let is_found = Clip::<_, _, _, _, PARTIAL>::new(simd, faces, limits, slots).run();
+        self.slots.place(
+            simd,
+            limits,
+            #[inline(always)]
+            |flat, height| faces.point1::<_, _, PARTIAL>(simd, boxes, (flat, height)),
+        );
+        is_found
+    }
+
     #[inline(always)]
     fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
         let bits = columns.byte(6, lane);

@@ -1,0 +1,333 @@
+//! Manifolds of parts of the plane merged: patches are stretches of lines, of one or two points.
+//!
+//! The same as [`merge`](super::merge), which defines it, bit for bit: seen along the normal all points lie in
+//! a row, so that the outline of a patch is its first and its last point.
+
+use smallvec::SmallVec;
+
+use super::patch::{Kept, Merging, Patch, PatchPoint, Piece, are_level, by_depth, merge};
+use super::reduce::{ALMOST, NEW_POINT_WEIGHT};
+use super::{deepest_of, tangents2};
+use crate::math::{Real, Vector};
+use crate::query::{PairIds, RawPoint};
+
+/// As many pieces and points are merged here; more are left to the general way.
+const MOST_PIECES: usize = 8;
+const MOST_POINTS: usize = 12;
+
+/// [`merge`](super::merge) in the plane; many pieces are left to it.
+pub(in crate::query) fn merge_in_plane<N: Real>(
+    merging: &Merging<'_, N, 2>,
+    patches: &mut Vec<Patch<N, 2>>,
+    ids: &mut PairIds,
+) {
+    let (pieces, points) = (merging.pieces.len(), merging.points.len());
+    if pieces > MOST_PIECES || points > MOST_POINTS {
+        return merge(merging, patches, ids);
+    }
+    let count = match merging.pieces {
+        [] => 0,
+        [piece] if piece.points.len() == 1 => merge_one(merging, piece, (patches, ids)),
+        _ => merge_some(merging, (patches, ids)),
+    };
+    patches.truncate(count);
+}
+
+/// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
+fn merge_one<N: Real>(
+    merging: &Merging<'_, N, 2>,
+    piece: &Piece<N, 2>,
+    (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
+) -> usize {
+    let mut raw = merging.points[piece.points.start];
+    // Written so that what is no number is not near.
+    let is_near = raw.distance <= merging.request.prediction;
+    if !is_near {
+        return 0;
+    }
+    let mut old = patches.iter().flat_map(|patch| &patch.points);
+    let kept = old.find(|old| {
+        let names = (old.raw.feature1, old.raw.feature2);
+        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
+    });
+    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
+    blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
+    1
+}
+
+/// Merges some pieces; answers how many patches there are.
+fn merge_some<N: Real>(
+    merging: &Merging<'_, N, 2>,
+    (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
+) -> usize {
+    let kept = merging.kept(patches);
+    let row = Row { merging, kept: &kept };
+    let mut order = [Placed { piece: 0, deepest: 0, group: 0 }; MOST_PIECES];
+    let count = row.order(&mut order);
+    let mut groups = [Group { lead: 0, first: [0; 2] }; MOST_PIECES];
+    let of_groups = row.group(&mut order[..count], &mut groups);
+    let (order, groups) = (&order[..count], &mut groups[..of_groups]);
+    groups.sort_unstable_by_key(|group| group.first);
+    let mut made = 0;
+    for group in groups.iter() {
+        let lead = order[group.lead];
+        if merging.points[lead.deepest].distance <= merging.request.prediction {
+            let points = blank(patches, made, merging.pieces[lead.piece].normal);
+            row.fill_patch(lead, order, (points, ids));
+            made += 1;
+        }
+    }
+    made
+}
+
+/// A patch without points, in the place of an old one if there is one.
+fn blank<N: Real>(
+    patches: &mut Vec<Patch<N, 2>>,
+    at: usize,
+    normal: Vector<N, 2>,
+) -> &mut SmallVec<[PatchPoint<N, 2>; 4]> {
+    if at == patches.len() {
+        // Most pairs have one patch at all times.
+        patches.reserve_exact(1);
+        patches.push(Patch { normal, points: SmallVec::new() });
+    }
+    let patch = &mut patches[at];
+    patch.normal = normal;
+    patch.points.clear();
+    &mut patch.points
+}
+
+/// A piece, its deepest point and its group.
+#[derive(Clone, Copy)]
+struct Placed {
+    piece: usize,
+    deepest: usize,
+    group: usize,
+}
+
+/// The pieces of one patch.
+#[derive(Clone, Copy)]
+struct Group {
+    /// The piece with the deepest point: its place in the order.
+    lead: usize,
+    /// The first of the parts.
+    first: [u32; 2],
+}
+
+/// A point of a patch, seen along its normal.
+#[derive(Clone, Copy)]
+struct Member<N: Real> {
+    flat: Vector<N, 2>,
+    piece: usize,
+    point: usize,
+}
+
+/// What patches are made of.
+struct Row<'a, N: Real> {
+    merging: &'a Merging<'a, N, 2>,
+    kept: &'a Kept,
+}
+
+impl<N: Real> Row<'_, N> {
+    /// The pieces with points, the deepest first; answers how many.
+    fn order(&self, order: &mut [Placed; MOST_PIECES]) -> usize {
+        let Merging { pieces, points, .. } = *self.merging;
+        let mut count = 0;
+        for (index, piece) in pieces.iter().enumerate() {
+            let Some(deepest) = self.merging.deepest_of(piece) else { continue };
+            // Pieces come in the order of their parts, so that equal ones stay as they are.
+            let mut at = count;
+            while at > 0 && by_depth(&points[deepest], &points[order[at - 1].deepest]).is_lt() {
+                order[at] = order[at - 1];
+                at -= 1;
+            }
+            order[at] = Placed { piece: index, deepest, group: 0 };
+            count += 1;
+        }
+        count
+    }
+
+    /// Puts each piece to the first group that it lies level with; answers how many there are.
+    fn group(&self, order: &mut [Placed], groups: &mut [Group; MOST_PIECES]) -> usize {
+        let Merging { pieces, points, tolerance, .. } = *self.merging;
+        let mut count = 0;
+        for at in 0..order.len() {
+            let Placed { piece, deepest, .. } = order[at];
+            let own = &pieces[piece];
+            let mut group = 0;
+            while group < count {
+                let lead = order[groups[group].lead];
+                let normals = [&pieces[lead.piece].normal, &own.normal];
+                let leads = [&points[lead.deepest], &points[deepest]];
+                if are_level(normals, leads, tolerance) {
+                    break;
+                }
+                group += 1;
+            }
+            if group == count {
+                groups[group] = Group { lead: at, first: own.parts };
+                count += 1;
+            }
+            groups[group].first = groups[group].first.min(own.parts);
+            order[at].group = group;
+        }
+        count
+    }
+
+    /// Fills the patch of a group: its deepest point and, of the two ends, those that span most.
+    fn fill_patch(
+        &self,
+        lead: Placed,
+        order: &[Placed],
+        (out, ids): (&mut SmallVec<[PatchPoint<N, 2>; 4]>, &mut PairIds),
+    ) {
+        let flat = Vector::<N, 2>::zeros();
+        let mut members = [Member { flat, piece: lead.piece, point: lead.deepest }; MOST_POINTS];
+        let count = self.members(lead, order, &mut members);
+        let count = self.without_copies(&mut members[..count]);
+        let lowest = self.merging.points[lead.deepest].distance;
+        let level = lowest + self.merging.tolerance;
+        let (outline, count) = self.outline(&members[..count], level);
+        let deepest = deepest_of(count, level, |index| {
+            (self.kept[outline[index].point].is_some(), self.distance(&outline[index]))
+        });
+        let (chosen, count) = self.chosen(&outline[..count], deepest);
+        for &index in &chosen[..count] {
+            let Member { piece, point, .. } = outline[index];
+            let id = self.kept[point].unwrap_or_else(|| ids.next());
+            let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
+            if index == deepest {
+                raw.distance = lowest;
+            }
+            out.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+        }
+        if let [first, second] = out.as_mut_slice()
+            && first.raw.id > second.raw.id
+        {
+            core::mem::swap(first, second);
+        }
+    }
+
+    fn distance(&self, member: &Member<N>) -> N {
+        self.merging.points[member.point].distance
+    }
+
+    /// The points of a group that the request asks for, the deepest first; answers how many.
+    fn members(
+        &self,
+        lead: Placed,
+        order: &[Placed],
+        members: &mut [Member<N>; MOST_POINTS],
+    ) -> usize {
+        let Merging { request, pieces, points, .. } = *self.merging;
+        let tangents = tangents2(&pieces[lead.piece].normal);
+        let origin = points[lead.deepest].point1;
+        // The first is the deepest already.
+        let mut count = 1;
+        for placed in order.iter().filter(|placed| placed.group == lead.group) {
+            for point in pieces[placed.piece].points.clone() {
+                if point == lead.deepest {
+                    continue;
+                }
+                let arm = points[point].point1 - origin;
+                let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+                let is_turning = request.sine > N::ZERO;
+                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + reach {
+                    members[count] = Member { flat, piece: placed.piece, point };
+                    count += 1;
+                }
+            }
+        }
+        count
+    }
+
+    /// Sorts the points along the line, and keeps one of those at one place; answers how many are left.
+    fn without_copies(&self, members: &mut [Member<N>]) -> usize {
+        let near = N::lit(4.0) * self.merging.tolerance;
+        sort(members);
+        let (mut count, mut is_exchanged) = (0, false);
+        for next in 0..members.len() {
+            let member = members[next];
+            let mut at = count;
+            let mut is_copy = false;
+            while at > 0 && !is_copy && member.flat.x - members[at - 1].flat.x <= N::TWO * near {
+                at -= 1;
+                is_copy = (members[at].flat - member.flat).norm_squared() <= near * near;
+            }
+            if !is_copy {
+                members[count] = member;
+                count += 1;
+            } else if self.is_better(&member, &members[at]) {
+                (members[at], is_exchanged) = (member, true);
+            }
+        }
+        if is_exchanged {
+            // An exchange may have taken a point past its neighbours.
+            sort(&mut members[..count]);
+        }
+        count
+    }
+
+    fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
+        let tolerance = self.merging.tolerance;
+        let rank = |member: &Member<N>| {
+            (self.kept[member.point].is_none(), self.merging.pieces[member.piece].parts)
+        };
+        let lower = self.distance(old) - self.distance(new);
+        lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
+    }
+
+    /// The first and the last point; and the deepest, if none of these is at most `level`.
+    fn outline(&self, members: &[Member<N>], level: N) -> ([Member<N>; 3], usize) {
+        let last = members[members.len() - 1];
+        let mut outline = [members[0], last, last];
+        let mut count = members.len().min(2);
+        if !outline[..count].iter().any(|member| self.distance(member) <= level) {
+            let deeper = |best: Member<N>, next: &Member<N>| {
+                if self.distance(next) < self.distance(&best) { *next } else { best }
+            };
+            outline[count] = members[1..].iter().fold(members[0], deeper);
+            count += 1;
+        }
+        (outline, count)
+    }
+
+    /// At most as many points of the outline as are asked for, in the order of their numbers, new ones
+    /// last: all, or the deepest and the one that spans more, old ones before new ones.
+    fn chosen(&self, outline: &[Member<N>], deepest: usize) -> ([usize; 2], usize) {
+        let limit = self.merging.request.max_points.clamp(1, 2);
+        if outline.len() <= limit {
+            return ([0, 1], outline.len());
+        }
+        let mut best = (deepest, N::ZERO);
+        let depth = |index: &usize| self.distance(&outline[*index]).as_f64();
+        let mut others: SmallVec<[usize; 3]> = (0..outline.len()).collect();
+        others.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+        for index in others.into_iter().filter(|index| limit > 1 && *index != deepest) {
+            let distance = (outline[index].flat - outline[deepest].flat).norm();
+            let gain = if distance > self.merging.tolerance { distance } else { N::ZERO };
+            let is_new = self.kept[outline[index].point].is_none();
+            let gain = if is_new { gain * N::lit(NEW_POINT_WEIGHT) } else { gain };
+            if gain > best.1 * N::lit(ALMOST) {
+                best = (index, gain);
+            }
+        }
+        ([deepest, best.0], if best.0 == deepest { 1 } else { 2 })
+    }
+}
+
+/// Sorts few points along the line; equal ones stay as they are.
+fn sort<N: Real>(members: &mut [Member<N>]) {
+    let is_after = |a: &Member<N>, b: &Member<N>| {
+        let by_x = a.flat.x.as_f64().total_cmp(&b.flat.x.as_f64());
+        by_x.then(a.flat.y.as_f64().total_cmp(&b.flat.y.as_f64())).is_gt()
+    };
+    for next in 1..members.len() {
+        let mut at = next;
+        while at > 0 && is_after(&members[at - 1], &members[at]) {
+            members.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}

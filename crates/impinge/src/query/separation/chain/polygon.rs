@@ -1,0 +1,238 @@
+//! Eight segments at once against a polygon of up to eight vertices, swollen or not.
+
+use fearless_simd::{Level, Select, Simd, SimdMask};
+
+use super::super::polygon_lanes::{Outline, Polygon, of_axis};
+use super::super::polygon_polygon::Axis;
+use super::{ChainQuestion, Eight, Links};
+use crate::math::lanes::{dot, either, negated, over};
+use crate::math::{Real, Vector, Wide, min};
+use crate::query::tiles::LANES;
+use crate::shape::Segment;
+
+/// A number for each lane.
+type Row<N> = [N; LANES];
+
+/// The separations of segments from a polygon; `None` where the usual ways do not lead to one.
+pub(super) fn links<N: Real>(
+    level: Level,
+    question: &ChainQuestion<'_, N>,
+    polygon: &Polygon<N>,
+    links: &mut Links<N>,
+) -> Option<()> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = level.as_avx2() {
+        simd.vectorize(
+            #[inline(always)]
+            || search::<_, N, N::Lanes<_>>(simd, question, polygon, links),
+        )
+    } else {
+        level.as_sse2().and_then(|simd| {
+            simd.vectorize(
+                #[inline(always)]
+                || search::<_, N, N::Lanes<_>>(simd, question, polygon, links),
+            )
+        })
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links))
+}
+
+#[inline(always)]
+fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &ChainQuestion<'_, N>,
+    polygon: &Polygon<N>,
+    links: &mut Links<N>,
+) -> Option<()> {
+    let solid = Outline::<N, V>::of(simd, polygon)?;
+    let solid = Facing::new(simd, solid.placed(simd, &question.pose12));
+    for (block, tiles) in question.tiles.iter().enumerate() {
+        let eight = Eight::<V>::of(simd, tiles, question)?;
+        links.from_middle = min(links.from_middle, eight.least());
+        let axes = Axes::of(simd, &eight, &solid, question.limit);
+        let mut within = !axes.beyond & question.lanes_of(block);
+        while within != 0 {
+            let lane = (within.trailing_zeros() as usize).min(LANES - 1);
+            within &= within - 1;
+            let [a, b, _] = tiles.corners(lane);
+            let segment = Segment::of_finite(a - question.origin, b - question.origin);
+            let own = Outline::<N, V>::of(simd, &Polygon::of_segment(&segment, N::ZERO))?;
+            let outlines = [&own, &solid.outline];
+            let found = of_axis(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
+            if found.distance <= question.limit {
+                links.found.push((block * LANES + lane, found));
+            }
+        }
+    }
+    Some(())
+}
+
+/// A polygon in the frame of the segments, and how far it reaches along its own directions.
+struct Facing<N: Real, V> {
+    outline: Outline<N, V>,
+    size: N,
+    normals: [Row<N>; 2],
+    reaches: Row<N>,
+    tips: [Row<N>; 2],
+    tip_reaches: Row<N>,
+    /// A bit for each vertex with a tip.
+    are_tips: u64,
+}
+
+impl<N: Real, V> Facing<N, V> {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, outline: Outline<N, V>) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (mut normals, mut tips) = ([[N::ZERO; LANES]; 2], [[N::ZERO; LANES]; 2]);
+        let (mut reaches, mut tip_reaches) = ([N::ZERO; LANES], [N::ZERO; LANES]);
+        let (ways, is_tip) = outline.tips(simd);
+        for axis in 0..2 {
+            outline.normals[axis].store(&mut normals[axis]);
+            ways[axis].store(&mut tips[axis]);
+        }
+        outline.reach(simd, &outline.normals).store(&mut reaches);
+        let are_tips = is_tip.to_bitmask();
+        if are_tips != 0 {
+            outline.reach(simd, &ways).store(&mut tip_reaches);
+        }
+        let size = outline.size(simd);
+        Self { outline, size, normals, reaches, tips, tip_reaches, are_tips }
+    }
+}
+
+/// The best directions from segments to a polygon.
+struct Axes<N> {
+    gaps: Row<N>,
+    normals: [Row<N>; 2],
+    noise: Row<N>,
+    /// A bit for each segment that is beyond the limit.
+    beyond: u8,
+}
+
+/// The direction that leaves the largest gap so far.
+struct Best<V> {
+    gap: V,
+    normal: [V; 2],
+}
+
+impl<V> Best<V> {
+    /// Tries another direction; of equals the first counts.
+    #[inline(always)]
+    fn attempt<S: Simd>(&mut self, gap: V, normal: &[V; 2])
+    where
+        V: Wide<S>,
+    {
+        let is_more = gap.simd_gt(self.gap);
+        self.gap = is_more.select(gap, self.gap);
+        self.normal = either(is_more, normal, &self.normal);
+    }
+}
+
+impl<N: Real> Axes<N> {
+    #[inline(always)]
+    fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        eight: &Eight<V>,
+        solid: &Facing<N, V>,
+        limit: N,
+    ) -> Self {
+        let [a, b] = &eight.ends;
+        let mut best = of_segments(simd, [a, b], (&eight.side, eight.squared), &solid.outline);
+        add_polygon(simd, [a, b], solid, &mut best);
+        let rounding = solid.outline.rounding;
+        let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
+        let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
+        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
+        let room = noise + V::all(simd, N::EPSILON * rounding);
+        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
+        // A lower bound: what it rejects by more than rounding is out of reach.
+        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach).to_bitmask();
+        let ([beyond, ..], zeros) = (beyond.to_le_bytes(), [N::ZERO; LANES]);
+        let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
+        best.gap.store(&mut axes.gaps);
+        best.normal[0].store(&mut axes.normals[0]);
+        best.normal[1].store(&mut axes.normals[1]);
+        noise.store(&mut axes.noise);
+        axes
+    }
+
+    fn axis(&self, lane: usize) -> Axis<N> {
+        let normal = Vector::<N, 2>::new(self.normals[0][lane], self.normals[1][lane]);
+        Axis { gap: self.gaps[lane], normal }
+    }
+}
+
+/// The best of the segments' own directions: the normals to both sides and the ways out at both ends.
+#[inline(always)]
+fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    (side, squared): (&[V; 2], V),
+    solid: &Outline<N, V>,
+) -> Best<V> {
+    let length = squared.sqrt();
+    let front = [side[1] / length, -(side[0] / length)];
+    let back = negated(&front);
+    // As the tips of an outline with two sides.
+    let tip = [front[1] - back[1], back[0] - front[0]];
+    let tip = over(&tip, dot(&tip, &tip).sqrt());
+    let (low, high) = heights(simd, &front, solid);
+    let (first, second) = (dot(&front, a), dot(&front, b));
+    let mut best = Best { gap: low - first.larger(second), normal: front };
+    let (tip_low, tip_high) = heights(simd, &tip, solid);
+    let (tip_first, tip_second) = (dot(&tip, a), dot(&tip, b));
+    best.attempt(tip_low - tip_first.larger(tip_second), &tip);
+    best.attempt(first.smaller(second) - high, &back);
+    best.attempt(tip_first.smaller(tip_second) - tip_high, &negated(&tip));
+    best
+}
+
+/// How low and how high a polygon lies along directions.
+#[inline(always)]
+fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    directions: &[V; 2],
+    solid: &Outline<N, V>,
+) -> (V, V) {
+    let (mut low, mut high) = (V::all(simd, N::INFINITY), V::all(simd, -N::INFINITY));
+    for vertex in 0..solid.count.min(LANES) {
+        let at = [V::all(simd, solid.rows[0][vertex]), V::all(simd, solid.rows[1][vertex])];
+        let along = dot(directions, &at);
+        (low, high) = (along.smaller(low), along.larger(high));
+    }
+    (low, high)
+}
+
+/// The polygon's directions, each a side's before its tip.
+#[inline(always)]
+fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    solid: &Facing<N, V>,
+    best: &mut Best<V>,
+) {
+    for vertex in 0..solid.outline.count.min(LANES) {
+        let way = [solid.normals[0][vertex], solid.normals[1][vertex]];
+        add(simd, [a, b], (way, solid.reaches[vertex]), best);
+        if solid.are_tips >> vertex & 1 == 1 {
+            let way = [solid.tips[0][vertex], solid.tips[1][vertex]];
+            add(simd, [a, b], (way, solid.tip_reaches[vertex]), best);
+        }
+    }
+}
+
+/// A direction out of the polygon and how far it reaches along it.
+#[inline(always)]
+fn add<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    (way, reach): ([N; 2], N),
+    best: &mut Best<V>,
+) {
+    let way = [V::all(simd, way[0]), V::all(simd, way[1])];
+    let low = dot(&way, a).smaller(dot(&way, b));
+    best.attempt(low - V::all(simd, reach), &negated(&way));
+}

@@ -1,0 +1,141 @@
+//! The least depth along an arc of normals, with its proof.
+//!
+//! Along a circle of unit vectors each point of a convex solid has a height that is a sinusoid, and the
+//! depth is the largest of them. Two of them, those that are largest at the ends of an arc, bound it from
+//! below on the whole arc: by where they cross, or by the bottom of one. If that is less than is known, the
+//! depth there is asked for, and the arc is two. Growing a polygon by its side nearest to the origin, as
+//! `epa2` does, is this where the sinusoids have no base.
+
+use smallvec::SmallVec;
+
+use crate::math::{Real, Vector, cross2, min, perp, unit};
+
+/// Cap on the directions asked for along one arc. About twenty are enough in `f32`, forty in `f64`: the part
+/// of the arc around the best direction is halved until the bound is good enough, and to each side of it there
+/// are as many parts.
+const STEPS: usize = 256;
+
+/// The height of a point along the unit vectors of a circle: `base + toward · u`.
+#[derive(Clone, Copy)]
+pub(super) struct Line<N: Real> {
+    pub(super) base: N,
+    pub(super) toward: Vector<N, 2>,
+}
+
+impl<N: Real> Line<N> {
+    fn at(&self, u: &Vector<N, 2>) -> N {
+        self.base + self.toward.dot(u)
+    }
+
+    /// Where the height is least, and how low it is there.
+    fn bottom(&self) -> Option<(Vector<N, 2>, N)> {
+        let (toward, length) = unit(&self.toward)?;
+        Some((-toward, self.base - length))
+    }
+}
+
+/// Less than half a circle, counter-clockwise, and what is highest at its ends. That is one point where it is a corner of both
+/// solids; else each of the two lines is the lower one at the other's end, so that they cross.
+#[derive(Clone, Copy)]
+pub(super) struct Arc<N: Real> {
+    pub(super) ends: [Vector<N, 2>; 2],
+    pub(super) lines: [Line<N>; 2],
+}
+
+impl<N: Real> Arc<N> {
+    fn holds(&self, u: &Vector<N, 2>) -> bool {
+        cross2(&self.ends[0], u) >= N::ZERO && cross2(u, &self.ends[1]) >= N::ZERO
+    }
+
+    /// Where both lines are equally high; `None` if that is nowhere on the arc, up to rounding.
+    fn crossing(&self) -> Option<Vector<N, 2>> {
+        let [first, second] = &self.lines;
+        let (along, length) = unit(&(first.toward - second.toward))?;
+        let cosine = (second.base - first.base) / length;
+        let squared = N::ONE - cosine * cosine;
+        let is_met = squared >= N::ZERO;
+        if !is_met {
+            return None;
+        }
+        let (middle, aside) = (along * cosine, perp(&along) * squared.sqrt());
+        [middle + aside, middle - aside].into_iter().find(|u| self.holds(u))
+    }
+
+    /// Where a line is lowest on the arc, and how low; of an end the direction halfway stands for it.
+    fn least_of(&self, line: &Line<N>) -> (Vector<N, 2>, N) {
+        let halfway = unit(&(self.ends[0] + self.ends[1]));
+        let ends = min(line.at(&self.ends[0]), line.at(&self.ends[1]));
+        match line.bottom() {
+            Some(bottom) if self.holds(&bottom.0) => bottom,
+            _ => (halfway.map_or(perp(&self.ends[0]), |(u, _)| u), ends),
+        }
+    }
+
+    /// A direction of the arc and a lower bound of the depth on all of it, but for its ends. The bound is the
+    /// larger height of the two lines there, if there is one.
+    pub(super) fn bound(&self) -> (Vector<N, 2>, N) {
+        let Some(crossing) = self.crossing() else {
+            let [first, second] = self.lines.map(|line| self.least_of(&line));
+            return if second.1 > first.1 { second } else { first };
+        };
+        let height = min(self.lines[0].at(&crossing), self.lines[1].at(&crossing));
+        let mut bound = (crossing, height);
+        let halves = [[self.ends[0], crossing], [crossing, self.ends[1]]];
+        for (ends, line) in halves.into_iter().zip(self.lines) {
+            let half = Self { ends, lines: self.lines };
+            if let Some(bottom) = line.bottom().filter(|(u, low)| *low < bound.1 && half.holds(u)) {
+                bound = bottom;
+            }
+        }
+        bound
+    }
+}
+
+/// A search along arcs.
+pub(super) struct Search<N: Real> {
+    /// The least depth so far, of this or another search.
+    pub(super) least: N,
+    /// Where it is, if it was found here.
+    pub(super) best: Option<Vector<N, 2>>,
+    /// Less is not looked for.
+    gap: N,
+}
+
+impl<N: Real> Search<N> {
+    pub(super) fn new(least: N, gap: N) -> Self {
+        Self { least, best: None, gap }
+    }
+
+    pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &Line<N>) {
+        let depth = highest.at(u);
+        if depth < self.least {
+            (self.least, self.best) = (depth, Some(*u));
+        }
+    }
+
+    /// Looks for less along an arc, at whose ends the depth is no less than the least so far; `highest` tells
+    /// which line is the highest in a direction. `None` if it takes too many.
+    pub(super) fn run(
+        &mut self,
+        arc: Arc<N>,
+        highest: impl Fn(&Vector<N, 2>) -> Line<N>,
+    ) -> Option<()> {
+        let mut open = SmallVec::<[Arc<N>; 16]>::from_slice(&[arc]);
+        for _ in 0..STEPS {
+            let Some(arc) = open.pop() else { return Some(()) };
+            let (u, bound) = arc.bound();
+            if bound >= self.least - self.gap {
+                continue;
+            }
+            let line = highest(&u);
+            self.note(&u, &line);
+            if line.at(&u) - bound > self.gap {
+                let [from, to] = arc.ends;
+                let [first, second] = arc.lines;
+                open.push(Arc { ends: [from, u], lines: [first, line] });
+                open.push(Arc { ends: [u, to], lines: [line, second] });
+            }
+        }
+        open.is_empty().then_some(())
+    }
+}

@@ -1,0 +1,263 @@
+//! A solid with flat faces in a cylinder or a cone: how deep, without growing a polytope.
+//!
+//! The depth along a unit vector `m` is the support function of the difference of the cores, and the
+//! answer is the least one. On a smooth part of the sphere of directions a least one needs radii of
+//! curvature of the difference of at least the depth, in both directions across. Vertices of the flat
+//! solid have none, and a rim has one along itself only, the apex of a cone none. So the least depth lies on
+//! what is left: the normals of faces and caps; the arcs of normals of an edge, between those of its
+//! faces (the Gauss map); and the circle of normals of the round side. Faces are looked at one by one, arcs
+//! are searched by [`arc`], which proves what it finds. Nothing is iterated over two dimensions, as growing a
+//! polytope towards a curved surface does.
+//!
+//! That faces and edges are enough for two polytopes is the separating axis test; the rest follows the
+//! same thought for the kinds of part that cylinders and cones have.
+
+mod arc;
+mod flat;
+mod round;
+
+use smallvec::SmallVec;
+
+use self::arc::{Arc, Line, Search};
+use self::flat::Flat;
+use self::round::Round;
+use super::flat_core::FlatCore;
+use super::{general, wrong_kinds};
+use crate::convex::{self, Peak, Peaks, Separation};
+use crate::math::{Pose, Real, Vector, cross, max, min, unit};
+use crate::query::Pair;
+use crate::shape::Geometry;
+
+/// The separation of a solid with flat faces, or a segment or capsule, from a cylinder or cone.
+///
+/// Apart, it is that of the general algorithm to the bit.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let (Some(flat), Some(round)) =
+        (FlatCore::of(pair.first), Geometry(pair.second).as_support_map())
+    else {
+        wrong_kinds(pair)
+    };
+    let loosened = general::loosened(&flat, round, &pair.pose12, limit);
+    let found = convex::separation_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    found.filter(|found| found.distance <= limit)
+}
+
+/// Two solids whose cores overlap.
+struct Overlap<'a, 'b, N: Real> {
+    pair: &'b Pair<'a, N, 3>,
+}
+
+impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
+    fn best(&self, shrink: N, gap: N) -> Option<Peak<N, 3>> {
+        let round = Round::new(&self.pair.second, shrink)?;
+        let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
+        let mut meeting = Meeting {
+            flat: &flat,
+            round: &round,
+            least: N::INFINITY,
+            at: Place::Face(0),
+            normal: Vector::<N, 3>::y(),
+        };
+        meeting.search(gap)?;
+        Some(meeting.peak(&self.pair.pose12, shrink))
+    }
+}
+
+/// Where on the sphere of directions the least depth is.
+#[derive(Clone, Copy)]
+enum Place {
+    /// A normal of the flat solid, by its number.
+    Face(usize),
+    /// The normal of a cap.
+    Cap,
+    /// On the arc of an edge, by its number.
+    Edge(usize),
+    /// On the circle of normals of the round side.
+    Side,
+}
+
+/// The plane across an edge, in which the edge is one point.
+struct EdgePlane<N: Real> {
+    /// A point of the edge, and two unit vectors across it and each other.
+    vertex: Vector<N, 3>,
+    from: Vector<N, 3>,
+    across: Vector<N, 3>,
+}
+
+impl<N: Real> EdgePlane<N> {
+    fn lift(&self, u: &Vector<N, 2>) -> Vector<N, 3> {
+        self.from * u.x + self.across * u.y
+    }
+
+    /// The height of a point of the round solid against the edge.
+    fn line(&self, point: &Vector<N, 3>) -> Line<N> {
+        let away = point - self.vertex;
+        let toward = Vector::<N, 2>::new(away.dot(&self.from), away.dot(&self.across));
+        Line { base: N::ZERO, toward }
+    }
+}
+
+/// The arc of normals of an edge, and a lower bound of the depths on it.
+struct EdgeArc<N: Real> {
+    edge: usize,
+    plane: EdgePlane<N>,
+    arc: Arc<N>,
+    bound: N,
+}
+
+/// What is known of two solids, in the frame of the round one and units of the pair. Directions lead from
+/// the round solid to the flat one.
+struct Meeting<'a, N: Real> {
+    flat: &'a Flat<N>,
+    round: &'a Round<N>,
+    /// The least depth so far, and where it is.
+    least: N,
+    at: Place,
+    normal: Vector<N, 3>,
+}
+
+impl<N: Real> Meeting<'_, N> {
+    fn search(&mut self, gap: N) -> Option<()> {
+        let mut ends = SmallVec::<[Vector<N, 3>; 32]>::new();
+        for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
+            let point = self.round.support(normal);
+            let depth = normal.dot(&(point - self.flat.vertices[*vertex as usize]));
+            self.note(depth, Place::Face(index), *normal);
+            ends.push(point);
+        }
+        for &up in self.round.caps() {
+            let normal = Vector::<N, 3>::y() * N::lit(up);
+            let low = self.flat.lowest(&normal);
+            let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
+            self.note(depth, Place::Cap, normal);
+        }
+        let mut arcs = SmallVec::<[EdgeArc<N>; 48]>::new();
+        arcs.extend((0..self.flat.edges.len()).filter_map(|edge| self.arc_of(edge, &ends, gap)));
+        // The least depth is likely where the bound is least; the sooner it is known, the more is passed over.
+        let least =
+            |best: usize, arc: usize| if arcs[arc].bound < arcs[best].bound { arc } else { best };
+        let first = (0..arcs.len()).fold(0, least);
+        arcs.get(first).map_or(Some(()), |arc| self.search_edge(arc, gap))?;
+        self.search_side(gap)?;
+        arcs.iter().try_for_each(|arc| self.search_edge(arc, gap))
+    }
+
+    fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {
+        if depth < self.least {
+            (self.least, self.at, self.normal) = (depth, at, normal);
+        }
+    }
+
+    /// The arc of normals of an edge; `ends` are the support points of the round solid along the normals of
+    /// the flat one. `None` for an arc so short that nothing on it is lower than its ends by as much as the
+    /// gap.
+    fn arc_of(&self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<EdgeArc<N>> {
+        let flat::Edge { vertices, normals: [first, second] } = self.flat.edges[edge];
+        let [vertex, other] = vertices.map(|vertex| self.flat.vertices[vertex as usize]);
+        let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
+        let across = across(&(other - vertex), [&from, &to])?;
+        let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
+        if cosine > N::ZERO && sine * sine <= gap * N::TWO {
+            return None;
+        }
+        let plane = EdgePlane { vertex, from, across };
+        let arc = Arc {
+            ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
+            lines: [plane.line(&ends[first as usize]), plane.line(&ends[second as usize])],
+        };
+        Some(EdgeArc { edge, plane, arc, bound: arc.bound().1 })
+    }
+
+    /// Along the normals of an edge.
+    fn search_edge(&mut self, edge: &EdgeArc<N>, gap: N) -> Option<()> {
+        if edge.bound >= self.least - gap {
+            return Some(());
+        }
+        let (round, plane) = (self.round, &edge.plane);
+        let mut search = Search::new(self.least, gap);
+        search.run(edge.arc, |u| plane.line(&round.support(&plane.lift(u))))?;
+        if let Some(u) = search.best {
+            self.note(search.least, Place::Edge(edge.edge), plane.lift(&u));
+        }
+        Some(())
+    }
+
+    /// Along the normals of the round side.
+    fn search_side(&mut self, gap: N) -> Option<()> {
+        let (flat, slope) = (self.flat, self.round.slope());
+        let lift = |u: &Vector<N, 2>| {
+            Vector::<N, 3>::new(u.x * slope.aside, slope.along, u.y * slope.aside)
+        };
+        let line = |u: &Vector<N, 2>| {
+            let vertex = flat.vertices[flat.lowest(&lift(u))];
+            let toward = Vector::<N, 2>::new(vertex.x, vertex.z) * -slope.aside;
+            Line { base: slope.reach - slope.along * vertex.y, toward }
+        };
+        let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
+        let mut search = Search::new(self.least, gap);
+        let starts = [x, y, -x, -y];
+        let lines = starts.map(|u| line(&u));
+        (0..4).for_each(|index| search.note(&starts[index], &lines[index]));
+        for index in 0..4 {
+            let next = (index + 1) % 4;
+            let arc =
+                Arc { ends: [starts[index], starts[next]], lines: [lines[index], lines[next]] };
+            search.run(arc, line)?;
+        }
+        if let Some(u) = search.best {
+            self.note(search.least, Place::Side, lift(&u));
+        }
+        Some(())
+    }
+
+    /// The answer in the frame of the flat solid.
+    fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
+        let turned = -(pose12.rotation * self.normal);
+        let (is_exact, normal) = match self.at {
+            Place::Face(index) => (true, self.flat.own_normals[index]),
+            Place::Cap => (true, turned),
+            _ => (false, unit(&turned).map_or(turned, |(normal, _)| normal)),
+        };
+        let low = self.touched();
+        let on_round =
+            self.round.touched(&self.normal, low.iter().map(|v| &self.flat.vertices[*v]));
+        let in_first = |point: Vector<N, 3>| pose12.rotation * point + pose12.translation * shrink;
+        Peak {
+            normal,
+            is_exact,
+            on1: low.iter().map(|&vertex| self.flat.own_vertices[vertex]).collect(),
+            on2: on_round.into_iter().map(in_first).collect(),
+        }
+    }
+
+    /// The vertices of the flat solid that may touch.
+    fn touched(&self) -> SmallVec<[usize; 8]> {
+        if let Place::Edge(edge) = self.at {
+            return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();
+        }
+        let height = |vertex: &Vector<N, 3>| self.normal.dot(vertex);
+        let vertices = &self.flat.vertices;
+        let low = vertices.iter().fold(N::INFINITY, |low, vertex| min(height(vertex), low));
+        let slack = N::EPSILON.sqrt();
+        let is_low = |index: &usize| height(&vertices[*index]) <= low + slack;
+        (0..vertices.len()).filter(is_low).take(8).collect()
+    }
+}
+
+/// The unit vector across the first of two normals of an edge, on the side of the second: by the edge or by
+/// the normals, whichever says it better.
+fn across<N: Real>(edge: &Vector<N, 3>, [from, to]: [&Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
+    let aside = unit(&(to - from * from.dot(to)));
+    let Some((by_edge, length)) = unit(&cross(edge, from)) else { return Some(aside?.0) };
+    match aside {
+        Some((aside, sine)) if sine >= length => Some(aside),
+        // Normals about opposite to each other do not say on which side; the edge runs so that it does.
+        Some((aside, sine)) if sine > N::EPSILON.sqrt() && aside.dot(&by_edge) < N::ZERO => {
+            Some(-by_edge)
+        }
+        _ => Some(by_edge),
+    }
+}
+
+#[cfg(test)]
+mod tests;

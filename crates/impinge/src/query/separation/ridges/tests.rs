@@ -1,0 +1,142 @@
+//! Depths are those that growing a polytope finds, and most are found without.
+
+use super::*;
+use crate::math::Point;
+use crate::query::separation::cylinder_cylinder::tests::compare;
+use crate::query::separation::hulls::tests::Random;
+use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
+
+type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
+
+fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    Box::new(Segment::new(Point::from(-size), Point::from(size * N::lit(0.7))))
+}
+
+fn capsule<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    Box::new(Capsule::<N, 3>::new(size.x, size.y * N::lit(0.2)))
+}
+
+fn triangle<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    let corner = |x: N, y: N, z: N| Point::<N, 3>::new(x, y, z);
+    let one = corner(-size.x, size.z, N::ZERO);
+    Box::new(Triangle::new(one, corner(size.y, -size.x, size.x), corner(size.z, size.y, -size.y)))
+}
+
+fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    Box::new(Cuboid::new(size))
+}
+
+/// The same, hardly thicker than a sheet of paper.
+fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    octahedron(Vector::<N, 3>::new(size.x + N::lit(0.1), N::lit(0.002), size.z + N::lit(0.1)))
+}
+
+fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    octahedron(size.map(|x| x + N::lit(0.1)))
+}
+
+/// An octahedron with its corners pushed about.
+fn octahedron<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    let point = |x: f64, y: f64, z: f64| {
+        Point::<N, 3>::new(size.x * N::lit(x), size.y * N::lit(y), size.z * N::lit(z))
+    };
+    Box::new(ConvexHull::from_points(&[
+        point(1.0, 0.1, 0.0),
+        point(-1.0, 0.0, 0.2),
+        point(0.1, 1.0, 0.1),
+        point(0.0, -1.0, -0.1),
+        point(0.2, 0.0, 1.0),
+        point(0.0, 0.2, -1.0),
+        point(0.6, 0.6, 0.6),
+    ]))
+}
+
+fn cylinder<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    Box::new(Cylinder::new(size.x, size.y))
+}
+
+fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+    Box::new(Cone::new(size.x, size.y))
+}
+
+fn agree<N: Real>(seed: u64, rounds: usize, accuracy: f64) {
+    macro_rules! of {
+        ($($first:ident $second:ident),*) => {
+            $({
+                fn solids<N: Real>([size1, size2]: [Vector<N, 3>; 2]) -> Solids<N> {
+                    [$first(size1), $second(size2)]
+                }
+                compare::<N>((seed, rounds, accuracy), solids, separation);
+            })*
+        };
+    }
+    of!(
+        segment cylinder, triangle cylinder, cuboid cylinder, hull cylinder,
+        segment cone, triangle cone, cuboid cone, hull cone
+    );
+}
+
+#[test]
+fn answers_are_those_of_the_general_algorithm() {
+    agree::<f64>(1, 400, 1e-12);
+    agree::<f32>(2, 400, 3e-6);
+}
+
+/// The depth along a direction from the first solid to the second.
+fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>) -> N {
+    let [first, second] = [pair.first, pair.second].map(|kind| {
+        let map = Geometry(kind).as_support_map();
+        map.expect("a convex solid")
+    });
+    let end = second.support_point(&-pair.pose12.inverse_vector(normal));
+    normal.dot(&first.support_point(normal).coords) - normal.dot(&pair.pose12.point(&end).coords)
+}
+
+/// No direction of many has a depth of less, and all depths are found without growing a polytope.
+fn none_is_better<N: Real>(accuracy: f64) {
+    let random = &mut Random(5);
+    let mut deep = 0;
+    let solids: [(fn(Vector<N, 3>) -> _, fn(Vector<N, 3>) -> _); 7] = [
+        (segment, cylinder),
+        (triangle, cone),
+        (cuboid, cylinder),
+        (cuboid, cone),
+        (hull, cylinder),
+        (capsule, cone),
+        (blade, cylinder),
+    ];
+    for round in 0..560 {
+        let (first, second) = solids[round % solids.len()];
+        let [size1, size2] = [(); 2].map(|()| random.vector::<N>().abs().map(|x| x + N::lit(0.05)));
+        let shapes: Solids<N> = [first(size1), second(size2)];
+        let [first, second] = shapes.each_ref().map(|shape| shape.geometry().0);
+        let mut pair = Pair { first, second, pose12: random.turn() };
+        pair.pose12.translation = random.vector::<N>() * N::HALF;
+        let found = separation(&pair, N::INFINITY).expect("no limit");
+        let rounding = Geometry(first).as_support_map().expect("convex").rounding();
+        if found.distance.as_f64() >= -1e-4 - rounding.as_f64() {
+            continue;
+        }
+        deep += 1;
+        let gap = N::lit(accuracy);
+        let peak = Overlap { pair: &pair }.best(N::ONE, gap);
+        assert!(peak.is_some(), "round {round}: {shapes:?} {:?}", pair.pose12);
+        let error = (depth(&pair, &found.normal) + found.distance).abs();
+        assert!(error < gap * N::TWO, "round {round}: its own depth, {error}");
+        for _ in 0..300 {
+            let Some((normal, _)) = unit(&random.vector::<N>()) else { continue };
+            let other = depth(&pair, &normal);
+            assert!(
+                other > -found.distance - gap * N::TWO,
+                "round {round}: {normal:?} has {other}"
+            );
+        }
+    }
+    assert!(deep > 150, "{deep} overlap");
+}
+
+#[test]
+fn no_direction_is_better() {
+    none_is_better::<f64>(1e-12);
+    none_is_better::<f32>(1e-6);
+}

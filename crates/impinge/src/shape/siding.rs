@@ -1,0 +1,144 @@
+//! Which normals a segment of a chain in the plane has: told by its ends and those of the segments around it.
+
+use super::polyline_parts::across;
+use super::seam::{Seam, slack};
+use super::{FeatureId, Surface};
+use crate::math::{Point, Real, Vector, perp, unit};
+
+/// Which sides the segments of a chain have: what a [`Surface`] in the plane says so that contacts need not
+/// ask it about each segment. Chains of this library have one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Siding {
+    /// The front is on the left of a segment, seen from its first end to its second.
+    pub(super) is_left: bool,
+    pub(super) is_one_sided: bool,
+    /// Of two sides the one that a vector points to is told by the front, else by the vector itself.
+    pub(super) is_told_by_front: bool,
+    pub(super) keeps_internal_edges: bool,
+    pub(super) joining: Joining,
+}
+
+/// Which segments are joined where their ends are at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Joining {
+    /// All.
+    All,
+    /// Each with that of the next number alone, its second end with the first of that.
+    InRow,
+    /// Only the surface can tell.
+    Unknown,
+}
+
+/// Segments of a chain, among them all that touch a box.
+pub(crate) trait KnownSegments<N: Real>: Sync {
+    /// All segments through a point are among them.
+    fn are_all_at(&self, point: &Point<N, 2>) -> bool;
+
+    /// Visits those that end at a point, by their numbers, ascending, and ends.
+    fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2]));
+}
+
+impl Siding {
+    fn front<N: Real>(self, along: &Vector<N, 2>) -> Vector<N, 2> {
+        let left = perp(along);
+        if self.is_left { left } else { -left }
+    }
+
+    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    fn height_over<N: Real>(self, along: Option<&Vector<N, 2>>, vector: &Vector<N, 2>) -> N {
+        let along = along.filter(|_| self.is_one_sided);
+        along.map_or(N::ZERO, |along| self.front(along).dot(vector))
+    }
+
+    /// As [`Surface::snapped`].
+    fn snapped<N: Real>(self, along: &Vector<N, 2>, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        if !(self.is_one_sided || self.is_told_by_front) {
+            return across(along, normal);
+        }
+        let front = self.front(along);
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        Some(if is_front { front } else { -front })
+    }
+}
+
+/// A segment of a chain, with what its ends tell: the answers of its surface, without a look at that.
+pub(crate) struct KnownSegment<'a, N: Real> {
+    surface: &'a dyn Surface<N, 2>,
+    siding: Option<Siding>,
+    /// Those around it.
+    others: &'a dyn KnownSegments<N>,
+    ends: [Point<N, 2>; 2],
+    /// Unit, from the first end to the second; `None` without length.
+    along: Option<Vector<N, 2>>,
+}
+
+impl<'a, N: Real> KnownSegment<'a, N> {
+    /// A segment by its ends, as its surface has them.
+    pub(crate) fn new(
+        (surface, siding): (&'a dyn Surface<N, 2>, Option<Siding>),
+        others: &'a dyn KnownSegments<N>,
+        ends: [Point<N, 2>; 2],
+    ) -> Self {
+        let along = unit(&(ends[1] - ends[0])).map(|(along, _)| along);
+        Self { surface, siding, others, ends, along }
+    }
+
+    /// The rule of [`Seam`] at one of the ends; `None` if it is not known what is joined there.
+    fn joint_admits(
+        &self,
+        siding: Siding,
+        (part, end): (u32, u32),
+        normal: &Vector<N, 2>,
+    ) -> Option<bool> {
+        let at = self.ends.get(end as usize)?;
+        if siding.joining == Joining::Unknown || !self.others.are_all_at(at) {
+            return None;
+        }
+        let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
+        self.others.each_ending_at(at, &mut |other, [a, b]| {
+            let starts_here = a == *at;
+            let is_joined = siding.joining == Joining::All
+                || other == if starts_here { part + end } else { (part + end).wrapping_sub(1) };
+            if let (true, Some((along, _))) = (is_joined, unit(&(b - a))) {
+                let away = if starts_here { along } else { -along };
+                seam.add_segment(&away, siding.height_over(Some(&along), normal));
+            }
+        });
+        Some(seam.admits(siding.is_one_sided))
+    }
+}
+
+impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
+        let Some(siding) = self.siding else { return self.surface.admits(part, feature, normal) };
+        let height = siding.height_over(self.along.as_ref(), normal);
+        if siding.keeps_internal_edges {
+            return height >= -slack::<N>();
+        }
+        let own = self.along.map(|along| along.dot(normal).abs() <= slack());
+        match feature {
+            FeatureId::Vertex(end) if own != Some(true) => {
+                let known = self.joint_admits(siding, (part, end), normal);
+                known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
+            }
+            _ => own.is_none_or(|own| own) && height >= N::ZERO,
+        }
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        match self.siding {
+            Some(siding) => siding.snapped(&self.along?, normal),
+            None => self.surface.snapped(part, normal),
+        }
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        match self.siding {
+            Some(siding) => {
+                siding.height_over(self.along.as_ref(), &(center - self.ends[0])) >= N::ZERO
+            }
+            None => self.surface.faces(part, center),
+        }
+    }
+}
