@@ -9,6 +9,8 @@
 
 mod eight;
 pub(crate) mod lanes;
+#[cfg(test)]
+pub(crate) mod noise;
 mod pose;
 mod real;
 mod space;

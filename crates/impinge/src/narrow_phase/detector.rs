@@ -37,14 +37,7 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
         margin: N,
     ) -> bool {
         let (pose1, pose2) = (N::pose(ma), N::pose(mb));
-        let posed = Posed {
-            pose1: &pose1,
-            shape1: a,
-            pose2: &pose2,
-            shape2: b,
-            bounds: None,
-            is_self: false,
-        };
+        let posed = Posed::new([&pose1, &pose2], [a, b]);
         self.proximity = (N::tables().proximity)(&posed, margin);
         true
     }

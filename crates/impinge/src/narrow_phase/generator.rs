@@ -82,14 +82,7 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
             return true;
         }
         let (pose1, pose2) = (N::pose(ma), N::pose(mb));
-        let posed = Posed {
-            pose1: &pose1,
-            shape1: a,
-            pose2: &pose2,
-            shape2: b,
-            bounds: None,
-            is_self: false,
-        };
+        let posed = Posed::new([&pose1, &pose2], [a, b]);
         let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);
         if posed.has_composite() {

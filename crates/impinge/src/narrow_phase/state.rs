@@ -24,6 +24,14 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
+    /// Two solids of which nothing more is known.
+    pub(super) const fn new(
+        [pose1, pose2]: [&'a Pose<N, D>; 2],
+        [shape1, shape2]: [&'a dyn Shape<N, D>; 2],
+    ) -> Self {
+        Self { pose1, shape1, pose2, shape2, bounds: None, is_self: false }
+    }
+
     /// The pair in the order in which every query computes it.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())

@@ -149,24 +149,9 @@ fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::noise::Noise;
     use crate::shape::seam::{Seam, is_across};
     use crate::shape::tri_mesh::{inward_of, normal_of};
-
-    /// Numbers from -1 to 1.
-    struct Noise(u64);
-
-    impl Noise {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-
-        fn vector(&mut self) -> Vector<f64, 3> {
-            Vector::<f64, 3>::new(self.next(), self.next(), self.next())
-        }
-    }
 
     /// The rule of seams for an edge between two faces.
     fn rule<N: Real>(
@@ -186,11 +171,11 @@ mod tests {
     fn bends_follow_the_rule<N: Real>() {
         let (mut noise, mut known, mut admitted) = (Noise(1), 0, 0);
         for round in 0..20_000 {
-            let (a, b) = (noise.vector(), noise.vector());
-            let tip1 = noise.vector();
+            let (a, b) = (noise.vector::<f64>(1.0), noise.vector::<f64>(1.0));
+            let tip1 = noise.vector::<f64>(1.0);
             // Some lie almost flat.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
-            let tip2 = a + b - tip1 + noise.vector() * flat;
+            let tip2 = a + b - tip1 + noise.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
             let (first, second) =
                 ([point(a), point(b), point(tip1)], [point(b), point(a), point(tip2)]);
@@ -198,7 +183,7 @@ mod tests {
             let Some(bend) = Bend::new([&first, &second], fronts) else { continue };
             // About between the two, on either side, and along the edge.
             let share = N::lit(0.7 * noise.next() + 0.5);
-            let aside = noise.vector().map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
+            let aside = noise.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
             let sign = if round % 4 == 0 { -N::ONE } else { N::ONE };
             let normal = (fronts[0] + (fronts[1] - fronts[0]) * share + aside) * sign;
             let normal = normal / normal.norm();

@@ -4,49 +4,34 @@ use super::along::{Along, build_between, build_in_general};
 use super::frame::rounding;
 use super::triangle_face::{OnFace, on_face3};
 use crate::convex::Separation;
+use crate::math::noise::Noise;
 use crate::math::{Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::query::separation::separation_in_space;
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{ConvexHull, Cuboid, Kind, Shape, Triangle};
 
-/// Numbers from -1 to 1.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+/// A triangle about one large; every fourth one lies along the axes.
+fn any_triangle<N: Real>(noise: &mut Noise, round: usize) -> Triangle<N, 3> {
+    let mut corner = || Point::from(noise.vector::<N>(1.0));
+    let [mut a, mut b, mut c] = [corner(), corner(), corner()];
+    if round.is_multiple_of(4) {
+        (a.y, b.y, c.y) = (N::ZERO, N::ZERO, N::ZERO);
     }
+    Triangle::new(a, b, c)
+}
 
-    fn vector<N: Real>(&mut self, size: f64) -> Vector<N, 3> {
-        Vector::<N, 3>::from_fn(|_, _| N::lit(size * self.next()))
+/// A solid that lies on the triangle by about `depth`, leaning by up to a fifth of a radian.
+fn leaning<N: Real>(noise: &mut Noise, normal: &Vector<N, 3>, middle: &Point<N, 3>) -> Pose<N, 3> {
+    let lean: Vector<N, 3> = noise.vector(0.2);
+    let up = unit(&(normal + lean)).map_or(*normal, |(up, _)| up);
+    let (u, v): (Vector<N, 3>, Vector<N, 3>) = orthonormal_basis(&up);
+    let mut pose = Pose::<N, 3>::identity();
+    for (axis, column) in [(0, u), (1, up), (2, -v)] {
+        pose.rotation.set_column(axis, &column);
     }
-
-    /// A triangle about one large; every fourth one lies along the axes.
-    fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
-        let mut corner = || Point::from(self.vector::<N>(1.0));
-        let [mut a, mut b, mut c] = [corner(), corner(), corner()];
-        if round.is_multiple_of(4) {
-            (a.y, b.y, c.y) = (N::ZERO, N::ZERO, N::ZERO);
-        }
-        Triangle::new(a, b, c)
-    }
-
-    /// A solid that lies on the triangle by about `depth`, leaning by up to a fifth of a radian.
-    fn pose<N: Real>(&mut self, normal: &Vector<N, 3>, middle: &Point<N, 3>) -> Pose<N, 3> {
-        let lean: Vector<N, 3> = self.vector(0.2);
-        let up = unit(&(normal + lean)).map_or(*normal, |(up, _)| up);
-        let (u, v): (Vector<N, 3>, Vector<N, 3>) = orthonormal_basis(&up);
-        let mut pose = Pose::<N, 3>::identity();
-        for (axis, column) in [(0, u), (1, up), (2, -v)] {
-            pose.rotation.set_column(axis, &column);
-        }
-        let aside: Vector<N, 3> = self.vector(0.4);
-        pose.translation = middle.coords + normal * N::lit(0.45 + 0.1 * self.next()) + aside;
-        pose
-    }
+    let aside: Vector<N, 3> = noise.vector(0.4);
+    pose.translation = middle.coords + normal * N::lit(0.45 + 0.1 * noise.next()) + aside;
+    pose
 }
 
 fn normal_of<N: Real>(triangle: &Triangle<N, 3>) -> Vector<N, 3> {
@@ -98,11 +83,11 @@ fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>, what: &str)
 fn at_random<N: Real>(rounds: usize) {
     let (mut noise, mut made, mut of_witness) = (Noise(11), 0, 0);
     for round in 0..rounds {
-        let triangle = noise.triangle::<N>(round);
+        let triangle = any_triangle::<N>(&mut noise, round);
         let [a, b, c] = triangle.corners().map(|corner| corner.coords);
         let normal = normal_of(&triangle) * if round % 2 == 0 { N::ONE } else { -N::ONE };
         let middle = Point::from((a + b + c) / N::lit(3.0));
-        let mut pose12 = noise.pose(&normal, &middle);
+        let mut pose12 = leaning(&mut noise, &normal, &middle);
         if round % 8 == 0 {
             pose12.rotation.fill_with_identity();
         }

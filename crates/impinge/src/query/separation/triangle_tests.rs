@@ -5,26 +5,13 @@
 use super::{Separations, general, separation, separations3, triangle_cuboid, triangle_polytope};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
+use crate::math::noise::Noise;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
 
-/// Numbers from -1 to 1.
-struct Noise(u64);
-
 impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector<N: Real>(&mut self, size: f64) -> Vector<N, 3> {
-        Vector::<f64, 3>::from_fn(|_, _| size * self.next()).map(|x| N::lit(N::lit(x).as_f64()))
-    }
-
     fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
         let turn = UnitQuaternion::from_scaled_axis(self.vector::<f64>(3.0));
         let matrix = turn.to_rotation_matrix().into_inner().map(N::lit);
