@@ -144,10 +144,38 @@ where
 {
     let pair = Pair::new(a, b, pose12)?;
     let pair = if is_flat { pair.between_flat_cores() } else { pair };
-    let roundings = (a.rounding(), b.rounding());
+    distance_of_pair(&pair, (a.rounding(), b.rounding()), limit)
+}
+
+/// The distance in [`separation_by`], or zero if the solids certainly overlap, as [`distance`].
+pub(crate) fn distance_by<N, A, B, const D: usize>(
+    (a, b): (&A, &B),
+    pose12: &Pose<N, D>,
+    limit: N,
+    peaks: &dyn Peaks<N, D>,
+) -> Option<N>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
+    distance_of_pair(&pair, (a.rounding(), b.rounding()), limit)
+}
+
+fn distance_of_pair<N, A, B, const D: usize>(
+    pair: &Pair<'_, N, A, B, D>,
+    roundings: (N, N),
+    limit: N,
+) -> Option<N>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
     let rounding = (roundings.0 + roundings.1) / pair.scale();
-    let limit = limit_of_cores(&pair, roundings, limit);
-    Some(match gjk::answer(&pair, &pair.start(), limit, Some(rounding))? {
+    let limit = limit_of_cores(pair, roundings, limit);
+    Some(match gjk::answer(pair, &pair.start(), limit, Some(rounding))? {
         Answer::Overlap => N::ZERO,
         Answer::Signed(found) => pair.restored(&found).rounded(roundings.0, roundings.1).distance,
     })

@@ -1,7 +1,7 @@
 //! The distance of two solids, of which an overlap need not be measured.
 
 use super::flat_core::FlatCore;
-use super::general;
+use super::{general, ridges};
 use crate::convex::{self, Simplicial};
 use crate::math::{Real, Space};
 use crate::query::Pair;
@@ -20,6 +20,8 @@ enum Way {
     Features,
     /// The same by separating axes.
     Axes,
+    /// By the general algorithm, which is told where the depth can lie.
+    Ridges,
     /// By the general algorithm.
     Search,
 }
@@ -28,7 +30,11 @@ enum Way {
 /// positive, so that clear overlaps need not be measured. Else it is that of the separation, to the bit; so
 /// pairs that are not in the order of kinds are left to that, which turns them round.
 pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-    distance(pair, limit, way_in_space(pair))
+    let way = way_in_space(pair);
+    if way == Way::Ridges && is_plain(pair, limit) && are_bare(pair) {
+        return ridges::distance(pair, limit);
+    }
+    distance(pair, limit, way)
 }
 
 /// [`distance_in_space`], in the plane.
@@ -41,11 +47,8 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     limit: N,
     way: Way,
 ) -> Option<N> {
-    let are_in_order = Geometry(pair.first).kind() <= Geometry(pair.second).kind();
-    if limit >= N::ZERO && are_in_order {
-        let is_rounded = |kind| matches!(kind, Kind::Rounded(_));
-        let are_bare = !is_rounded(pair.first) && !is_rounded(pair.second);
-        if way == Way::Search && are_bare {
+    if is_plain(pair, limit) {
+        if way == Way::Search && are_bare(pair) {
             return general::distance(pair, limit);
         }
         if way != Way::Formula && certainly_overlap(pair, way) {
@@ -53,6 +56,17 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
         }
     }
     super::separation(pair, limit).map(|found| found.distance)
+}
+
+/// Overlaps need not be measured, and the solids are in the order of kinds.
+fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
+    limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
+}
+
+/// None of the solids is a rounded one.
+fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
+    let is_rounded = |kind| matches!(kind, Kind::Rounded(_));
+    !is_rounded(pair.first) && !is_rounded(pair.second)
 }
 
 /// Whether two solids certainly overlap, clearly more than rounding decides. `false` says nothing. Of rounded
@@ -78,7 +92,9 @@ fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
 
 /// Of the kinds in their order: see the table of space.
 fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
-    use Kind::{Ball, Capsule, Composite, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle};
+    use Kind::{
+        Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
+    };
     match (inner(pair.first), inner(pair.second)) {
         (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
             Way::Formula
@@ -88,6 +104,10 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
         (Triangle(_), Triangle(_)) => Way::Search,
         (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,
         (Cuboid(_) | Cylinder(..), Cylinder(..)) => Way::Features,
+        (
+            Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
+            Cylinder(..) | Cone(..),
+        ) => Way::Ridges,
         _ => Way::Search,
     }
 }

@@ -26,20 +26,32 @@ use super::{general, wrong_kinds};
 use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Pose, Real, Vector, cross, max, min, unit};
 use crate::query::Pair;
-use crate::shape::Geometry;
+use crate::shape::{Geometry, SupportMap};
 
 /// The separation of a solid with flat faces, or a segment or capsule, from a cylinder or cone.
 ///
 /// Apart, it is that of the general algorithm to the bit.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    let (Some(flat), Some(round)) =
-        (FlatCore::of(pair.first), Geometry(pair.second).as_support_map())
-    else {
-        wrong_kinds(pair)
-    };
+    let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
     let found = convex::separation_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
     found.filter(|found| found.distance <= limit)
+}
+
+/// The distance in [`separation`], or zero if the solids certainly overlap.
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    let (flat, round) = cores(pair);
+    let loosened = general::loosened(&flat, round, &pair.pose12, limit);
+    let found = convex::distance_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    found.filter(|distance| *distance <= limit)
+}
+
+/// The flat solid and the round one.
+fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn SupportMap<N, 3>) {
+    match (FlatCore::of(pair.first), Geometry(pair.second).as_support_map()) {
+        (Some(flat), Some(round)) => (flat, round),
+        _ => wrong_kinds(pair),
+    }
 }
 
 /// Two solids whose cores overlap.
