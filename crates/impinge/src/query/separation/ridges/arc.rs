@@ -34,8 +34,9 @@ impl<N: Real> Line<N> {
     }
 }
 
-/// Less than half a circle, counter-clockwise, and what is highest at its ends. That is one point where it is a corner of both
-/// solids; else each of the two lines is the lower one at the other's end, so that they cross.
+/// Half a circle or less, counter-clockwise, and what is highest at its ends. That is one point where it is
+/// a corner of both solids; else each of the two lines is the lower one at the other's end, so that they
+/// cross. An arc may have no length: where a bound is taken at an end, one of the halves has none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -43,8 +44,12 @@ pub(super) struct Arc<N: Real> {
 }
 
 impl<N: Real> Arc<N> {
+    /// Whether a direction is on the arc, ends included. The two products alone are zero for the direction
+    /// opposite to both ends of an arc without length.
     fn holds(&self, u: &Vector<N, 2>) -> bool {
-        cross2(&self.ends[0], u) >= N::ZERO && cross2(u, &self.ends[1]) >= N::ZERO
+        let [from, to] = &self.ends;
+        let is_between = cross2(from, u) >= N::ZERO && cross2(u, to) >= N::ZERO;
+        is_between && u.dot(&(from + to)) >= N::ZERO
     }
 
     /// Where both lines are equally high; `None` if that is nowhere on the arc, up to rounding.

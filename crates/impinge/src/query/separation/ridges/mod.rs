@@ -132,8 +132,9 @@ impl<N: Real> Meeting<'_, N> {
         let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
-        // Between normals so near to each other nothing is lower by as much as the gap.
-        if cosine > N::ZERO && sine * sine <= gap * N::TWO {
+        // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
+        // square: next to the normal of a cap the point of its rim runs as fast as the normal turns.
+        if cosine > N::ZERO && sine <= gap {
             return Some(());
         }
         let line = |point: &Vector<N, 3>| {
