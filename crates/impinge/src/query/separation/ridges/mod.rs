@@ -103,9 +103,10 @@ impl<N: Real> Meeting<'_, N> {
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
-            let point = self.round.support(normal) - self.flat.vertices[*vertex as usize];
-            self.note(normal.dot(&point), Place::Face(index), *normal);
-            ends.push(self.round.support(normal));
+            let end = self.round.support(normal);
+            let depth = normal.dot(&(end - self.flat.vertices[*vertex as usize]));
+            self.note(depth, Place::Face(index), *normal);
+            ends.push(end);
         }
         for &up in self.round.caps() {
             let normal = Vector::<N, 3>::y() * N::lit(up);
@@ -130,6 +131,11 @@ impl<N: Real> Meeting<'_, N> {
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
         let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
         let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
+        let ends = [first, second].map(|normal| ends[normal as usize]);
+        let heights = ends.map(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
+        if arc::are_above(&heights, self.least - gap) {
+            return Some(());
+        }
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
         // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
@@ -143,7 +149,7 @@ impl<N: Real> Meeting<'_, N> {
         };
         let arc = Arc {
             ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
-            lines: [line(&ends[first as usize]), line(&ends[second as usize])],
+            lines: ends.map(|end| line(&end)),
         };
         let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
         let mut search = Search::new(self.least, gap);

@@ -162,7 +162,8 @@ fn a_wire_in_a_sheet<N: Real>() {
         for rotation in [turn, turn.transpose(), Matrix::<N, 3>::identity()] {
             let pair = pair_of(&shapes, Pose { rotation, translation });
             let found = separation(&pair, N::INFINITY).expect("no limit");
-            let least = [0, 1, 2].map(|axis| depth(&pair, &Matrix::<N, 3>::identity().column(axis).into_owned()));
+            let least = [0, 1, 2]
+                .map(|axis| depth(&pair, &Matrix::<N, 3>::identity().column(axis).into_owned()));
             let least = least.into_iter().fold(N::INFINITY, min);
             assert!(-found.distance <= least, "{found:?}, not {least}, {across} {rotation:?}");
             assert!(depth(&pair, &found.normal) + found.distance < N::EPSILON, "{found:?}");
