@@ -202,7 +202,9 @@ fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64
     let is_thin = matches!(solid2, Solid::Cylinder { half_height, radius }
         | Solid::Cone { half_height, radius } if half_height.min(radius) < 1e-6 * size);
     let allowed = if is_ring { 1e-7 } else { 0.0 } + accuracy * if is_thin { 5.0 } else { 1.0 };
-    let what = format!("{distance} and {own}, not {truth:?}: {solid1:?} in {solid2:?} at {at:?}");
+    let what = format!(
+        "{distance} and {own}, not {truth:?}: {solid1:?} at {m1:?} in {solid2:?} at {m2:?}"
+    );
     Some((error, allowed, what))
 }
 

@@ -114,8 +114,17 @@ impl<N: Real> Meeting<'_, N> {
             let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
             self.note(depth, Place::Cap, normal);
         }
-        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, &ends, gap))?;
-        self.search_side(gap)
+        if self.search_edges(&ends, gap).is_some() {
+            return self.search_side(gap);
+        }
+        // Normals around the axis are all about as good, and parts of each arc that crosses them cannot be told
+        // from the best; but the best itself is found at once by the side.
+        self.search_side(gap)?;
+        self.search_edges(&ends, gap)
+    }
+
+    fn search_edges(&mut self, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
+        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, ends, gap))
     }
 
     fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {

@@ -206,3 +206,23 @@ fn a_roof_may_be_hardly_bent() {
     a_column_on_a_roof::<f64>();
     a_column_on_a_roof::<f32>();
 }
+/// A small sliver about the axis of a cone: all normals of the side are as good up to 10⁻⁹, so that arcs
+/// across them are cut without an end before the best of them is known.
+#[test]
+fn a_sliver_on_the_axis_of_a_cone() {
+    let corner = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);
+    let first = corner(6.1072e-6, 9.4966e-9, 9.0783e-8);
+    let second = corner(1.0678e-4, -0.058059, 2.0734e-4);
+    let triangle = Triangle::new(first, second, corner(3.7959e-5, -0.056211, 4.3429e-3));
+    let shapes: Solids<f64> = [Box::new(triangle), Box::new(Cone::new(0.85171, 0.56287))];
+    let pair = pair_of(&shapes, Pose::identity());
+    let peak = Overlap { pair: &pair }.best(1.0, 1e-12).expect("it is found");
+    let found = separation(&pair, f64::INFINITY).expect("no limit");
+    assert!((found.distance + depth(&pair, &peak.normal)).abs() < 2e-12, "{found:?}");
+    let slope = Round::new(&pair.second, 1.0).expect("it has a size").slope();
+    for step in 0..1000 {
+        let (sine, cosine) = (f64::from(step) * 0.00628).sin_cos();
+        let normal = -Vector::<f64, 3>::new(cosine * slope.aside, slope.along, sine * slope.aside);
+        assert!(depth(&pair, &normal) >= -found.distance - 2e-12, "{normal:?}");
+    }
+}
