@@ -5,7 +5,7 @@
 //! places are those of the origin, near it, on the axis, on a grid, or any.
 
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};
-use impinge::math::{Isometry3, Point, Space, Vector};
+use impinge::math::{Isometry3, Point, Real, Space, Vector};
 use impinge::query::contact;
 use impinge::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, ShapeHandle, Triangle};
 use impinge_reference::geometry::vector::{norm, scale};
@@ -120,7 +120,7 @@ impl Maker {
             2 => std::array::from_fn(|_| self.random.grid(1, 0)),
             _ => {
                 let corner = u32::try_from(index / 2).expect("few corners");
-                let (sine, cosine) = (f64::from(corner) * 0.7).sin_cos();
+                let (sine, cosine) = f64::sine_cosine(f64::from(corner) * 0.7);
                 [cosine, if index % 2 == 0 { 1.0 } else { -1.0 }, sine]
             }
         }

@@ -9,6 +9,12 @@
 //! are searched by [`arc`], which proves what it finds. Nothing is iterated over two dimensions, as growing a
 //! polytope towards a curved surface does.
 //!
+//! Extents may be zero: an edge without length has an arc of normals of its vertex, which are worth a look
+//! like all others. What the arcs cannot tell is left to the general algorithm: a round solid, segment or
+//! triangle of hardly any size, of which no normals are known; a polytope with normals so poor, being flat up
+//! to rounding, that its vertices deny the depth found; and rings of normals that are all about as good, where
+//! an arc along the ring is cut too often.
+//!
 //! That faces and edges are enough for two polytopes is the separating axis test; the rest follows the
 //! same thought for the kinds of part that cylinders and cones have.
 
@@ -71,6 +77,9 @@ impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
             normal: Vector::<N, 3>::y(),
         };
         meeting.search(gap)?;
+        if !meeting.is_confirmed(gap) {
+            return None;
+        }
         Some(meeting.peak(&self.pair.pose12, shrink))
     }
 }
@@ -131,6 +140,14 @@ impl<N: Real> Meeting<'_, N> {
         if depth < self.least {
             (self.least, self.at, self.normal) = (depth, at, normal);
         }
+    }
+
+    /// All vertices confirm the depth found, not only those of the face or edge that it was found by: theirs are
+    /// the lowest for as long as the normals of the faces are right.
+    fn is_confirmed(&self, gap: N) -> bool {
+        let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
+        let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
+        depth - self.least <= N::lit(8.0) * gap
     }
 
     /// Along the normals of an edge, in whose plane the end of the edge is a point; `ends` are the support

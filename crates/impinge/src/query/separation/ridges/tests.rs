@@ -221,7 +221,7 @@ fn a_sliver_on_the_axis_of_a_cone() {
     assert!((found.distance + depth(&pair, &peak.normal)).abs() < 2e-12, "{found:?}");
     let slope = Round::new(&pair.second, 1.0).expect("it has a size").slope();
     for step in 0..1000 {
-        let (sine, cosine) = (f64::from(step) * 0.00628).sin_cos();
+        let (sine, cosine) = f64::sine_cosine(f64::from(step) * 0.00628);
         let normal = -Vector::<f64, 3>::new(cosine * slope.aside, slope.along, sine * slope.aside);
         assert!(depth(&pair, &normal) >= -found.distance - 2e-12, "{normal:?}");
     }
