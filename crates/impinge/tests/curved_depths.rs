@@ -107,7 +107,7 @@ impl Maker {
             let Ok(hull) = ConvexHull::try_from_points(&corners.collect::<Vec<_>>()) else {
                 continue;
             };
-            let vertices = hull.vertices().iter().map(|p| p.coords.map(|x| x.as_f64()).into());
+            let vertices = hull.vertices().iter().map(|p| p.coords.map(Real::as_f64).into());
             let solid = Solid::polytope(vertices.collect());
             return (ShapeHandle::new(hull), solid);
         }
@@ -121,7 +121,7 @@ impl Maker {
             _ => {
                 let corner = u32::try_from(index / 2).expect("few corners");
                 let (sine, cosine) = f64::sine_cosine(f64::from(corner) * 0.7);
-                [cosine, if index % 2 == 0 { 1.0 } else { -1.0 }, sine]
+                [cosine, if index.is_multiple_of(2) { 1.0 } else { -1.0 }, sine]
             }
         }
     }
@@ -193,7 +193,7 @@ fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64
     }
     let found = contact(&m1, &*shape1, &m2, &*shape2, N::INFINITY).expect("they overlap");
     let distance = -found.depth.as_f64();
-    let normal = found.normal.into_inner().map(|x| x.as_f64()).into();
+    let normal = found.normal.into_inner().map(Real::as_f64).into();
     let own = separation_along(&solid1, &pose1, &solid2, &pose2, &normal);
     let error = truth.error_of(distance).max((own - distance).abs()) / size;
     // Where a whole ring of normals is about as good, a search that is not finished ends the work; a needle or a
