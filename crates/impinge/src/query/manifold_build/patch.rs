@@ -67,18 +67,60 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     ids: &mut PairIds,
 ) {
+    match merging.pieces {
+        [] => return patches.clear(),
+        [piece] if piece.points.len() == 1 => {
+            let count = merge_one(merging, piece, (&mut *patches, ids));
+            return patches.truncate(count);
+        }
+        _ => (),
+    }
     let kept = merging.kept(patches);
     patches.clear();
-    if let [piece] = merging.pieces
-        && piece.points.len() == 1
-    {
-        return merging.push_alone(piece, (&kept, patches), ids);
-    }
     let (layout, mut members) = (Layout::of(merging), Members::new());
     let choosing = Choosing { merging, kept: &kept };
     for group in &layout.groups {
         patches.push(choosing.patch(group, &layout.order, &mut members, ids));
     }
+}
+
+/// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
+pub(super) fn merge_one<N: Real, const D: usize>(
+    merging: &Merging<'_, N, D>,
+    piece: &Piece<N, D>,
+    (patches, ids): (&mut Vec<Patch<N, D>>, &mut PairIds),
+) -> usize {
+    let mut raw = merging.points[piece.points.start];
+    // Written so that what is no number is not near.
+    let is_near = raw.distance <= merging.request.prediction;
+    if !is_near {
+        return 0;
+    }
+    let mut old = patches.iter().flat_map(|patch| &patch.points);
+    let kept = old.find(|old| {
+        let names = (old.raw.feature1, old.raw.feature2);
+        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
+    });
+    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
+    blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
+    1
+}
+
+/// A patch without points, in the place of an old one if there is one.
+pub(super) fn blank<N: Real, const D: usize>(
+    patches: &mut Vec<Patch<N, D>>,
+    at: usize,
+    normal: Vector<N, D>,
+) -> &mut SmallVec<[PatchPoint<N, D>; 4]> {
+    if at == patches.len() {
+        // Most pairs have one patch at all times.
+        patches.reserve_exact(1);
+        patches.push(Patch { normal, points: SmallVec::new() });
+    }
+    let patch = &mut patches[at];
+    patch.normal = normal;
+    patch.points.clear();
+    &mut patch.points
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
@@ -112,23 +154,6 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
             }
         }
         kept
-    }
-
-    /// The only point of all is a patch, if it is near enough.
-    fn push_alone(
-        &self,
-        piece: &Piece<N, D>,
-        (kept, patches): (&Kept, &mut Vec<Patch<N, D>>),
-        ids: &mut PairIds,
-    ) {
-        let only = piece.points.start;
-        let mut raw = self.points[only];
-        if raw.distance <= self.request.prediction {
-            raw.id = kept[only].unwrap_or_else(|| ids.next());
-            let mut points = SmallVec::new();
-            points.push(PatchPoint { raw, parts: piece.parts });
-            patches.push(Patch { normal: piece.normal, points });
-        }
     }
 
     /// The index of the deepest point of a piece, by the order of [`by_depth`].

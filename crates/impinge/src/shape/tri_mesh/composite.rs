@@ -63,6 +63,10 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
         black_box(beyond.map(normal));
     }
 
+    fn has_plain_seams(&self) -> bool {
+        !(self.keeps_internal_edges || self.topology.is_moved)
+    }
+
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
         // Triangles without area have the normal zero, and touch from everywhere.
         let is_behind = || {

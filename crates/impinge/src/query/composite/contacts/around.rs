@@ -119,6 +119,11 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         self.parts.is_empty() || self.are_segments && !self.tiles.is_empty()
     }
 
+    /// All parts are triangles that are kept by their corners.
+    pub(super) fn has_triangles_alone(&self) -> bool {
+        self.parts.is_empty() || !(self.are_segments || self.tiles.is_empty())
+    }
+
     /// Half the extents of the core of the solid that this is about.
     pub(super) fn half(&mut self, map: &dyn SupportMap<N, D>) -> Vector<N, D> {
         *self.half.get_or_insert_with(|| {

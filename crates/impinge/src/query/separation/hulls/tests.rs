@@ -32,7 +32,7 @@ impl Random {
     }
 
     /// Any turn, a quarter turn or a slight one.
-    pub(in super::super) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
+    pub(in crate::query) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
         let q = UnitQuaternion::from_quaternion(Quaternion::new(
