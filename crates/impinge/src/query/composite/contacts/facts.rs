@@ -242,7 +242,10 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
 
 /// The name of a contact is the feature that the ball is over: close to a side a ball may yet have
 /// the normal of the face.
-pub(super) fn is_certain<N: Real, const D: usize>(over: FeatureId, verdict: &Verdict<N, D>) -> bool {
+pub(super) fn is_certain<N: Real, const D: usize>(
+    over: FeatureId,
+    verdict: &Verdict<N, D>,
+) -> bool {
     matches!(over, FeatureId::Face(_)) == matches!(verdict, Verdict::Face(_))
 }
 

@@ -1,14 +1,13 @@
 //! The contacts of a ball and a surface of triangles in space: the general way, which defines them, with what
 //! all triangles have in common worked out once, and nothing made of those that others hide.
 
+use super::super::between::Between;
+use super::super::bounds::enclosing;
 use super::around::Around;
-use super::candidates::depth_in;
 use super::facts::{self, Finding, Notes, Standing, is_beside, is_certain, of_ball};
 use super::judge::{Case, Verdict, faces, judge};
 use super::over::over3;
 use super::scene::Scene;
-use super::super::between::Between;
-use super::super::bounds::enclosing;
 use super::{
     CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
@@ -23,6 +22,8 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, T
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
+/// Most of these cost no more than a look at whether their box meets the ball's.
+const MOST_ROOMY: usize = 5 * LANES;
 
 /// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general
 /// way, as of all other solids.
@@ -37,8 +38,7 @@ pub(crate) fn update_on_surface<N: Real>(
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
     if !is_settled(&findings) {
         let around = Some(&contacts.around);
-        let query =
-            Query { between, around, reference: &reference, request: &rolling.request };
+        let query = Query { between, around, reference: &reference, request: &rolling.request };
         query.settle(&Scene::new(between, around), &mut findings, &mut notes);
     }
     let findings = (findings.as_slice(), rounding);
@@ -86,7 +86,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     fn box_within(&self, around: &mut Around<N, 3>) -> Option<Aabb<N, 3>> {
         let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
-        (around.reaches(self.parts, &aabb) && around.has_triangles_alone()).then_some(aabb)
+        let is_kept = around.reaches_with(self.parts, &aabb, MOST_ROOMY);
+        (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
     /// Finds what is to be said of the triangles that are not hidden; answers what counts as rounding among
@@ -97,22 +98,31 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         findings: &mut Findings<N, 3>,
         notes: &mut Notes<N, 3>,
     ) -> Option<N> {
-        let aabb = self.box_within(&mut contacts.around)?;
+        let within = self.box_within(&mut contacts.around)?;
         let question = BallQuestion {
             tiles: contacts.around.tiles(),
             count: contacts.around.parts().len(),
             center: self.center.coords,
             radius: self.ball.radius(),
             limit: self.request.prediction,
+            within,
         };
         let seen = sighted(&question, self.surface.has_plain_seams())?;
-        let clearance = min(depth_in(&aabb, &self.center), seen.from_middle);
+        // What is outside the box is beyond reach.
+        let reach = self.ball.radius() + self.request.prediction;
+        let clearance = min(reach, seen.from_middle);
         let way = Way { old: contacts.reference, clearance };
         self.from = advanced(self.between, &way, self.center);
         let around = &contacts.around;
-        for index in lanes(&seen, |[near, hidden]| near & !hidden) {
-            self.add(&self.seen(around, index)?, around, (&mut *findings, &mut *notes));
-        }
+        each_lane(
+            &seen,
+            |[near, hidden]| near & !hidden,
+            |index| {
+                let one = self.seen(around, index)?;
+                self.add(&one, around, (&mut *findings, &mut *notes));
+                Some(())
+            },
+        )?;
         self.rounding_of_hidden(&seen, around, findings)
     }
 
@@ -132,12 +142,17 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         }
         let mut most = N::ZERO;
         if findings.len() > 1 {
-            for index in lanes(seen, |[_, hidden]| hidden) {
-                let hidden = self.seen(around, index)?;
-                if faces(Some(self.surface), hidden.part, &self.from) {
-                    most = max(most, hidden.tolerance);
-                }
-            }
+            each_lane(
+                seen,
+                |[_, hidden]| hidden,
+                |index| {
+                    let hidden = self.seen(around, index)?;
+                    if faces(Some(self.surface), hidden.part, &self.from) {
+                        most = max(most, hidden.tolerance);
+                    }
+                    Some(())
+                },
+            )?;
         }
         Some(most)
     }
@@ -224,14 +239,18 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// The numbers of some of the triangles, in order, by the bits of each eight.
-fn lanes<N>(
+/// Visits some of the triangles by their numbers, in order, given the bits of each eight.
+fn each_lane<N>(
     seen: &Sighted<N>,
     bits: impl Fn([u8; 2]) -> u8,
-) -> impl Iterator<Item = usize> {
-    let all = seen.near.iter().enumerate();
-    all.flat_map(move |(block, near)| {
-        let bits = bits(*near);
-        (0..LANES).filter(move |lane| bits >> lane & 1 == 1).map(move |lane| block * LANES + lane)
-    })
+    mut visit: impl FnMut(usize) -> Option<()>,
+) -> Option<()> {
+    for &(block, near) in &seen.near {
+        let mut left = bits(near);
+        while left != 0 {
+            visit(block * LANES + left.trailing_zeros() as usize)?;
+            left &= left - 1;
+        }
+    }
+    Some(())
 }

@@ -84,7 +84,8 @@ fn follow<N: Space<3>>(random: &mut Random, round: usize) -> (usize, usize) {
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = Pose { translation: Vector::<N, 3>::repeat(far), ..random.turn::<N>() };
     let mut place = random.vector::<N>() * N::lit(1.8);
-    place.y = ball.radius() * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
+    place.y = ball.radius() * N::lit([1.0, 0.9, -1.0][random.pick(3)])
+        + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
         // Over a corner or an edge of the grid.
         place.x = N::HALF;
@@ -129,7 +130,7 @@ fn compare<N: Space<3>>(seed: u64) {
         let (of_one, found) = follow::<N>(random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(done * 10 > 600 * STEPS * 8, "{done} updates by the quick way");
+    assert!(done * 2 > 600 * STEPS, "{done} updates by the quick way");
     assert!(points > 600 * STEPS / 2, "{points} points");
 }
 

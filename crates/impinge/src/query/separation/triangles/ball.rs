@@ -9,8 +9,9 @@
 use fearless_simd::{Level, Select, Simd, SimdMask};
 use smallvec::SmallVec;
 
-use crate::math::lanes::{by_axis, dot, either, load, minus, spread};
 use super::low_byte;
+use crate::bounding_volume::Aabb;
+use crate::math::lanes::{by_axis, dot, either, load, minus, spread};
 use crate::math::{Point, Real, Vector, Wide, max_component, min};
 use crate::query::tiles::{LANES, Tiles};
 
@@ -34,16 +35,18 @@ pub(crate) struct BallQuestion<'a, N: Real> {
     /// In the frame of the triangles.
     pub(crate) center: Vector<N, 3>,
     pub(crate) radius: N,
-    /// What is farther from the surface of the ball is of no interest.
+    /// What is farther from the surface of the ball is of no interest, nor what is outside a box.
     pub(crate) limit: N,
+    pub(crate) within: Aabb<N, 3>,
 }
 
 /// What a ball sees of some of the triangles.
 pub(crate) struct Sighted<N> {
-    /// No triangle is nearer to the middle; zero if that is not known.
+    /// No triangle in the box is nearer to the middle; zero if that is not known.
     pub(crate) from_middle: N,
-    /// For each eight those that may be within reach, and of these those that are hidden.
-    pub(crate) near: SmallVec<[[u8; 2]; 8]>,
+    /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
+    /// those that are hidden.
+    pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
     /// The squares of the distances of all that are hidden are more than this.
     pub(crate) hidden_from: N,
 }
@@ -77,7 +80,9 @@ fn at<N: Real>(
         })
     }
     #[cfg(not(target_arch = "x86_64"))]
-    Some(fearless_simd::dispatch!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams)))
+    Some(
+        fearless_simd::dispatch!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams)),
+    )
 }
 
 #[inline(always)]
@@ -87,32 +92,61 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     has_seams: bool,
 ) -> Sighted<N> {
     let mut places: SmallVec<[Places<N>; 8]> = SmallVec::new();
-    let (mut from_middle, mut near) = (N::INFINITY, SmallVec::new());
+    let mut seen =
+        Sighted { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
-        let eight = Eight::<V>::of(simd, question, tiles);
-        let (own, least) = eight.places(simd, question, has_seams);
-        from_middle = min(from_middle, least);
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
-        near.push([own.near & meant, 0]);
-        places.push(own);
+        let within = meant & low_byte(are_within::<S, N, V>(simd, question, tiles).to_bitmask());
+        if within == 0 {
+            continue;
+        }
+        let eight = Eight::<V>::of(simd, question, tiles);
+        let (mut own, least) = eight.places(simd, question, (block, within), has_seams);
+        seen.from_middle = min(seen.from_middle, least);
+        if own.near != 0 {
+            own.sides &= own.near;
+            seen.near.push((block, [own.near, 0]));
+            places.push(own);
+        }
     }
-    let mut seen = Sighted { from_middle, near, hidden_from: N::INFINITY };
-    for block in 0..places.len() {
-        let mut asked = seen.near[block][0] & places[block].sides;
+    for (at, own) in places.iter().enumerate() {
+        let mut asked = own.sides;
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize;
             asked &= asked - 1;
-            if is_hidden::<S, N, V>(simd, question, &places, (block, lane)) {
-                seen.near[block][1] |= 1 << lane;
-                seen.hidden_from = min(seen.hidden_from, places[block].least[lane]);
+            if is_hidden::<S, N, V>(simd, question, &places, (own, lane)) {
+                seen.near[at].1[1] |= 1 << lane;
+                seen.hidden_from = min(seen.hidden_from, own.least[lane]);
             }
         }
     }
     seen
 }
 
+/// Which of eight triangles have boxes that meet that of the question.
+#[inline(always)]
+fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &BallQuestion<'_, N>,
+    tiles: &Tiles<N, 3>,
+) -> V::Mask {
+    let (low, high) = (question.within.mins(), question.within.maxs());
+    let all = V::all(simd, N::ZERO);
+    let mut within = all.simd_eq(all);
+    for axis in 0..3 {
+        let [a, b, c] = [0, 1, 2].map(|corner: usize| &tiles.corners[corner][axis]);
+        let (a, b, c) = (V::load(simd, a), V::load(simd, b), V::load(simd, c));
+        within = within
+            & a.smaller(b).smaller(c).simd_le(V::all(simd, high[axis]))
+            & a.larger(b).larger(c).simd_ge(V::all(simd, low[axis]));
+    }
+    within
+}
+
 /// Where on eight triangles the nearest points lie.
 struct Places<N> {
+    /// Which eight.
+    block: usize,
     /// A bit for each that may be within reach.
     near: u8,
     /// And for each whose nearest point certainly lies on one of its sides or corners.
@@ -142,11 +176,7 @@ struct Eight<V> {
 
 impl<V> Eight<V> {
     #[inline(always)]
-    fn of<S: Simd, N: Real>(
-        simd: S,
-        question: &BallQuestion<'_, N>,
-        tiles: &Tiles<N, 3>,
-    ) -> Self
+    fn of<S: Simd, N: Real>(simd: S, question: &BallQuestion<'_, N>, tiles: &Tiles<N, 3>) -> Self
     where
         V: Wide<S, Scalar = N>,
     {
@@ -164,10 +194,8 @@ impl<V> Eight<V> {
         let at_c = to_c * squares[0] - along[0] * turn;
         let shares = [area - at_b - at_c, at_b, at_c];
         let zero = V::all(simd, N::ZERO);
-        let is_over = shares[0].simd_ge(zero)
-            & at_b.simd_ge(zero)
-            & at_c.simd_ge(zero)
-            & area.simd_gt(zero);
+        let is_over =
+            shares[0].simd_ge(zero) & at_b.simd_ge(zero) & at_c.simd_ge(zero) & area.simd_gt(zero);
         let (share_b, share_c) = (at_b / area, at_c / area);
         let below: [V; 3] = by_axis(
             #[inline(always)]
@@ -191,6 +219,7 @@ impl<V> Eight<V> {
         &self,
         simd: S,
         question: &BallQuestion<'_, N>,
+        (block, within): (usize, u8),
         has_seams: bool,
     ) -> (Places<N>, N)
     where
@@ -202,11 +231,11 @@ impl<V> Eight<V> {
         let is_beyond = is_bound & bound.simd_gt(radius + V::all(simd, question.limit));
         let mut known = [N::ZERO; LANES];
         bound.store(&mut known);
-        let least = known.into_iter().fold(N::INFINITY, |least, x| min(x, least));
-        let blank = [N::ZERO; LANES];
-        let near = low_byte((!is_beyond).to_bitmask());
-        let mut places =
-            Places { near, sides: 0, kinds: blank, least: blank, most: [N::INFINITY; LANES] };
+        let [a, b, c, d, e, f, g, h] = known;
+        let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
+        let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
+        let near = within & low_byte((!is_beyond).to_bitmask());
+        let mut places = Places { block, near, sides: 0, kinds: blank, least: blank, most };
         if near != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
             let is_tall = self.is_tall(simd, (size, clear), max_component(&question.center));
@@ -292,17 +321,18 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
     places: &[Places<N>],
-    (block, lane): (usize, usize),
+    (own, lane): (&Places<N>, usize),
 ) -> bool {
-    let (kind, least) = (places[block].kinds[lane], places[block].least[lane]);
+    let (kind, least) = (own.kinds[lane], own.least[lane]);
     let is_corner = kind >= N::lit(CORNER);
     let number = if is_corner { kind - N::lit(CORNER) } else { kind };
     let at = if number == N::ZERO { 0 } else { 1 + usize::from(number > N::ONE) };
-    let corners = question.tiles[block].corners(lane);
+    let corners = question.tiles[own.block].corners(lane);
     let (from, to) = (corners[at], corners[(at + 1) % 3]);
-    for (tiles, other) in question.tiles.iter().zip(places).filter(|(_, other)| other.near != 0) {
-        let mut hides =
-            V::load(simd, &other.most).simd_lt(V::all(simd, least)) & has_corner::<S, N, V>(simd, tiles, &from);
+    for other in places {
+        let tiles = &question.tiles[other.block];
+        let is_nearer = V::load(simd, &other.most).simd_lt(V::all(simd, least));
+        let mut hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
         if !is_corner {
             hides = hides & has_corner::<S, N, V>(simd, tiles, &to);
         }
@@ -349,4 +379,3 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn shorter<S: Simd, V: Wide<S>>(first: &[V; 3], second: &[V; 3]) -> [V; 3] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
 }
-
