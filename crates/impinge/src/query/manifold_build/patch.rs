@@ -189,6 +189,9 @@ impl Layout {
     fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
         let pieces = merging.pieces;
         let mut order = Order::new();
+        if have_own_normals(pieces) {
+            return Self::apart(merging);
+        }
         for (index, piece) in pieces.iter().enumerate() {
             if let Some(deepest) = merging.deepest_of(piece) {
                 order.push((index, deepest));
@@ -221,6 +224,34 @@ impl Layout {
         groups.sort_by_key(|group| group.first);
         Self { groups, order }
     }
+}
+
+impl Layout {
+    /// Each piece is a patch of its own; they come in the order of their parts.
+    fn apart<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
+        let (mut groups, mut order) = (SmallVec::new(), Order::new());
+        for (lead, piece) in merging.pieces.iter().enumerate() {
+            let Some(deepest) = merging.deepest_of(piece) else { continue };
+            if merging.points[deepest].distance <= merging.request.prediction {
+                order.push((lead, lead));
+                groups.push(Group { lead, deepest, first: piece.parts });
+            }
+        }
+        Self { groups, order }
+    }
+}
+
+/// So many pieces are held against each other.
+const FEW_PIECES: usize = 12;
+
+/// No two of a few pieces have one normal, as on rough ground.
+fn have_own_normals<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> bool {
+    let same = N::lit(SAME) * N::lit(SAME);
+    pieces.len() <= FEW_PIECES
+        && pieces.iter().enumerate().all(|(at, piece)| {
+            let before = &pieces[..at];
+            before.iter().all(|other| (other.normal - piece.normal).norm_squared() > same)
+        })
 }
 
 /// Deepest first, then in the order of the features.

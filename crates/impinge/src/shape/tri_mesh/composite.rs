@@ -51,6 +51,15 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
         (table().admits)(self, part, feature, normal)
     }
 
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        (table().admits_in_turn)(self, part, feature, normals)
+    }
+
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         (table().snapped)(self, part, normal)
     }

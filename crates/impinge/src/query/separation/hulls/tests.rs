@@ -88,7 +88,7 @@ fn verdict<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> Verdict<N>
     at(level, [&flat(0), &flat(1)], &pair.pose12, limit)
 }
 
-pub(in super::super) fn levels() -> Vec<Level> {
+pub(in crate::query) fn levels() -> Vec<Level> {
     let level = Level::new();
     let mut all = vec![level];
     #[cfg(target_arch = "x86_64")]

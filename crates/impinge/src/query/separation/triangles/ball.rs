@@ -379,3 +379,57 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn shorter<S: Simd, V: Wide<S>>(first: &[V; 3], second: &[V; 3]) -> [V; 3] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::query::separation::hulls::tests::{Random, levels};
+
+    /// Two rows of triangles with common corners, around a ball at the origin, or nearly so.
+    fn strip<N: Real>(random: &mut Random) -> Vec<Tiles<N, 3>> {
+        let mut points: Vec<Point<N, 3>> = Vec::new();
+        for at in 0..12_u32 {
+            let [x, z] = [at / 2, at % 2].map(|n| N::lit(f64::from(n) - 2.0));
+            let place = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
+            points.push(Point::from(place + random.vector::<N>() * N::lit(0.3)));
+        }
+        let mut tiles = vec![Tiles::blank(), Tiles::blank()];
+        for at in 0..16 {
+            let first = at.min(9);
+            let corners = [points[first], points[first + 1], points[first + 2]];
+            tiles[at / LANES].put(at % LANES, &corners);
+        }
+        tiles
+    }
+
+    fn compare<N: Real>(seed: u64) {
+        let (random, mut hidden) = (&mut Random(seed), 0);
+        for _ in 0..300 {
+            let tiles = strip::<N>(random);
+            let center = random.vector::<N>() * N::HALF;
+            let (radius, limit) = (N::ONE, N::lit(0.1));
+            let reach = Vector::<N, 3>::repeat(N::lit(1.2));
+            let within = Aabb::around(Point::from(center), reach);
+            let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
+            let Some(expected) = sighted(&question, true) else { continue };
+            for level in levels() {
+                let Some(found) = at(level, &question, true) else { continue };
+                assert_eq!(found.near, expected.near, "{level:?}");
+                assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
+                assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
+            }
+            let shown = sighted(&question, false).expect("there are vectors");
+            for ((_, [near, without]), (_, [same, with])) in shown.near.iter().zip(&expected.near) {
+                assert_eq!((near, *without), (same, 0), "without seams all are shown");
+                hidden += with.count_ones();
+            }
+        }
+        assert!(hidden > 300, "{hidden} are hidden");
+    }
+
+    #[test]
+    fn what_a_ball_sees_does_not_depend_on_vectors() {
+        compare::<f32>(21);
+        compare::<f64>(22);
+    }
+}
