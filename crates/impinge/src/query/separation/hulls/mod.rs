@@ -23,6 +23,7 @@ use self::face::{Meeting, Side};
 use self::solid::{BoxParts, Flat};
 use super::{general, wrong_kinds};
 use crate::convex::{Separation, Units};
+use crate::math::lanes::with_lanes;
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::Pair;
 use crate::shape::{Cuboid, Kind, SupportMap};
@@ -104,22 +105,7 @@ fn at<N: Real>(
     pose12: &Pose<N, 3>,
     limit: N,
 ) -> Verdict<N> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit),
-        )
-    } else if let Some(simd) = level.as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit),
-        )
-    } else {
-        Verdict::Undecided
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, pose12, limit), else Verdict::Undecided)
 }
 
 #[inline(always)]
