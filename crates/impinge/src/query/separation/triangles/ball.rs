@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::low_byte;
 use crate::bounding_volume::Aabb;
-use crate::math::lanes::{by_axis, dot, either, load, minus, spread};
+use crate::math::lanes::{by_axis, dot, either, load, minus, spread, with_lanes};
 use crate::math::{Point, Real, Vector, Wide, max_component, min};
 use crate::query::tiles::{LANES, Tiles};
 
@@ -65,24 +65,7 @@ fn at<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
 ) -> Option<Sighted<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        Some(simd.vectorize(
-            #[inline(always)]
-            || look::<_, N, N::Lanes<_>>(simd, question, has_seams),
-        ))
-    } else {
-        level.as_sse2().map(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || look::<_, N, N::Lanes<_>>(simd, question, has_seams),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(
-        fearless_simd::dispatch!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams)),
-    )
+    with_lanes!(level, simd => Some(look::<_, N, N::Lanes<_>>(simd, question, has_seams)), else None)
 }
 
 #[inline(always)]
