@@ -117,8 +117,8 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let all = V::all(simd, N::ZERO);
     let mut within = all.simd_eq(all);
     for axis in 0..3 {
-        let [a, b, c] = [0, 1, 2].map(|corner: usize| &tiles.corners[corner][axis]);
-        let (a, b, c) = (V::load(simd, a), V::load(simd, b), V::load(simd, c));
+        let [a, b, c] = &tiles.corners;
+        let (a, b, c) = (V::load(simd, &a[axis]), V::load(simd, &b[axis]), V::load(simd, &c[axis]));
         within = within
             & a.smaller(b).smaller(c).simd_le(V::all(simd, high[axis]))
             & a.larger(b).larger(c).simd_ge(V::all(simd, low[axis]));
@@ -315,10 +315,8 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     for other in places {
         let tiles = &question.tiles[other.block];
         let is_nearer = V::load(simd, &other.most).simd_lt(V::all(simd, least));
-        let mut hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
-        if !is_corner {
-            hides = hides & has_corner::<S, N, V>(simd, tiles, &to);
-        }
+        let hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
+        let hides = if is_corner { hides } else { hides & has_corner::<S, N, V>(simd, tiles, &to) };
         if hides.any_true() {
             return true;
         }
