@@ -19,7 +19,7 @@ use crate::narrow_phase::{
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{
     Between, CompositeContacts, PartPoint, RayQuestion, each_hit, nearest_part, over2, over3,
-    update_chain2, update_chain3,
+    update_chain, update_on_surface,
 };
 use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
@@ -46,9 +46,9 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) separations: SeparationsFn<N, D>,
-    /// Brings the contacts of a convex solid and a chain of segments up to date; answers false where that is
-    /// left to the general way.
-    pub(crate) update_chain: ChainFn<N, D>,
+    /// Brings the contacts of a convex solid and a chain of segments, or of a ball and a surface, up to date;
+    /// answers false where that is left to the general way.
+    pub(crate) update_quickly: QuickFn<N, D>,
     /// Its distance, and any that is not positive of solids that overlap clearly.
     pub(crate) distance: DistanceFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
@@ -115,7 +115,7 @@ type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), 
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type SeparationsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, (Kind<'_, N, D>, &Pose<N, D>), N, &mut Separations<N, D>) -> bool;
-type ChainFn<N, const D: usize> =
+type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
@@ -233,7 +233,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     separations: SeparationsFn<N, D>,
-    update_chain: ChainFn<N, D>,
+    update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
@@ -254,7 +254,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         separations: separations2,
-        update_chain: update_chain2,
+        update_quickly: update_chain,
         distance: distance_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
@@ -276,7 +276,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         separations: separations3,
-        update_chain: update_chain3,
+        update_quickly: update_on_surface,
         distance: distance_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
@@ -300,7 +300,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             separations: particular.separations,
-            update_chain: particular.update_chain,
+            update_quickly: particular.update_quickly,
             distance: particular.distance,
             are_beyond,
             separation_in_world: in_world,

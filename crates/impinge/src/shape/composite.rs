@@ -181,4 +181,11 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     fn siding(&self) -> Option<Siding> {
         None
     }
+
+    /// In space, parts hang together where they have corners at one position, and there alone; and a normal
+    /// along which a direction into a part at the seam rises is none there. For a quicker way to the same
+    /// answers: false, the default, of all surfaces but this library's own.
+    fn has_plain_seams(&self) -> bool {
+        false
+    }
 }

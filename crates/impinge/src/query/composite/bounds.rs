@@ -68,9 +68,15 @@ pub(super) fn around_point<N: Real, const D: usize>(
 
 /// The largest of the finite coordinates of a box.
 fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
-    let coordinates = aabb.mins().iter().chain(aabb.maxs().iter());
-    let finite = coordinates.filter(|x| x.is_finite_number());
-    finite.fold(N::ZERO, |most, x| max(x.abs(), most))
+    let mut most = N::ZERO;
+    for axis in 0..D {
+        for x in [aabb.mins()[axis], aabb.maxs()[axis]] {
+            if x.is_finite_number() {
+                most = max(x.abs(), most);
+            }
+        }
+    }
+    most
 }
 
 fn rounding<N: Real>(scale: N) -> N {

@@ -15,7 +15,8 @@ mod separation;
 
 pub(crate) use between::{Between, PartPair};
 pub(crate) use contacts::{
-    CompositeContacts, contact_in_world, over2, over3, own_distance, update_chain2, update_chain3,
+    CompositeContacts, contact_in_world, over2, over3, own_distance, update_chain,
+    update_on_surface,
 };
 pub(crate) use impact::first_arrival;
 pub(in crate::query) use point::surface_point;

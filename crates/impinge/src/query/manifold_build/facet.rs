@@ -7,7 +7,7 @@ use crate::math::{Point, Pose, Real, Vector, cross2, max, max_component, min};
 use crate::shape::{Feature, FeatureId, SupportMap};
 
 /// Parts that lean more than 60° out of the plane of contact count as their nearest point.
-const LEAST_COSINE: f64 = 0.5;
+pub(super) const LEAST_COSINE: f64 = 0.5;
 
 /// How many sides are looked at side by side.
 pub(super) const LANES: usize = 8;

@@ -16,6 +16,7 @@ mod ball;
 mod box_faces;
 mod box_lanes;
 mod box_sides;
+mod capsule_face;
 mod chain;
 mod closed_lanes;
 mod facet;

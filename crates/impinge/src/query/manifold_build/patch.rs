@@ -67,18 +67,60 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     ids: &mut PairIds,
 ) {
+    match merging.pieces {
+        [] => return patches.clear(),
+        [piece] if piece.points.len() == 1 => {
+            let count = merge_one(merging, piece, (&mut *patches, ids));
+            return patches.truncate(count);
+        }
+        _ => (),
+    }
     let kept = merging.kept(patches);
     patches.clear();
-    if let [piece] = merging.pieces
-        && piece.points.len() == 1
-    {
-        return merging.push_alone(piece, (&kept, patches), ids);
-    }
     let (layout, mut members) = (Layout::of(merging), Members::new());
     let choosing = Choosing { merging, kept: &kept };
     for group in &layout.groups {
         patches.push(choosing.patch(group, &layout.order, &mut members, ids));
     }
+}
+
+/// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
+pub(super) fn merge_one<N: Real, const D: usize>(
+    merging: &Merging<'_, N, D>,
+    piece: &Piece<N, D>,
+    (patches, ids): (&mut Vec<Patch<N, D>>, &mut PairIds),
+) -> usize {
+    let mut raw = merging.points[piece.points.start];
+    // Written so that what is no number is not near.
+    let is_near = raw.distance <= merging.request.prediction;
+    if !is_near {
+        return 0;
+    }
+    let mut old = patches.iter().flat_map(|patch| &patch.points);
+    let kept = old.find(|old| {
+        let names = (old.raw.feature1, old.raw.feature2);
+        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
+    });
+    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
+    blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
+    1
+}
+
+/// A patch without points, in the place of an old one if there is one.
+pub(super) fn blank<N: Real, const D: usize>(
+    patches: &mut Vec<Patch<N, D>>,
+    at: usize,
+    normal: Vector<N, D>,
+) -> &mut SmallVec<[PatchPoint<N, D>; 4]> {
+    if at == patches.len() {
+        // Most pairs have one patch at all times.
+        patches.reserve_exact(1);
+        patches.push(Patch { normal, points: SmallVec::new() });
+    }
+    let patch = &mut patches[at];
+    patch.normal = normal;
+    patch.points.clear();
+    &mut patch.points
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
@@ -114,23 +156,6 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         kept
     }
 
-    /// The only point of all is a patch, if it is near enough.
-    fn push_alone(
-        &self,
-        piece: &Piece<N, D>,
-        (kept, patches): (&Kept, &mut Vec<Patch<N, D>>),
-        ids: &mut PairIds,
-    ) {
-        let only = piece.points.start;
-        let mut raw = self.points[only];
-        if raw.distance <= self.request.prediction {
-            raw.id = kept[only].unwrap_or_else(|| ids.next());
-            let mut points = SmallVec::new();
-            points.push(PatchPoint { raw, parts: piece.parts });
-            patches.push(Patch { normal: piece.normal, points });
-        }
-    }
-
     /// The index of the deepest point of a piece, by the order of [`by_depth`].
     pub(super) fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
         let deeper = |best: usize, next: usize| {
@@ -164,6 +189,9 @@ impl Layout {
     fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
         let pieces = merging.pieces;
         let mut order = Order::new();
+        if have_own_normals(pieces) {
+            return Self::apart(merging);
+        }
         for (index, piece) in pieces.iter().enumerate() {
             if let Some(deepest) = merging.deepest_of(piece) {
                 order.push((index, deepest));
@@ -196,6 +224,34 @@ impl Layout {
         groups.sort_by_key(|group| group.first);
         Self { groups, order }
     }
+}
+
+impl Layout {
+    /// Each piece is a patch of its own; they come in the order of their parts.
+    fn apart<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
+        let (mut groups, mut order) = (SmallVec::new(), Order::new());
+        for (lead, piece) in merging.pieces.iter().enumerate() {
+            let Some(deepest) = merging.deepest_of(piece) else { continue };
+            if merging.points[deepest].distance <= merging.request.prediction {
+                order.push((lead, lead));
+                groups.push(Group { lead, deepest, first: piece.parts });
+            }
+        }
+        Self { groups, order }
+    }
+}
+
+/// So many pieces are held against each other.
+const FEW_PIECES: usize = 12;
+
+/// No two of a few pieces have one normal, as on rough ground.
+fn have_own_normals<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> bool {
+    let same = N::lit(SAME) * N::lit(SAME);
+    pieces.len() <= FEW_PIECES
+        && pieces.iter().enumerate().all(|(at, piece)| {
+            let before = &pieces[..at];
+            before.iter().all(|other| (other.normal - piece.normal).norm_squared() > same)
+        })
 }
 
 /// Deepest first, then in the order of the features.

@@ -5,7 +5,9 @@
 
 use smallvec::SmallVec;
 
-use super::patch::{Kept, Merging, Patch, PatchPoint, Piece, are_level, by_depth, merge};
+use super::patch::{
+    Kept, Merging, Patch, PatchPoint, are_level, blank, by_depth, merge, merge_one,
+};
 use super::reduce::{ALMOST, NEW_POINT_WEIGHT};
 use super::{deepest_of, tangents2};
 use crate::math::{Real, Vector};
@@ -33,28 +35,6 @@ pub(in crate::query) fn merge_in_plane<N: Real>(
     patches.truncate(count);
 }
 
-/// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
-fn merge_one<N: Real>(
-    merging: &Merging<'_, N, 2>,
-    piece: &Piece<N, 2>,
-    (patches, ids): (&mut Vec<Patch<N, 2>>, &mut PairIds),
-) -> usize {
-    let mut raw = merging.points[piece.points.start];
-    // Written so that what is no number is not near.
-    let is_near = raw.distance <= merging.request.prediction;
-    if !is_near {
-        return 0;
-    }
-    let mut old = patches.iter().flat_map(|patch| &patch.points);
-    let kept = old.find(|old| {
-        let names = (old.raw.feature1, old.raw.feature2);
-        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
-    });
-    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
-    blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
-    1
-}
-
 /// Merges some pieces; answers how many patches there are.
 fn merge_some<N: Real>(
     merging: &Merging<'_, N, 2>,
@@ -78,23 +58,6 @@ fn merge_some<N: Real>(
         }
     }
     made
-}
-
-/// A patch without points, in the place of an old one if there is one.
-fn blank<N: Real>(
-    patches: &mut Vec<Patch<N, 2>>,
-    at: usize,
-    normal: Vector<N, 2>,
-) -> &mut SmallVec<[PatchPoint<N, 2>; 4]> {
-    if at == patches.len() {
-        // Most pairs have one patch at all times.
-        patches.reserve_exact(1);
-        patches.push(Patch { normal, points: SmallVec::new() });
-    }
-    let patch = &mut patches[at];
-    patch.normal = normal;
-    patch.points.clear();
-    &mut patch.points
 }
 
 /// A piece, its deepest point and its group.

@@ -42,7 +42,17 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members: &mut Members<N>,
         ids: &mut PairIds,
     ) -> Patch<N, D> {
-        let normal = self.merging.pieces[group.lead].normal;
+        let lead = &self.merging.pieces[group.lead];
+        let normal = lead.normal;
+        let is_alone = lead.points.len() == 1
+            && order.iter().filter(|(_, lead)| *lead == group.lead).count() == 1;
+        if is_alone {
+            let id = self.kept[group.deepest].unwrap_or_else(|| ids.next());
+            let raw = RawPoint { id, code: 0, ..self.merging.points[group.deepest] };
+            let mut points = SmallVec::new();
+            points.push(PatchPoint { raw, parts: lead.parts });
+            return Patch { normal, points };
+        }
         let tangents = (N::tables().tangents)(&normal);
         self.gather(group, order, &tangents, members);
         let count = self.drop_copies(members);

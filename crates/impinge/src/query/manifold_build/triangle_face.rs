@@ -7,6 +7,7 @@
 //! this one, and which takes over wherever this one declines: triangles that are thin or lean, parts of
 //! the solid that are no polygons, nearest points off the faces.
 
+use super::capsule_face;
 use super::fences::{Base, Fences};
 use super::{Pair, RawManifold, tangents3};
 use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
@@ -39,8 +40,8 @@ pub(crate) fn on_face2<N: Real>(
     false
 }
 
-/// Builds the contacts of a triangle and a box or hull along the triangle's normal, in place of those in
-/// `out`; answers whether it did.
+/// Builds the contacts of a triangle and a box, a hull, a capsule or a segment along the triangle's normal, in
+/// place of those in `out`; answers whether it did.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     asked: &OnFace<N, 3>,
@@ -48,10 +49,10 @@ pub(crate) fn on_face3<N: Real>(
 ) -> bool {
     let Pair { first, second, pose12: pose } = pair;
     let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
-        return false;
+        return capsule_face::on_triangle(pair, asked, out);
     };
     let normal = asked.normal;
-    let Some(ground) = Ground::new(triangle, pose, asked) else { return false };
+    let Some(ground) = Ground::new(triangle, pose, (normal, asked.tolerance)) else { return false };
     let toward = pose.inverse_vector(&-normal);
     let face = match second {
         Kind::Cuboid(cuboid) => cuboid.face_ring(&toward),
@@ -60,30 +61,35 @@ pub(crate) fn on_face3<N: Real>(
     };
     let Some(face) = &face else { return false };
     let Some(fences) = &Fences::new(&ground.base, face) else { return false };
-    let (lean, lowest) = (pose.vector(&face.normal), N::INFINITY);
+    let lean = pose.vector(&face.normal);
     let (top, tolerance) = (Top { face, fences }, asked.tolerance);
-    let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, lowest };
+    let kept = Kept::new(asked);
+    let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, kept };
     out.points.clear();
     out.normal = normal;
     meeting.corners(out);
     meeting.crossings(out);
-    meeting.settle(out)
+    meeting.kept.settle(out)
 }
 
 /// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.
-struct Ground<'a, N: Real> {
-    id: FeatureId,
+pub(super) struct Ground<'a, N: Real> {
+    pub(super) id: FeatureId,
     points: [Point<N, 3>; 3],
     ids: [FeatureId; 3],
-    sides: [FeatureId; 3],
-    base: Base<'a, N>,
+    pub(super) sides: [FeatureId; 3],
+    pub(super) base: Base<'a, N>,
 }
 
 impl<'a, N: Real> Ground<'a, N> {
     /// `None` of one that is thin or not perpendicular to the normal.
     #[inline]
-    fn new(triangle: &Triangle<N, 3>, pose: &'a Pose<N, 3>, asked: &OnFace<N, 3>) -> Option<Self> {
-        let ([a, b, c], normal, tolerance) = (triangle.corners(), asked.normal, asked.tolerance);
+    pub(super) fn new(
+        triangle: &Triangle<N, 3>,
+        pose: &'a Pose<N, 3>,
+        (normal, tolerance): (Vector<N, 3>, N),
+    ) -> Option<Self> {
+        let [a, b, c] = triangle.corners();
         let ways = [b - a, c - a];
         let is_level = ways.iter().all(|way| way.dot(&normal).abs() <= tolerance);
         if !is_level {
@@ -202,6 +208,12 @@ struct Meeting<'a, N: Real> {
     /// The outward normal of the solid's face.
     lean: Vector<N, 3>,
     tolerance: N,
+    kept: Kept<'a, N>,
+}
+
+/// The points that are asked for.
+pub(super) struct Kept<'a, N: Real> {
+    asked: &'a OnFace<N, 3>,
     /// The least distance met.
     lowest: N,
 }
@@ -219,7 +231,7 @@ impl<N: Real> Meeting<'_, N> {
             let on = if touched == 0 { top.face.id } else { self.on_top(at, touched) };
             let point = ground.points[at];
             let height = (top.point(0) - point).dot(&self.lean) / slope;
-            self.push(point, height, [ground.ids[at], on], out);
+            self.kept.push(point, height, [ground.ids[at], on], out);
         }
         let [first, second, third] = &top.fences.base_signs;
         let outside = first.outside | second.outside | third.outside;
@@ -231,7 +243,7 @@ impl<N: Real> Meeting<'_, N> {
             let on = if inside >> at & 1 == 1 { ground.id } else { self.on_ground(at) };
             let point = top.point(at);
             let height = (point - ground.points[0]).dot(&normal);
-            self.push(point - normal * height, height, [on, top.face.ids[at]], out);
+            self.kept.push(point - normal * height, height, [on, top.face.ids[at]], out);
         }
     }
 
@@ -281,13 +293,20 @@ impl<N: Real> Meeting<'_, N> {
                 let core1 = along_side(&ends1, insides1);
                 let core2 = along_side(&ends2.map(|at| top.point(at)), insides2);
                 let distance = self.asked.normal.dot(&(core2 - core1));
-                self.push(core1, distance, [ground.sides[side1], top.face.sides[side2]], out);
+                self.kept.push(core1, distance, [ground.sides[side1], top.face.sides[side2]], out);
             }
         }
     }
+}
+
+impl<'a, N: Real> Kept<'a, N> {
+    /// None yet.
+    pub(super) fn new(asked: &'a OnFace<N, 3>) -> Self {
+        Self { asked, lowest: N::INFINITY }
+    }
 
     /// Adds a point that is asked for, once for each pair of names.
-    fn push(
+    pub(super) fn push(
         &mut self,
         point1: Point<N, 3>,
         distance: N,
@@ -295,8 +314,8 @@ impl<N: Real> Meeting<'_, N> {
         out: &mut RawManifold<N, 3>,
     ) {
         let distance = self.asked.nearest.map_or(distance, |nearest| max(distance, nearest));
-        let is_near = distance <= self.asked.prediction + self.tolerance
-            && distance >= self.asked.least - self.tolerance;
+        let is_near = distance <= self.asked.prediction + self.asked.tolerance
+            && distance >= self.asked.least - self.asked.tolerance;
         let is_old = |old: &RawPoint<N, 3>| (old.feature1, old.feature2) == (feature1, feature2);
         if !is_near || out.points.iter().any(is_old) {
             return;
@@ -308,9 +327,9 @@ impl<N: Real> Meeting<'_, N> {
     }
 
     /// The nearest has the distance that is known, if one is; answers false where none is so near.
-    fn settle(&self, out: &mut RawManifold<N, 3>) -> bool {
+    pub(super) fn settle(&self, out: &mut RawManifold<N, 3>) -> bool {
         let Some(nearest) = self.asked.nearest else { return true };
-        let is_found = self.lowest <= nearest + self.tolerance;
+        let is_found = self.lowest <= nearest + self.asked.tolerance;
         if let Some(point) = out.points.iter_mut().find(|point| point.distance == self.lowest) {
             point.distance = nearest;
         }

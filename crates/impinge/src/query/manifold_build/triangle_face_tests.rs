@@ -8,7 +8,7 @@ use crate::math::noise::Noise;
 use crate::math::{Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::query::separation::separation_in_space;
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
-use crate::shape::{ConvexHull, Cuboid, Kind, Shape, Triangle};
+use crate::shape::{Capsule, ConvexHull, Cuboid, Kind, Segment, Shape, Triangle};
 
 /// A triangle about one large; every fourth one lies along the axes.
 fn any_triangle<N: Real>(noise: &mut Noise, round: usize) -> Triangle<N, 3> {
@@ -110,6 +110,43 @@ fn at_random<N: Real>(rounds: usize) {
         }
     }
     assert!(made > rounds / 2 && of_witness > rounds / 8, "{made} {of_witness} of {rounds}");
+}
+
+/// A capsule, the first solid, over a triangle, lying or standing; every third one is a segment.
+fn capsules_at_random<N: Real>(rounds: usize) {
+    let (mut noise, mut made, mut of_witness) = (Noise(12), 0, 0);
+    for round in 0..rounds {
+        let triangle = any_triangle::<N>(&mut noise, round);
+        let [a, b, c] = triangle.corners().map(|corner| corner.coords);
+        let normal = normal_of(&triangle) * if round % 2 == 0 { N::ONE } else { -N::ONE };
+        let middle = Point::from((a + b + c) / N::lit(3.0));
+        let mut pose21 = leaning(&mut noise, &normal, &middle);
+        let is_standing = round % 5 == 0;
+        let is_segment = round % 3 == 0;
+        let half = N::lit(0.35 + 0.3 * noise.next());
+        let radius = if is_segment { N::ZERO } else { N::lit(0.2) };
+        // By so much lower than a box is.
+        let reach = radius + if is_standing { half } else { N::ZERO };
+        pose21.translation += normal * (reach - N::lit(0.45));
+        let along =
+            Point::from(if is_standing { Vector::<N, 3>::y() } else { Vector::<N, 3>::x() } * half);
+        let capsule = Capsule::try_from_ends(-along, along, N::lit(0.2)).expect("it is finite");
+        let segment = Segment::new(-along, along);
+        let first = if is_segment { segment.geometry().0 } else { capsule.geometry().0 };
+        let pair = Pair { first, second: triangle.geometry().0, pose12: pose21.inverse() };
+        let down = pair.pose12.vector(&-normal);
+        let what = format!("round {round}, standing: {is_standing}, a segment: {is_segment}");
+        let [is_made, is_found] = check_pair(&pair, &down, &what);
+        made += usize::from(is_made);
+        of_witness += usize::from(is_found);
+    }
+    assert!(made > rounds / 5 && of_witness > rounds / 16, "{made} {of_witness} of {rounds}");
+}
+
+#[test]
+fn faces_of_triangles_below_capsules_as_in_general() {
+    capsules_at_random::<f32>(2000);
+    capsules_at_random::<f64>(2000);
 }
 
 #[test]

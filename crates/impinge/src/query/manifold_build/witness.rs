@@ -74,26 +74,31 @@ fn feature<N: Real, const D: usize>(
         Some(_) => return FeatureId::Face(0),
         None => {}
     }
-    let seam = if is_second { None } else { on_seam(pair, separation, noise) };
+    let seam = on_seam(pair, separation, noise, is_second);
     seam.unwrap_or_else(|| {
         shown(pair, &frame(pair, separation, tangents(&separation.normal)), is_second)
     })
 }
 
-/// The side or corner of a triangle, the first solid, that a solid with flat faces touches: the points
+/// The side or corner of a triangle that a solid with flat faces touches, or the core of a capsule: the points
 /// of these are exact, so that the place tells.
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     noise: N,
+    is_second: bool,
 ) -> Option<FeatureId> {
-    let Pair {
-        first: Kind::Triangle(triangle), second: Kind::Cuboid(_) | Kind::Polytope(_), ..
-    } = pair
-    else {
-        return None;
+    let (triangle, point, toward) = match (&pair.first, &pair.second) {
+        (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) if !is_second => {
+            (triangle, separation.point1, separation.normal)
+        }
+        (Kind::Segment(_) | Kind::Capsule(_), Kind::Triangle(triangle)) if is_second => {
+            let point = pair.pose12.inverse_point(&separation.point2);
+            (triangle, point, pair.pose12.inverse_vector(&-separation.normal))
+        }
+        _ => return None,
     };
-    let part = triangle.part_at(&separation.point1, &separation.normal, noise);
+    let part = triangle.part_at(&point, &toward, noise);
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 

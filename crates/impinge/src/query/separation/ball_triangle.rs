@@ -12,7 +12,7 @@ use crate::shape::Kind;
 ///
 /// A centre on the triangle leaves on the side that sees the corners counter-clockwise; on a
 /// triangle without area, as it would leave the nearest side.
-pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
     };

@@ -56,11 +56,14 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
+pub(crate) use ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
-pub(crate) use triangles::{Separations, separations2, separations3};
+pub(crate) use triangles::{
+    BallQuestion, Separations, Sighted, separations2, separations3, sighted,
+};
 pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.

@@ -22,6 +22,16 @@ pub(super) struct Grid<N: Real> {
     pub(super) y_scale: N,
 }
 
+impl<N: Real> Grid<N> {
+    /// In space: no two of the lines lie at one place.
+    pub(super) fn has_extent(&self) -> bool {
+        [&self.xs, &self.zs].iter().all(|lines| {
+            let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
+            is_wide && N::lit(4.0 * lines.len() as f64) * N::EPSILON < N::ONE
+        })
+    }
+}
+
 /// Where lines of a grid lie that divide `extent` evenly around zero; 0 for a single one.
 ///
 /// Symmetric: the last is minus the first, exactly. Never decreasing where the extent is positive,

@@ -32,6 +32,11 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         self.snapped_to(&self.front_of(&self.corners(part)), normal)
     }
 
+    /// Points of the grid are at positions of their own unless the field has no extent.
+    fn has_plain_seams(&self) -> bool {
+        !self.keeps_internal_edges && self.grid.has_extent()
+    }
+
     fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
         let corners = self.corners(part);
         let [row, column] = corners[0];

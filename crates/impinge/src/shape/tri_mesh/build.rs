@@ -130,6 +130,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);
         self.bends.clear();
+        self.topology.is_moved = true;
         self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
         Ok(())

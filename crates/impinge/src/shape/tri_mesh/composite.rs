@@ -51,6 +51,15 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
         (table().admits)(self, part, feature, normal)
     }
 
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        (table().admits_in_turn)(self, part, feature, normals)
+    }
+
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         (table().snapped)(self, part, normal)
     }
@@ -61,6 +70,10 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
         black_box((normal(part), self.bends.told_of(part), self.triangles[part as usize]));
         // Where there is no triangle across a side there is none of such a number.
         black_box(beyond.map(normal));
+    }
+
+    fn has_plain_seams(&self) -> bool {
+        !(self.keeps_internal_edges || self.topology.is_moved)
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {

@@ -43,6 +43,38 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
+    /// As two calls of [`Self::admits_in_space`], of which the second is about what the first did not admit;
+    /// what is around is looked at once.
+    pub(super) fn admits_in_turn_in_space(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        let is_free = |normal: &Vector<N, 3>| self.is_own_normal(part, normal);
+        match feature {
+            FeatureId::Edge(side) if !(self.keeps_internal_edges || is_free(normals[0])) => {
+                let bend = self.bend_at(part, side as usize);
+                let admits = |normal: &Vector<N, 3>| {
+                    self.bent_edge_admits(bend.as_ref(), (part, side as usize), normal)
+                };
+                let is_first = admits(normals[0]);
+                [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
+            }
+            FeatureId::Vertex(corner) if !(self.keeps_internal_edges || is_free(normals[0])) => {
+                let (corner, joint) = (corner as usize, self.joint_at(part, corner as usize));
+                let rises = self.rises_around(part, corner, normals);
+                let admits = |at: usize| !rises[at] && self.corner_admits(part, joint, normals[at]);
+                let is_first = admits(0);
+                [is_first, !is_first && (is_free(normals[1]) || admits(1))]
+            }
+            _ => {
+                let is_first = self.admits_in_space(part, feature, normals[0]);
+                [is_first, !is_first && self.admits_in_space(part, feature, normals[1])]
+            }
+        }
+    }
+
     pub(super) fn snapped_in_space(
         &self,
         part: u32,
@@ -63,15 +95,26 @@ impl<N: Real> TriMesh<N, 3> {
             .is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
 
+    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
+        self.bent_edge_admits(self.bend_at(part, side).as_ref(), (part, side), normal)
+    }
+
+    /// How a side is bent, where that is plain.
+    fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
+        let other = self.topology.single_across(part, side)?;
+        let fronts = [part, other].map(|face| self.normals[face as usize]);
+        let find = || Shape::new([&self.corners(part), &self.corners(other)], &fronts);
+        Some(Bend::of(self.bends.at(part, side, find)?, fronts))
+    }
+
     /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
     /// are not flat there.
-    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        let other = self.topology.single_across(part, side);
-        let bend = other.and_then(|other| {
-            let fronts = [part, other].map(|face| self.normals[face as usize]);
-            let find = || Shape::new([&self.corners(part), &self.corners(other)], &fronts);
-            Some(Bend::of(self.bends.at(part, side, find)?, fronts))
-        });
+    fn bent_edge_admits(
+        &self,
+        bend: Option<&Bend<N>>,
+        (part, side): (u32, usize),
+        normal: &Vector<N, 3>,
+    ) -> bool {
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
             return answer;
         }
@@ -100,7 +143,6 @@ impl<N: Real> TriMesh<N, 3> {
         highest
     }
 
-    /// No side that leaves the corner rises along the normal, and the faces are not flat there.
     fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
         let joint = self.joint_at(part, corner);
         // Most are refused by a side of the triangle that is asked.
@@ -112,6 +154,31 @@ impl<N: Real> TriMesh<N, 3> {
         if rises(part, corner) || around.any(|&other| rises(other, self.corner_at(other, joint))) {
             return false;
         }
+        self.corner_admits(part, joint, normal)
+    }
+
+    /// Whether a side that leaves a corner clearly rises along each of two normals.
+    fn rises_around(&self, part: u32, corner: usize, normals: [&Vector<N, 3>; 2]) -> [bool; 2] {
+        let joint = self.joint_at(part, corner);
+        let mut rises = [false; 2];
+        let mut look = |triangle: u32, at: usize| {
+            let corners = self.corners(triangle);
+            for turn in [1, 2] {
+                let way = corners[(at + turn) % 3] - corners[at];
+                rises[0] |= leads_up_clearly(&way, normals[0]);
+                rises[1] |= leads_up_clearly(&way, normals[1]);
+            }
+            rises == [true; 2]
+        };
+        if !look(part, corner) {
+            let mut around = self.topology.joints.parts(joint).iter();
+            around.any(|&other| look(other, self.corner_at(other, joint)));
+        }
+        rises
+    }
+
+    /// No side that leaves the joint of a corner rises along the normal, and the faces are not flat there.
+    fn corner_admits(&self, part: u32, joint: u32, normal: &Vector<N, 3>) -> bool {
         let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         for &triangle in self.topology.joints.parts(joint) {
             let rise = self.rise_from(triangle, joint, normal);
@@ -121,5 +188,48 @@ impl<N: Real> TriMesh<N, 3> {
             seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
         });
         seam.admits(self.is_one_sided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+    use crate::shape::Surface;
+
+    /// A rough sheet of triangles.
+    fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {
+        let place = |at: u32| {
+            let [x, z] = [at % 6, at / 6].map(f64::from);
+            Point::<f64, 3>::new(x, 0.4 * noise.next(), z)
+        };
+        let vertices = (0..36).map(place).collect();
+        let cells = (0..30).filter(|at| at % 6 < 5);
+        let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
+        TriMesh::new(vertices, triangles.collect())
+    }
+
+    #[test]
+    fn two_normals_in_turn_are_as_each_alone() {
+        let (mut noise, mut counts) = (Noise(5), [0; 3]);
+        let (rough, other) = (sheet(&mut noise), sheet(&mut noise).one_sided());
+        let kept = sheet(&mut noise).one_sided().with_internal_edges_kept();
+        for mesh in [rough, other, kept] {
+            for (part, at) in (0..50_u32).flat_map(|part| (0..90_u32).map(move |at| (part, at))) {
+                let front = mesh.normal(part).expect("an area");
+                let aside: Vector<f64, 3> = noise.vector(0.6);
+                let share = [0.0, 1.0, 1.0][at as usize % 3];
+                let far = (front + aside * share).normalize();
+                let near = (front + aside * 0.03).normalize();
+                let number = at / 3 % 3;
+                let all = [FeatureId::Edge(number), FeatureId::Vertex(number), FeatureId::Face(0)];
+                let feature = all[at as usize / 9 % 3];
+                let [first, second] = [far, near].map(|n| mesh.admits(part, feature, &n));
+                let both = mesh.admits_in_turn(part, feature, [&far, &near]);
+                assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
+                counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
     }
 }

@@ -16,6 +16,7 @@ pub(crate) struct MeshTable<N: Real, const D: usize> {
     /// no front.
     pub(super) normal: Option<NormalFn<N, D>>,
     pub(super) admits: AdmitsFn<N, D>,
+    pub(super) admits_in_turn: InTurnFn<N, D>,
     pub(super) snapped: SnappedFn<N, D>,
     /// The triangles as rays look at them, in the order of the tree; none where boxes are enough.
     pub(super) packed: PackedFn<N, D>,
@@ -29,12 +30,18 @@ type AlongFn<N, const D: usize> =
 
 type NormalFn<N, const D: usize> = fn(&[Point<N, D>; 3]) -> Vector<N, D>;
 type AdmitsFn<N, const D: usize> = fn(&TriMesh<N, D>, u32, FeatureId, &Vector<N, D>) -> bool;
+type InTurnFn<N, const D: usize> =
+    fn(&TriMesh<N, D>, u32, FeatureId, [&Vector<N, D>; 2]) -> [bool; 2];
 type SnappedFn<N, const D: usize> = fn(&TriMesh<N, D>, u32, &Vector<N, D>) -> Option<Vector<N, D>>;
 
 impl<N: Real> MeshTable<N, 2> {
     pub(crate) const IN_PLANE: Self = Self {
         normal: None,
         admits: TriMesh::<N, 2>::admits_in_plane,
+        admits_in_turn: |mesh, part, feature, [first, second]| {
+            let is_first = mesh.admits_in_plane(part, feature, first);
+            [is_first, !is_first && mesh.admits_in_plane(part, feature, second)]
+        },
         snapped: TriMesh::<N, 2>::snapped_in_plane,
         packed: |_, _, _| Vec::new(),
         parts_along: TriMesh::<N, 2>::boxes_along,
@@ -45,6 +52,7 @@ impl<N: Real> MeshTable<N, 3> {
     pub(crate) const IN_SPACE: Self = Self {
         normal: Some(super::surface3::normal_of),
         admits: TriMesh::<N, 3>::admits_in_space,
+        admits_in_turn: TriMesh::<N, 3>::admits_in_turn_in_space,
         snapped: TriMesh::<N, 3>::snapped_in_space,
         packed: TriMesh::<N, 3>::packed,
         parts_along: TriMesh::<N, 3>::triangles_along,

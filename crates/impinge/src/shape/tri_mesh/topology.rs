@@ -33,6 +33,8 @@ pub(super) struct Topology {
     across: Vec<[u32; 3]>,
     /// Each side is run along as often in one direction as in the other.
     pub(super) is_cycle: bool,
+    /// Vertices moved since: what is at one position need not be joined, nor the other way round.
+    pub(super) is_moved: bool,
 }
 
 /// A side that has a joint for its lower end: the other end, whose side it is and which, and whether
@@ -83,7 +85,7 @@ impl Topology {
                 is_cycle &= 2 * forward == group.len();
             }
         }
-        Self { joints, across, is_cycle }
+        Self { joints, across, is_cycle, is_moved: false }
     }
 
     /// The triangle that is alone across a side.

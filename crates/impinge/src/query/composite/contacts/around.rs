@@ -42,12 +42,22 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         composite: &dyn CompositeShape<N, D>,
         aabb: &Aabb<N, D>,
     ) -> bool {
+        self.reaches_with(composite, aabb, LANES)
+    }
+
+    /// [`Self::reaches`] with the large room where that holds no more parts than `most`.
+    pub(super) fn reaches_with(
+        &mut self,
+        composite: &dyn CompositeShape<N, D>,
+        aabb: &Aabb<N, D>,
+        most: usize,
+    ) -> bool {
         let is_known = self.within.as_ref().is_some_and(|within| within.contains(aabb));
         if !is_known {
             if !aabb.is_bounded() {
                 return false;
             }
-            self.fill(composite, aabb);
+            self.fill(composite, aabb, most);
         }
         !self.is_crowded
     }
@@ -57,15 +67,15 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
         !self.is_crowded && self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
-    fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>) {
-        let most = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let mut roomy = aabb.loosened(most * N::lit(LARGE_ROOM));
+    fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
+        let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
+        let mut roomy = aabb.loosened(half * N::lit(LARGE_ROOM));
         if !self.is_dense {
             self.search(composite, &roomy);
-            self.is_dense = self.parts.len() > LANES;
+            self.is_dense = self.parts.len() > most;
         }
         if self.is_dense {
-            roomy = aabb.loosened(most * N::lit(ROOM));
+            roomy = aabb.loosened(half * N::lit(ROOM));
             self.search(composite, &roomy);
         }
         self.tiles.clear();
@@ -117,6 +127,11 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
     /// All parts are segments that are kept by their corners.
     pub(super) fn has_segments_alone(&self) -> bool {
         self.parts.is_empty() || self.are_segments && !self.tiles.is_empty()
+    }
+
+    /// All parts are triangles that are kept by their corners.
+    pub(super) fn has_triangles_alone(&self) -> bool {
+        self.parts.is_empty() || !(self.are_segments || self.tiles.is_empty())
     }
 
     /// Half the extents of the core of the solid that this is about.

@@ -104,8 +104,12 @@ pub(super) fn search_box<N: Space<D>, const D: usize>(
 
 /// How far a point is from the outside of a box that holds it.
 pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
-    let (below, above) = (point - aabb.mins(), aabb.maxs() - point);
-    below.iter().chain(above.iter()).fold(N::INFINITY, |least, &x| min(x, least))
+    let mut least = N::INFINITY;
+    for axis in 0..D {
+        let at = point[axis];
+        least = min(aabb.maxs()[axis] - at, min(at - aabb.mins()[axis], least));
+    }
+    least
 }
 
 /// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape

@@ -6,11 +6,12 @@ use super::super::bounds::enclosing;
 use super::around::Around;
 use super::candidates::{depth_in, search_box};
 use super::facts::{Finding, Notes, Standing};
-use super::hidden::are_alike;
 use super::judge::{Case, Verdict, judge};
 use super::near::relative_slack;
 use super::scene::Scene;
-use super::{CompositeContacts, Findings, Query, Way, advanced, middle_of_first, of_parts};
+use super::{
+    CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
@@ -26,18 +27,9 @@ use crate::shape::{
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
 
-/// In space there are no chains: answers false.
-pub(crate) fn update_chain3<N: Real>(
-    _: &mut CompositeContacts<N, 3>,
-    _: &Between<'_, N, 3>,
-    _: &ManifoldRequest<N>,
-) -> bool {
-    false
-}
-
 /// Brings the contacts of a convex solid and a chain up to date; answers false where that is left to the
 /// general way.
-pub(crate) fn update_chain2<N: Real>(
+pub(crate) fn update_chain<N: Real>(
     contacts: &mut CompositeContacts<N, 2>,
     between: &Between<'_, N, 2>,
     request: &ManifoldRequest<N>,
@@ -57,26 +49,9 @@ pub(crate) fn update_chain2<N: Real>(
     if !is_settled(&findings) {
         query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
     }
-    contacts.conclude((request, merge_in_plane), [reference, center], &findings, &notes);
+    let findings = (findings.as_slice(), N::ZERO);
+    contacts.conclude((request, merge_in_plane), [reference, center], findings, &notes);
     true
-}
-
-/// [`Query::settle`] would change nothing: all hold, with faces of about one normal, and as near as the nearest.
-fn is_settled<N: Real>(findings: &[Finding<N, 2>]) -> bool {
-    let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
-    let mut face: Option<Vector<N, 2>> = None;
-    for finding in findings {
-        let is_alike = match (face, finding.face) {
-            (Some(before), Some(own)) => are_alike(&before, &own),
-            _ => true,
-        };
-        if !(is_alike && finding.standing == Standing::Own) {
-            return false;
-        }
-        face = finding.face.or(face);
-        (distance, lowest) = (min(distance, finding.distance), min(lowest, finding.lowest));
-    }
-    findings.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
 /// A convex solid and the chain that it may touch.

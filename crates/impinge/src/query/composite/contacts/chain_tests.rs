@@ -1,7 +1,7 @@
 //! Contacts of chains against the general way, which defines them: the same bits, step after step.
 
 use super::CompositeContacts;
-use super::chain::update_chain2;
+use super::chain::update_chain;
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector};
 use crate::query::ManifoldRequest;
 use crate::query::composite::Between;
@@ -97,7 +97,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
         let placed1 = Placed { pose, shape: solid.geometry() };
         let placed2 = Placed { pose: under, shape: ground.geometry() };
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
-        let is_done = update_chain2(&mut quick, &between, &request);
+        let is_done = update_chain(&mut quick, &between, &request);
         if !is_done {
             quick.update_in_general(&between, false, &request);
         }

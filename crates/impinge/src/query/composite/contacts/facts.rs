@@ -179,7 +179,7 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
 }
 
 /// A ball over a side or a corner has no point over the face.
-fn is_beside(over: Option<FeatureId>) -> bool {
+pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
@@ -206,7 +206,10 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         Settled::Found(normal) => {
             let witness = Separation { normal: placed.inward(&normal), ..found };
             match over.filter(|over| is_certain(*over, &verdicts[1])) {
-                Some(over) => of_ball(&witness, over, raw),
+                Some(over) => {
+                    raw.normal = witness.normal;
+                    raw.points.push(of_ball(&witness, over));
+                }
                 None => build_on_face(&pair, (&witness, tolerance), request, raw),
             }
             Standing::Own
@@ -239,20 +242,21 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
 
 /// The name of a contact is the feature that the ball is over: close to a side a ball may yet have
 /// the normal of the face.
-fn is_certain<N: Real, const D: usize>(over: FeatureId, verdict: &Verdict<N, D>) -> bool {
+pub(super) fn is_certain<N: Real, const D: usize>(
+    over: FeatureId,
+    verdict: &Verdict<N, D>,
+) -> bool {
     matches!(over, FeatureId::Face(_)) == matches!(verdict, Verdict::Face(_))
 }
 
 /// The contact of a ball with a known feature.
-fn of_ball<N: Real, const D: usize>(
+pub(super) fn of_ball<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     over: FeatureId,
-    out: &mut RawManifold<N, D>,
-) {
+) -> RawPoint<N, D> {
     let (point1, distance) = (witness.point1, witness.distance);
     let (feature1, feature2, id) = (FeatureId::Face(0), over, 0);
-    out.normal = witness.normal;
-    out.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
+    RawPoint { point1, distance, feature1, feature2, id, code: 0 }
 }
 
 /// What two parts within reach say on their own of how near they are.

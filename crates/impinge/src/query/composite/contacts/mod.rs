@@ -23,16 +23,21 @@ mod over;
 mod resolve;
 mod scene;
 mod sight;
+mod surface_ball;
+#[cfg(test)]
+mod surface_tests;
 mod view;
 
 use smallvec::SmallVec;
 
 use self::around::Around;
 use self::candidates::Nearby;
-pub(crate) use self::chain::{update_chain2, update_chain3};
+pub(crate) use self::chain::update_chain;
 use self::facts::{Finding, Notes, Reference, Standing};
+use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
 use self::scene::Scene;
+pub(crate) use self::surface_ball::update_on_surface;
 use super::between::Between;
 use super::bounds::aabb_of;
 use super::ray::RayQuestion;
@@ -98,7 +103,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        if !(N::tables().update_chain)(self, between, request) {
+        if !(N::tables().update_quickly)(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
@@ -120,21 +125,22 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
         let findings = query.findings(&nearby, &mut notes);
-        self.conclude((request, merge), [reference, center], &findings, &notes);
+        self.conclude((request, merge), [reference, center], (&findings, N::ZERO), &notes);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
-    /// shapes overlap, else where it is.
+    /// shapes overlap, else where it is. What counts as rounding is given with what is found: of that the
+    /// most counts.
     fn conclude(
         &mut self,
         (request, merge): (&ManifoldRequest<N>, MergeFn<N, D>),
         [reference, center]: [Reference<N, D>; 2],
-        findings: &[Finding<N, D>],
+        (findings, rounding): (&[Finding<N, D>], N),
         notes: &Notes<N, D>,
     ) {
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
-        let tolerance = findings.iter().fold(N::ZERO, |most, found| max(most, found.tolerance));
+        let tolerance = findings.iter().fold(rounding, |most, found| max(most, found.tolerance));
         let mut pieces: SmallVec<[Piece<N, D>; 8]> = SmallVec::new();
         for found in findings.iter().filter(|found| found.standing != Standing::Left) {
             pieces.push(found.piece.clone());
@@ -146,6 +152,24 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let merging = Merging { request, tolerance, pieces: &pieces, points: &notes.points };
         merge(&merging, &mut self.patches, &mut self.ids);
     }
+}
+
+/// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
+fn is_settled<N: Real, const D: usize>(findings: &[Finding<N, D>]) -> bool {
+    let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
+    let mut face: Option<Vector<N, D>> = None;
+    for finding in findings {
+        let is_alike = match (face, finding.face) {
+            (Some(before), Some(own)) => are_alike(&before, &own),
+            _ => true,
+        };
+        if !(is_alike && finding.standing == Standing::Own) {
+            return false;
+        }
+        face = finding.face.or(face);
+        (distance, lowest) = (min(distance, finding.distance), min(lowest, finding.lowest));
+    }
+    findings.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
 /// Merges pieces into patches.

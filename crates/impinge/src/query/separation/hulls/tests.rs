@@ -32,7 +32,7 @@ impl Random {
     }
 
     /// Any turn, a quarter turn or a slight one.
-    pub(in super::super) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
+    pub(in crate::query) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
         let q = UnitQuaternion::from_quaternion(Quaternion::new(
@@ -88,7 +88,7 @@ fn verdict<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> Verdict<N>
     at(level, [&flat(0), &flat(1)], &pair.pose12, limit)
 }
 
-pub(in super::super) fn levels() -> Vec<Level> {
+pub(in crate::query) fn levels() -> Vec<Level> {
     let level = Level::new();
     let mut all = vec![level];
     #[cfg(target_arch = "x86_64")]

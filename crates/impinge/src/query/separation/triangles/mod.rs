@@ -4,9 +4,11 @@
 //! [`triangle_polytope`](super::triangle_polytope), in the same order of operations, so that the answers
 //! have the same bits.
 
+mod ball;
 mod cuboid;
 mod polytope;
 
+pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
 use fearless_simd::{Level, Select, Simd};
 use smallvec::SmallVec;
 
