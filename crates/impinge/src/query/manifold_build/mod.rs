@@ -52,6 +52,7 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
+use super::separation::hulls::{self, Certificate};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -100,11 +101,13 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in space, from nothing: by the fused algorithm of its kinds where there is
-/// one and it does not decline, else from the separation.
+/// The manifold of a pair in space: by the fused algorithm of its kinds where there is one and it does not
+/// decline, else from the separation. A pair that is asked again and again brings its certificate, which
+/// changes no bit.
 pub(crate) fn contacts3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
+    certificate: Option<&mut Certificate<N, 3>>,
     out: &mut RawManifold<N, 3>,
 ) {
     if let Kind::Ball(_) = pair.first {
@@ -113,7 +116,13 @@ pub(crate) fn contacts3<N: Real>(
     if box_faces::build(pair, request, out) {
         return;
     }
-    match separation_in_space(pair, request.prediction) {
+    let separation = match certificate {
+        Some(certificate) if hulls::treats(pair) => {
+            hulls::separation_again(pair, request.prediction, certificate)
+        }
+        _ => separation_in_space(pair, request.prediction),
+    };
+    match separation {
         Some(separation) => match segments::crossing_parts(pair, &separation, request) {
             Some(parts) => {
                 out.normal = separation.normal;
@@ -125,10 +134,11 @@ pub(crate) fn contacts3<N: Real>(
     }
 }
 
-/// The manifold of a pair in the plane, from nothing; as [`contacts3`].
+/// The manifold of a pair in the plane; as [`contacts3`]. Certificates are of space alone.
 pub(crate) fn contacts2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
+    _: Option<&mut Certificate<N, 2>>,
     out: &mut RawManifold<N, 2>,
 ) {
     if let Kind::Ball(_) = pair.first {

@@ -1,10 +1,12 @@
 //! A face of one solid, and the vertices of the other that lie nearest to it.
 
+use core::cell::Cell;
 use core::ops::ControlFlow;
 
 use fearless_simd::Simd;
 
 use super::cloud::{Cloud, Heights, Place, highest_over};
+use super::pool::{Asked, Pool};
 use super::solid::Flat;
 use super::{Found, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
@@ -39,6 +41,10 @@ pub(super) struct Meeting<'s, 'a, N: Real> {
     pub(super) face: usize,
     pub(super) normal: Vector<N, 3>,
     pub(super) shrink: N,
+    /// The edges of each solid that may decide, if that is known.
+    pub(super) pool: Option<Pool<N>>,
+    /// What edges were asked about, and within what reach.
+    pub(super) asked: Cell<Asked<N>>,
 }
 
 /// Whether the other solid lies above the face, there where it is lowest.
