@@ -18,6 +18,7 @@ mod box_lanes;
 mod box_sides;
 mod chain;
 mod closed_lanes;
+mod faces;
 mod facet;
 mod fences;
 mod frame;
@@ -87,7 +88,10 @@ pub(crate) fn build3<N: Real>(
     out: &mut RawManifold<N, 3>,
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
-    build(pair, &frame, (request, request.max_points), out);
+    let limits = (request, request.max_points);
+    if !faces::build(pair, &frame, limits, out) {
+        build(pair, &frame, limits, out);
+    }
 }
 
 /// Two directions that complete a normal of space to a right-handed basis.

@@ -20,8 +20,9 @@ pub(crate) struct Certificate<N: Real, const D: usize> {
     shrink: N,
     reach: N,
     edges: [Few; 2],
-    /// For each solid the number of a face or a code; where a face parts the two, its solid and its number.
-    faces: [u8; 2],
+    /// For each solid the number of a face or a code, and of another one that may be better; where a face
+    /// parts the two, its solid and its number.
+    faces: [[u8; 2]; 2],
     aim: Aim,
     stage: Stage,
     /// How often it served.
@@ -58,7 +59,7 @@ impl<N: Real, const D: usize> Default for Certificate<N, D> {
             shrink: N::ZERO,
             reach: N::ZERO,
             edges: [Few::default(); 2],
-            faces: [ANY; 2],
+            faces: [[ANY; 2]; 2],
             aim: Aim::Nothing,
             stage: Stage::Nothing,
             uses: 0,
@@ -93,7 +94,7 @@ impl<N: Real> Certificate<N, 3> {
             }
             return verdict;
         }
-        let is_worth = moved <= room * N::HALF || self.is_made() && self.uses >= WORTH;
+        let is_worth = moved <= room || self.is_made() && self.uses >= WORTH;
         let mut guide = if is_worth { Guide::drafting() } else { Guide::default() };
         let verdict = ask(&mut guide);
         self.set_pose(pose12, shrink);
@@ -147,12 +148,14 @@ impl<N: Real> Certificate<N, 3> {
     /// What is known.
     fn guide(&self) -> Guide<N> {
         if self.stage == Stage::Parting {
-            return Guide::parting(usize::from(self.faces[0]), usize::from(self.faces[1]));
+            let [which, face] = self.faces[0].map(usize::from);
+            return Guide::parting(which, face);
         }
-        let known = self.faces.map(|face| match face {
-            ANY => Known::Any,
-            LOWER => Known::Lower,
-            face => Known::Is(usize::from(face)),
+        let known = self.faces.map(|faces| match faces {
+            [ANY, _] => Known::Any,
+            [LOWER, _] => Known::Lower,
+            [face, ANY] => Known::Is(usize::from(face)),
+            [face, other] => Known::Either(usize::from(face), usize::from(other)),
         });
         let asked = Asked { aim: self.aim, reach: self.reach };
         let has_edges = self.stage == Stage::FacesAndEdges;
@@ -165,14 +168,15 @@ impl<N: Real> Certificate<N, 3> {
             Verdict::Undecided => {}
             Verdict::Beyond => {
                 let which = usize::from(guide.best[1].height > guide.best[0].height);
-                self.faces = [which, guide.best[which].face].map(code);
+                self.faces[0] = [which, guide.best[which].face].map(code);
                 self.stage = Stage::Parting;
             }
             Verdict::Found(_) => {
                 self.faces = guide.faces().map(|known| match known {
-                    Known::Any => ANY,
-                    Known::Lower => LOWER,
-                    Known::Is(face) => code(face),
+                    Known::Any => [ANY; 2],
+                    Known::Lower => [LOWER; 2],
+                    Known::Is(face) => [code(face), ANY],
+                    Known::Either(face, other) => [face, other].map(code),
                 });
                 self.stage = Stage::Faces;
                 if let Some(Pools { edges, asked }) = guide.noted() {
@@ -192,4 +196,8 @@ fn code(face: usize) -> u8 {
 #[expect(clippy::cast_possible_truncation, reason = "what is too large becomes the largest")]
 fn in_steps<N: Real>(value: N) -> i16 {
     (value.as_f64() * STEPS) as i16
+}
+#[cfg(test)]
+impl<N: Real> Certificate<N, 3> {
+    pub(super) fn stage(&self) -> String { format!("{:?} {:?}", self.stage, self.faces.map(|f| match f { [ANY, _] => "any", [LOWER, _] => "lower", [_, ANY] => "is", _ => "either" })) }
 }

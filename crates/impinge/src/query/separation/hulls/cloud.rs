@@ -81,8 +81,31 @@ impl<N: Real> Place<N> {
 pub(super) struct Best<N> {
     pub(super) face: usize,
     pub(super) height: N,
-    /// That of the next best face, if it was asked for.
-    pub(super) next: N,
+    /// The next best face with its height and the height of the third, if they were asked for.
+    pub(super) next: (usize, N),
+    pub(super) third: N,
+}
+
+impl<N: Real> Best<N> {
+    /// One of which nothing more is known.
+    pub(super) fn alone(face: usize, height: N) -> Self {
+        Self { face, height, next: (face, -N::INFINITY), third: -N::INFINITY }
+    }
+
+    /// Finds the two faces that come after the best one.
+    #[inline(always)]
+    fn rank(&mut self, heights: &[N]) {
+        for (index, &height) in heights.iter().enumerate() {
+            if index == self.face || !(height > self.third) {
+                continue;
+            }
+            if height > self.next.1 {
+                (self.third, self.next) = (self.next.1, (index, height));
+            } else {
+                self.third = height;
+            }
+        }
+    }
 }
 
 impl<N: Real> Cloud<N> {
@@ -163,8 +186,8 @@ impl<N: Real> Cloud<N> {
         -highest_lane(-low)
     }
 
-    /// The plane that lies farthest below all vertices, the first of equals. How far the next one of
-    /// `count` planes lies below is found if that is asked for.
+    /// The plane that lies farthest below all vertices, the first of equals. Those of the `count` planes
+    /// that come next are found if that is asked for.
     #[inline(always)]
     pub(super) fn farthest_plane<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -191,13 +214,11 @@ impl<N: Real> Cloud<N> {
                 break;
             }
         }
-        let mut next = -N::INFINITY;
+        let mut best = Best::alone(face, most);
         if with_next {
-            for (index, &height) in heights.as_flattened()[..count].iter().enumerate() {
-                next = if index == face { next } else { max(height, next) };
-            }
+            best.rank(&heights.as_flattened()[..count]);
         }
-        Best { face, height: most, next }
+        best
     }
 
     /// How far the vertices lie above a plane, the number that [`Self::farthest_plane`] finds for it.

@@ -20,6 +20,20 @@ pub(super) enum Known {
     Lower,
     /// This one is the highest.
     Is(usize),
+    /// One of these two is, the first of equals; they are ascending.
+    Either(usize, usize),
+}
+
+impl Known {
+    /// The faces that may be the best, where they are known.
+    pub(super) fn faces(self) -> impl Iterator<Item = usize> {
+        let [one, other] = match self {
+            Self::Any | Self::Lower => [None, None],
+            Self::Is(face) => [Some(face), None],
+            Self::Either(face, other) => [Some(face), Some(other)],
+        };
+        one.into_iter().chain(other)
+    }
 }
 
 /// How a search may be cut short, what it found on its way, and what the next one may go by.
@@ -39,7 +53,7 @@ pub(super) struct Guide<N: Real> {
 
 impl<N: Real> Default for Guide<N> {
     fn default() -> Self {
-        let none = Best { face: 0, height: -N::INFINITY, next: -N::INFINITY };
+        let none = Best::alone(0, -N::INFINITY);
         Self {
             known: [Known::Any; 2],
             parting: None,
@@ -92,12 +106,19 @@ impl<N: Real> Guide<N> {
         cloud: &Cloud<N>,
         shrink: N,
     ) -> N {
-        let best = if let Known::Is(face) = self.known[which] {
-            let height = cloud.above::<S, V>(simd, (solid, face), shrink);
-            Best { face, height, next: -N::INFINITY }
-        } else {
-            let planes = (solid.planes, solid.faces());
-            cloud.farthest_plane::<S, V>(simd, planes, shrink, self.is_drafting)
+        let best = match self.known[which] {
+            Known::Is(face) => {
+                Best::alone(face, cloud.above::<S, V>(simd, (solid, face), shrink))
+            }
+            Known::Either(face, other) => {
+                let height = cloud.above::<S, V>(simd, (solid, face), shrink);
+                let second = cloud.above::<S, V>(simd, (solid, other), shrink);
+                if second > height { Best::alone(other, second) } else { Best::alone(face, height) }
+            }
+            Known::Any | Known::Lower => {
+                let planes = (solid.planes, solid.faces());
+                cloud.farthest_plane::<S, V>(simd, planes, shrink, self.is_drafting)
+            }
         };
         self.best[which] = best;
         best.height
@@ -114,8 +135,13 @@ impl<N: Real> Guide<N> {
         let winner = usize::from(self.is_second());
         let (best, other) = (&self.best[winner], &self.best[1 - winner]);
         let clear = N::TWO * N::lit(ROOM) + N::lit(16.0) * noise();
-        let is = |one: &Best<N>| {
-            if one.height - one.next > clear { Known::Is(one.face) } else { Known::Any }
+        let is = |one: &Best<N>| match one {
+            one if one.height - one.next.1 > clear => Known::Is(one.face),
+            one if one.height - one.third > clear && one.face < one.next.0 => {
+                Known::Either(one.face, one.next.0)
+            }
+            one if one.height - one.third > clear => Known::Either(one.next.0, one.face),
+            _ => Known::Any,
         };
         let rival = if best.height - other.height > clear { Known::Lower } else { is(other) };
         if winner == 1 { [rival, is(best)] } else { [is(best), rival] }
@@ -124,11 +150,6 @@ impl<N: Real> Guide<N> {
     /// The edges that may decide can be told: it is known whose plane they are measured from.
     pub(super) fn has_known_faces(&self) -> bool {
         !self.faces().contains(&Known::Any)
-    }
-
-    /// Either solid may come to have the best face.
-    pub(super) fn may_turn_round(&self) -> bool {
-        !self.faces().contains(&Known::Lower)
     }
 
     /// Notes the edges that may decide, as seen from the first or second solid.

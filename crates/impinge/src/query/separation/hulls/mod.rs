@@ -31,6 +31,7 @@ pub(crate) use self::certificate::Certificate;
 use self::cloud::{Cloud, Place};
 use self::face::{Meeting, Side};
 use self::guide::Guide;
+use self::pool::Reached;
 use self::solid::{BoxParts, Flat};
 use super::{general, wrong_kinds};
 use crate::convex::{Separation, Units};
@@ -202,13 +203,22 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let clouds = [[&own1, &own2], [&cloud1, &cloud2]];
     let places = [in_first, in_second];
     let view = View { solids: [first, second], clouds, places, shrink };
-    let meeting = view.meeting::<S, V>(simd, is_second, guide);
+    let mut meeting = view.meeting::<S, V>(simd, is_second, guide.best[usize::from(is_second)].face);
+    meeting.pool = guide.pool.map(|pool| pool.seen_from(is_second));
     let found = meeting.resolve::<S, V>(simd);
     guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
     let Some(found) = found else { return Verdict::Undecided };
     if guide.is_drafting() && guide.has_known_faces() {
-        let other = guide.may_turn_round().then(|| view.meeting::<S, V>(simd, !is_second, guide));
-        guide.note_edges(meeting.pool::<S, V>(simd, other.as_ref(), &found), is_second);
+        let mut others = Reached::default();
+        if let Some(wide) = meeting.wide() {
+            for (which, known) in guide.faces().into_iter().enumerate() {
+                for face in known.faces() {
+                    let turned = view.meeting::<S, V>(simd, which == 1, face);
+                    others.add(turned.within_reach::<S, V>(simd, wide), which != usize::from(is_second));
+                }
+            }
+        }
+        guide.note_edges(meeting.pool::<S, V>(simd, &others, &found), is_second);
     }
     let restored = found.restored(units.scale);
     Verdict::Found(if is_second { in_first_frame(&restored, pose12) } else { restored })
@@ -225,20 +235,18 @@ struct View<'s, 'a, N: Real> {
 }
 
 impl<'s, 'a, N: Real> View<'s, 'a, N> {
-    /// The best face of the first or second solid, and what the other one shows it.
+    /// A face of the first or second solid, and what the other one shows it.
     #[inline(always)]
     fn meeting<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         is_second: bool,
-        guide: &Guide<N>,
+        face: usize,
     ) -> Meeting<'s, 'a, N> {
         let (one, two) = (usize::from(is_second), usize::from(!is_second));
-        let face = guide.best[one].face;
         let normal = self.solids[one].normal(face);
         let own = Side::new::<S, V>(simd, self.solids[one], self.clouds[0][one], &-normal);
         let other = Side::new::<S, V>(simd, self.solids[two], self.clouds[1][two], &normal);
-        let pool = guide.pool.map(|pool| pool.seen_from(is_second));
         Meeting {
             own,
             other,
@@ -246,7 +254,7 @@ impl<'s, 'a, N: Real> View<'s, 'a, N> {
             face,
             normal,
             shrink: self.shrink,
-            pool,
+            pool: None,
             asked: Cell::default(),
         }
     }

@@ -132,33 +132,53 @@ struct Slack<N> {
     squared: N,
 }
 
+/// Edges of the solid with the best face and of the other one that are within the reach of some face, as
+/// bits.
+#[derive(Default)]
+pub(super) struct Reached([u128; 2]);
+
+impl Reached {
+    /// Those of a face, which belongs to the other solid if `is_turned`.
+    pub(super) fn add(&mut self, [own, other]: [Chosen; 2], is_turned: bool) {
+        let (own, other) = if is_turned { (other, own) } else { (own, other) };
+        self.0[0] |= own.bits();
+        self.0[1] |= other.bits();
+    }
+}
+
 impl<N: Real> Meeting<'_, '_, N> {
+    /// What will be asked: the reach may grow by thrice the room.
+    fn asked_by_then(&self) -> Asked<N> {
+        let Asked { aim, reach } = self.asked.get();
+        Asked { aim, reach: reach + N::lit(3.0) * N::lit(ROOM) }
+    }
+
+    /// Within what reach edges are now that may come within the reach by then: vertices move by twice the
+    /// room to one another along the normal. `None` where edges are not looked at.
+    pub(super) fn wide(&self) -> Option<N> {
+        let Asked { aim, reach } = self.asked_by_then();
+        let is_asked = matches!(aim, Aim::Crossing | Aim::Nearest);
+        is_asked.then_some(reach + N::TWO * N::lit(ROOM))
+    }
+
     /// The edges that may decide while the solids move no farther than [`ROOM`]; `None` if they are many.
-    /// `turned` is the same meeting seen from the other solid, if that may come to have the best face.
-    ///
-    /// The reach may grow by thrice the room, and vertices come within it that were off by twice that.
+    /// They are among those within the reach of one of the faces that may be the best by then.
     #[inline(always)]
     pub(super) fn pool<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        turned: Option<&Self>,
+        reached: &Reached,
         found: &Found<N>,
     ) -> Option<Pool<N>> {
-        let (room, Asked { aim, reach }) = (N::lit(ROOM), self.asked.get());
-        let asked = Asked { aim, reach: reach + N::lit(3.0) * room };
+        let (room, asked) = (N::lit(ROOM), self.asked_by_then());
+        let aim = asked.aim;
         if aim == Aim::Both {
             return None;
         }
         if aim == Aim::Nothing {
             return Some(Pool { own: Few::default(), other: Few::default(), asked });
         }
-        let wide = asked.reach + N::TWO * room;
-        let [mut own, mut other] = self.within_reach::<S, V>(simd, wide);
-        if let Some(turned) = turned {
-            let [other_too, own_too] = turned.within_reach::<S, V>(simd, wide);
-            own = Chosen::of_bits(own.bits() | own_too.bits());
-            other = Chosen::of_bits(other.bits() | other_too.bits());
-        }
+        let [own, other] = reached.0.map(Chosen::of_bits);
         let rounding = N::lit(16.0) * noise();
         let apart = (found.on_other - found.on_own).norm() + N::TWO * room + rounding;
         // The squares of distances are off by some rounding errors of the squares of lengths.
