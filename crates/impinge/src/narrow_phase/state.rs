@@ -5,8 +5,9 @@ use crate::query::composite::Between;
 use crate::query::far::Bounds;
 use crate::query::pair::is_swapped;
 use crate::query::{
-    BoxJob, Certificate, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
-    Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
+    BoxJob, Certificate, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair,
+    PairQuestion, Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise,
+    own_distance,
 };
 use crate::shape::{Geometry, Kind, Shape};
 

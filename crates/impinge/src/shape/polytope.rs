@@ -38,9 +38,6 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fan_starts: Vec<u32>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
-    /// For each face the squared sine of an angle: whatever direction its normal is no farther from is faced
-    /// by this face. Empty in the plane.
-    pub(super) sure: Vec<N>,
     pub(super) center: Point<N, D>,
     pub(super) reach: N,
     /// Shared by copies, and by nothing else: a solid never changes once it is made.
@@ -48,7 +45,7 @@ pub struct Polytope<N: Real, const D: usize> {
 }
 
 /// How many vertices or faces are looked at side by side.
-pub(super) const LANES: usize = 8;
+const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
 pub(super) const QUARTET: usize = 4;
 
@@ -225,36 +222,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             unit(&(b - a)).map(|(along, _)| along)
         };
         self.fan_directions = self.fans.iter().map(direction).collect();
-        let faces = if self.edges.is_empty() { &[] } else { self.faces.as_slice() };
-        self.sure = faces.iter().map(|face| self.sure_sine_squared(face)).collect();
-    }
-
-    /// What [`Self::sure`] holds.
-    ///
-    /// Half of the least sine of an edge that leads away from the face: within this angle all these edges
-    /// lead down, by more than rounding, so that the highest vertex is one of the face; and lean more
-    /// than the sides of the face. Zero where an edge is too short or too flat to tell.
-    fn sure_sine_squared(&self, face: &PolytopeFace<N, D>) -> N {
-        let rounding = N::lit(256.0) * N::EPSILON;
-        let (sides, mut least) = (self.face_sides(face), N::ONE);
-        for &vertex in self.face_vertices(face) {
-            for (side, along) in self.fan_along(vertex as usize) {
-                let Some(along) = along else { return N::ZERO };
-                if sides.contains(&side) {
-                    continue;
-                }
-                let ends = self.side(side).vertices.map(|end| self.vertices[end as usize]);
-                let (sine, length) = (along.dot(&face.normal).abs(), (ends[1] - ends[0]).norm());
-                // Cosines, by which the rule compares the faces at a side, differ by its square.
-                let is_steep = sine * sine > N::TWO * rounding;
-                if !(is_steep && sine * length > rounding * self.reach) {
-                    return N::ZERO;
-                }
-                least = if sine < least { sine } else { least };
-            }
-        }
-        let sine = N::lit(0.45) * least;
-        sine * sine
     }
 }
 

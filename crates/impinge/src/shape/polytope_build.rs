@@ -45,7 +45,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             fans: Vec::new(),
             fan_starts: Vec::new(),
             fan_directions: Vec::new(),
-            sure: Vec::new(),
             center,
         }
     }

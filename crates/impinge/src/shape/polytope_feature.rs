@@ -1,6 +1,6 @@
 //! The features of polytopes, in any dimension.
 
-use super::polytope::{LANES, count32};
+use super::polytope::count32;
 use super::tilt::Tilt;
 use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
 use crate::math::{Point, Real, Vector, unit, unit_or};
@@ -19,40 +19,6 @@ type Ends<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
 impl<N: Real, const D: usize> Polytope<N, D> {
     /// The rule of [`SupportMap::core_feature`], with any limit.
     fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
-        match self.sure_face(direction) {
-            Some(face) if tilt.admits_face(&self.faces[face].normal, direction) => {
-                Part::Face(count32(face))
-            }
-            _ => self.part_by_rule(direction, tilt),
-        }
-    }
-
-    /// The most aligned face, if it is aligned so well that it is the one that the rule leads to.
-    fn sure_face(&self, direction: &Vector<N, D>) -> Option<usize> {
-        let (first, rest) = self.planes.split_first().filter(|_| !self.sure.is_empty())?;
-        let (mut best, mut places) = (along(&first.normals, direction), [0_u32; LANES]);
-        for (place, block) in (1_u32..).zip(rest) {
-            let candidates = along(&block.normals, direction);
-            for lane in 0..LANES {
-                let is_better = candidates[lane] > best[lane];
-                best[lane] = if is_better { candidates[lane] } else { best[lane] };
-                places[lane] = if is_better { place } else { places[lane] };
-            }
-        }
-        let mut lane = 0;
-        for other in 1..LANES {
-            lane = if best[other] > best[lane] { other } else { lane };
-        }
-        // The last face fills its block.
-        let (index, last) = (places[lane] as usize * LANES + lane, self.faces.len() - 1);
-        let index = if index < last { index } else { last };
-        let aside = direction - self.faces[index].normal * best[lane];
-        let is_sure = best[lane] > N::HALF && aside.norm_squared() < self.sure[index];
-        is_sure.then_some(index)
-    }
-
-    /// [`Self::part_toward`] by vertices and sides.
-    fn part_by_rule(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
         let vertex = self.support_vertex(direction);
         let Some((side, slope)) = self.flattest_side(vertex, direction) else {
             return Part::Vertex(vertex);
@@ -194,21 +160,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
         Self::place(id, 1, count)
     }
-}
-
-/// How far eight normals reach along a direction.
-#[inline]
-fn along<N: Real, const D: usize>(
-    normals: &[[N; LANES]; D],
-    direction: &Vector<N, D>,
-) -> [N; LANES] {
-    let mut sums = [N::ZERO; LANES];
-    for (axis, coordinates) in normals.iter().enumerate() {
-        for lane in 0..LANES {
-            sums[lane] += coordinates[lane] * direction[axis];
-        }
-    }
-    sums
 }
 
 impl<N: Real> Polytope<N, 2> {
@@ -353,51 +304,5 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
             Part::Side(side) => Self::side_id(side),
             Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::noise::Noise;
-    use crate::shape::{ConvexHull, Kind, Shape};
-
-    /// Hulls anywhere, in a grid (with faces of many corners), and flat ones with short edges.
-    fn faces_are_sure<N: Real>(seed: u64) {
-        let (noise, mut sure) = (&mut Noise(seed), 0);
-        for round in 0..300_usize {
-            let points: Vec<Point<N, 3>> = (0..14)
-                .map(|_| match round % 3 {
-                    0 => noise.vector::<N>(1.0),
-                    1 => noise.vector::<N>(1.6).map(|x| (x * N::lit(1.5)).round()),
-                    _ => {
-                        let mut flat = noise.vector::<N>(1.0);
-                        flat.y *= N::lit(1e-3);
-                        flat
-                    }
-                })
-                .map(Point::from)
-                .collect();
-            let Ok(hull) = ConvexHull::try_from_points(&points) else { continue };
-            let Kind::Polytope(hull) = hull.geometry().0 else { panic!("a hull is a polytope") };
-            for turn in 0..40 {
-                let face = &hull.faces()[turn % hull.faces().len()];
-                let lean = [0.0, 1e-6, 1e-3, 0.05, 0.2, 1.0][turn % 6];
-                let direction = unit_or(&(face.normal + noise.vector::<N>(lean)), face.normal);
-                for tilt in [Tilt::usual(), Tilt::least(), Tilt::of_angle(N::lit(0.02))] {
-                    let expected = hull.part_by_rule(&direction, tilt);
-                    let found = hull.part_toward(&direction, tilt);
-                    assert_eq!(format!("{found:?}"), format!("{expected:?}"), "round {round}");
-                }
-                sure += usize::from(hull.sure_face(&direction).is_some());
-            }
-        }
-        assert!(sure > 3000, "{sure} faces are sure");
-    }
-
-    #[test]
-    fn sure_faces_are_those_of_the_rule() {
-        faces_are_sure::<f32>(1);
-        faces_are_sure::<f64>(2);
     }
 }

@@ -115,7 +115,8 @@ fn laid_out<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     [first, second]: [&FaceRing<N>; 2],
     pose12: &Pose<N, 3>,
 ) -> Option<Places<N>> {
-    let (points1, local2): ([V; 3], [V; 3]) = (load(simd, &first.corners), load(simd, &second.corners));
+    let (points1, local2): ([V; 3], [V; 3]) =
+        (load(simd, &first.corners), load(simd, &second.corners));
     let points2 = placed(simd, pose12, &local2);
     let (flats1, flats2) = (flat(simd, frame, &points1), flat(simd, frame, &points2));
     let mut places = Places([Outline::new(&points1, &flats1), Outline::new(&points2, &flats2)]);

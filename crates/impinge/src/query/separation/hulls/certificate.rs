@@ -197,7 +197,3 @@ fn code(face: usize) -> u8 {
 fn in_steps<N: Real>(value: N) -> i16 {
     (value.as_f64() * STEPS) as i16
 }
-#[cfg(test)]
-impl<N: Real> Certificate<N, 3> {
-    pub(super) fn stage(&self) -> String { format!("{:?} {:?}", self.stage, self.faces.map(|f| match f { [ANY, _] => "any", [LOWER, _] => "lower", [_, ANY] => "is", _ => "either" })) }
-}

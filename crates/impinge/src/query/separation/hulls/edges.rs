@@ -131,10 +131,7 @@ impl<N: Real> Meeting<'_, '_, N> {
     fn near<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> [u32; 2] {
         let slack = N::lit(4.0) * noise();
         let (least, most) = (self.other.heights.low - reach - slack, self.level() + reach + slack);
-        [
-            self.own.heights.up_to::<S, V>(simd, -least),
-            self.other.heights.up_to::<S, V>(simd, most),
-        ]
+        [self.own.heights.up_to::<S, V>(simd, -least), self.other.heights.up_to::<S, V>(simd, most)]
     }
 
     #[inline(always)]
@@ -150,7 +147,8 @@ impl<N: Real> Meeting<'_, '_, N> {
         Edge { index, from, along, squared: along.norm_squared() }
     }
 
-    /// Eight edges of the other solid; the last one fills the rest.
+    /// Up to eight edges of the other solid, with the normals of the faces beside them where these are asked
+    /// for. The rest are copies of the first, and with normals points without a direction.
     #[inline(always)]
     pub(super) fn edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -158,31 +156,32 @@ impl<N: Real> Meeting<'_, '_, N> {
         chosen: &[u8],
         with_normals: bool,
     ) -> Edges<N> {
-        let last = chosen.len() - 1;
-        let indices: [usize; LANES] =
-            from_fn(|lane| usize::from(chosen[if lane < last { lane } else { last }]));
         let zero = [[N::ZERO; LANES]; 3];
-        let mut edges = Edges { indices, from: zero, along: zero, normals: [zero; 2] };
-        for (lane, &index) in indices.iter().enumerate() {
-            let [from, to] = Self::ends(&self.other, index);
+        let mut edges = Edges { indices: [0; LANES], from: zero, along: zero, normals: [zero; 2] };
+        let mut local = [zero; 2];
+        for (lane, &index) in chosen.iter().enumerate().take(LANES) {
+            let edge = &self.other.solid.edges[usize::from(index)];
+            edges.indices[lane] = usize::from(index);
+            let [from, to] = edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize));
+            let [one, other] = edge.faces.map(|face| self.other.solid.normal(face as usize));
             for axis in 0..3 {
                 edges.from[axis][lane] = from[axis];
                 edges.along[axis][lane] = to[axis] - from[axis];
+                (local[0][axis][lane], local[1][axis][lane]) = (one[axis], other[axis]);
             }
         }
         if with_normals {
-            for side in 0..2 {
-                let normal = |index: usize| {
-                    let face = self.other.solid.edges[index].faces[side];
-                    self.other.solid.normal(face as usize)
-                };
-                let mut local = zero;
-                for (lane, &index) in indices.iter().enumerate() {
-                    let normal = normal(index);
-                    (0..3).for_each(|axis| local[axis][lane] = normal[axis]);
+            for (local, normals) in local.iter().zip(&mut edges.normals) {
+                let turned = self.place.turned::<S, V>(simd, &load(simd, local));
+                (0..3).for_each(|axis| turned[axis].store(&mut normals[axis]));
+            }
+        } else {
+            for lane in chosen.len()..LANES {
+                edges.indices[lane] = edges.indices[0];
+                for axis in 0..3 {
+                    edges.from[axis][lane] = edges.from[axis][0];
+                    edges.along[axis][lane] = edges.along[axis][0];
                 }
-                let turned = self.place.turned::<S, V>(simd, &load(simd, &local));
-                (0..3).for_each(|axis| turned[axis].store(&mut edges.normals[side][axis]));
             }
         }
         edges

@@ -107,9 +107,7 @@ impl<N: Real> Guide<N> {
         shrink: N,
     ) -> N {
         let best = match self.known[which] {
-            Known::Is(face) => {
-                Best::alone(face, cloud.above::<S, V>(simd, (solid, face), shrink))
-            }
+            Known::Is(face) => Best::alone(face, cloud.above::<S, V>(simd, (solid, face), shrink)),
             Known::Either(face, other) => {
                 let height = cloud.above::<S, V>(simd, (solid, face), shrink);
                 let second = cloud.above::<S, V>(simd, (solid, other), shrink);

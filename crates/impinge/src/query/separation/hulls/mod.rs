@@ -203,7 +203,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let clouds = [[&own1, &own2], [&cloud1, &cloud2]];
     let places = [in_first, in_second];
     let view = View { solids: [first, second], clouds, places, shrink };
-    let mut meeting = view.meeting::<S, V>(simd, is_second, guide.best[usize::from(is_second)].face);
+    let mut meeting =
+        view.meeting::<S, V>(simd, is_second, guide.best[usize::from(is_second)].face);
     meeting.pool = guide.pool.map(|pool| pool.seen_from(is_second));
     let found = meeting.resolve::<S, V>(simd);
     guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
@@ -214,7 +215,10 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             for (which, known) in guide.faces().into_iter().enumerate() {
                 for face in known.faces() {
                     let turned = view.meeting::<S, V>(simd, which == 1, face);
-                    others.add(turned.within_reach::<S, V>(simd, wide), which != usize::from(is_second));
+                    others.add(
+                        turned.within_reach::<S, V>(simd, wide),
+                        which != usize::from(is_second),
+                    );
                 }
             }
         }

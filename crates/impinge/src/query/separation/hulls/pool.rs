@@ -55,11 +55,8 @@ impl<N: Real> Asked<N> {
 
     /// Both.
     pub(super) fn and(self, other: Self) -> Self {
-        let aim = if self.aim == Aim::Nothing || self.aim == other.aim {
-            other.aim
-        } else {
-            Aim::Both
-        };
+        let aim =
+            if self.aim == Aim::Nothing || self.aim == other.aim { other.aim } else { Aim::Both };
         Self { aim, reach: if self.reach > other.reach { self.reach } else { other.reach } }
     }
 }
@@ -117,8 +114,7 @@ impl<N: Real> Pool<N> {
 
     /// No other edges can answer this.
     pub(super) fn serves(&self, asked: Asked<N>) -> bool {
-        asked.aim == Aim::Nothing
-            || self.asked.aim == asked.aim && asked.reach <= self.asked.reach
+        asked.aim == Aim::Nothing || self.asked.aim == asked.aim && asked.reach <= self.asked.reach
     }
 }
 
@@ -199,6 +195,7 @@ impl<N: Real> Meeting<'_, '_, N> {
         let (mut bits, is_crossing) = ([0; 2], self.asked.get().aim == Aim::Crossing);
         for eight in other.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, is_crossing);
+            let valid = ALL >> (LANES - eight.len());
             for &index in own.indices() {
                 let edge1 = self.edge(usize::from(index));
                 let mut found = if is_crossing {
@@ -209,6 +206,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                     let squares = squares::<S, N, V>(simd, &edge1, &edges2);
                     !squares.simd_gt(V::all(simd, slack.squared)).to_bitmask() & ALL
                 };
+                found &= valid;
                 bits[0] |= u128::from(found != 0) << index;
                 while found != 0 {
                     bits[1] |= 1 << edges2.indices[found.trailing_zeros() as usize];
