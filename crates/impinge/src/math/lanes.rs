@@ -7,6 +7,36 @@ use fearless_simd::{Select, Simd};
 
 use super::{Real, Vector, Wide};
 
+/// Runs `$body` with `$simd` bound to the vectors of `$level`, and `$otherwise` where it has none.
+///
+/// Of those of x86 only the largest that is worth it and the one that is always there are compiled:
+/// wider registers than AVX2 has bring nothing to eight lanes. What is called by the body must not
+/// depend on which vectors they are.
+macro_rules! with_lanes {
+    ($level:expr, $simd:ident => $body:expr, else $otherwise:expr) => {{
+        let level: fearless_simd::Level = $level;
+        #[cfg(target_arch = "x86_64")]
+        if let Some($simd) = level.as_avx2() {
+            fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            )
+        } else if let Some($simd) = level.as_sse2() {
+            fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            )
+        } else {
+            $otherwise
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!(level, $simd => $body)
+    }};
+}
+pub(crate) use with_lanes;
+
 /// The same number in all lanes.
 #[inline(always)]
 pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {

@@ -1,6 +1,6 @@
 //! The library's own proximity algorithm as an object, for use alone.
 
-use super::state::Posed;
+use super::state::{Posed, poses_within};
 use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
 use crate::math::Space;
 use crate::query::Proximity;
@@ -36,9 +36,13 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
         b: &dyn Shape<N, D>,
         margin: N,
     ) -> bool {
-        let (pose1, pose2) = (N::pose(ma), N::pose(mb));
-        let posed = Posed::new([&pose1, &pose2], [a, b]);
-        self.proximity = (N::tables().proximity)(&posed, margin);
+        self.proximity = match poses_within([ma, mb], [a, b], margin) {
+            None => Proximity::Disjoint,
+            Some([pose1, pose2]) => {
+                let posed = Posed::new([&pose1, &pose2], [a, b]);
+                (N::tables().proximity)(&posed, margin)
+            }
+        };
         true
     }
 

@@ -2,12 +2,11 @@
 
 use super::IdAllocator;
 use super::likeness::{Asked, Question};
-use super::state::{CompositeState, ContactState, Posed};
+use super::state::{CompositeState, ContactState, Posed, poses_within};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
 };
 use crate::math::{Real, Space};
-use crate::query::far::Apart;
 use crate::query::{ContactManifold, ManifoldRequest};
 use crate::shape::Shape;
 
@@ -75,13 +74,11 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         if Asked::note(&mut self.asked, &Question { positions, shapes, request }) {
             return true;
         }
-        let apart = Apart { shapes, between: N::translation(mb) - N::translation(ma) };
-        if (N::tables().are_beyond)(&apart, prediction.linear()) {
+        let Some([pose1, pose2]) = poses_within([ma, mb], [a, b], prediction.linear()) else {
             self.state.clear();
             self.manifolds.clear();
             return true;
-        }
-        let (pose1, pose2) = (N::pose(ma), N::pose(mb));
+        };
         let posed = Posed::new([&pose1, &pose2], [a, b]);
         let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);

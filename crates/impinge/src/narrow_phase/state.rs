@@ -2,7 +2,7 @@
 
 use crate::math::{Pose, Real, Space};
 use crate::query::composite::Between;
-use crate::query::far::Bounds;
+use crate::query::far::{Apart, Bounds};
 use crate::query::pair::is_swapped;
 use crate::query::{
     BoxJob, Certificate, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair,
@@ -67,6 +67,19 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     pub(crate) fn has_composite(&self) -> bool {
         has_composite(self.shape1, self.shape2)
     }
+}
+
+/// The poses of two shapes; `None` if the shapes are certainly farther apart than `limit`, which is
+/// told before anything is turned.
+pub(super) fn poses_within<N: Space<D>, const D: usize>(
+    [isometry1, isometry2]: [&N::Isometry; 2],
+    shapes: [&dyn Shape<N, D>; 2],
+    limit: N,
+) -> Option<[Pose<N, D>; 2]> {
+    let shapes = [shapes[0].geometry(), shapes[1].geometry()];
+    let between = N::translation(isometry2) - N::translation(isometry1);
+    let is_beyond = (N::tables().are_beyond)(&Apart { shapes, between }, limit);
+    (!is_beyond).then(|| [N::pose(isometry1), N::pose(isometry2)])
 }
 
 /// One of two shapes at least is a composite.
@@ -136,6 +149,20 @@ enum Aside<N: Real, const D: usize> {
 pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
 
 impl<C> InOrder<C> {
+    /// Puts what is kept, and two solids of these kinds, in the order in which they are computed; gives
+    /// the index of the solid that comes first and that of the other.
+    #[inline(always)]
+    fn order<N: Real, const D: usize>(
+        &mut self,
+        poses: [&Pose<N, D>; 2],
+        [kind1, kind2]: [Kind<'_, N, D>; 2],
+        flip_names: fn(&mut C),
+    ) -> [usize; 2] {
+        let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
+        self.turn(swapped, flip_names);
+        [usize::from(swapped), usize::from(!swapped)]
+    }
+
     /// The canonical order is this one now.
     fn turn(&mut self, swapped: bool, flip_names: fn(&mut C)) {
         if swapped != self.swapped {
@@ -230,10 +257,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         request: &'a ManifoldRequest<N>,
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
         let Aside::Copies(solids) = &self.aside else { return None };
-        let [kind1, kind2] = solids.each_ref().map(|solid| Geometry(solid.kind()));
-        let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
-        self.kept.turn(swapped, RawManifold::flip_names);
-        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let kinds = [solids[0].kind(), solids[1].kind()];
+        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
@@ -263,10 +288,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
             return None;
         };
         let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);
-        let [kind1, kind2] = kinds.map(Geometry);
-        let swapped = is_swapped(poses[0], kind1, poses[1], kind2);
-        self.kept.turn(swapped, RawManifold::flip_names);
-        let (first, second) = (usize::from(swapped), usize::from(!swapped));
+        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
         let (poses, cuboids) = ([poses[first], poses[second]], [cuboids[first], cuboids[second]]);
         Some(BoxJob { poses, cuboids, request, raw: &mut self.kept.contacts })
     }

@@ -12,7 +12,7 @@ use super::fences::fence;
 use super::frame::Frame;
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
-use crate::math::lanes::{dot, load, minus, spread};
+use crate::math::lanes::{dot, load, minus, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, max_component};
 use crate::shape::{FaceRing, FeatureId, Kind};
 
@@ -91,21 +91,7 @@ fn at<N: Real>(
     rings: [&FaceRing<N>; 2],
     pose12: &Pose<N, 3>,
 ) -> Option<Places<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12),
-        )
-    } else {
-        let simd = level.as_sse2()?;
-        simd.vectorize(
-            #[inline(always)]
-            || laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12),
-        )
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12))
+    with_lanes!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12), else None)
 }
 
 #[inline(always)]

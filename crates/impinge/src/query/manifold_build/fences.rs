@@ -3,7 +3,7 @@
 
 use fearless_simd::{Level, Simd, SimdMask};
 
-use crate::math::lanes::{dot, load, minus, spread};
+use crate::math::lanes::{dot, load, minus, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, max};
 use crate::shape::FaceRing;
 
@@ -56,21 +56,7 @@ impl<N: Real> Fences<N> {
 
 /// [`held`] with the vectors of an instruction set; the answers do not depend on it.
 fn at<N: Real>(level: Level, base: &Base<'_, N>, face: &FaceRing<N>) -> Option<Fences<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || held::<_, N, N::Lanes<_>>(simd, base, face),
-        )
-    } else {
-        let simd = level.as_sse2()?;
-        simd.vectorize(
-            #[inline(always)]
-            || held::<_, N, N::Lanes<_>>(simd, base, face),
-        )
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => held::<_, N, N::Lanes<_>>(simd, base, face))
+    with_lanes!(level, simd => held::<_, N, N::Lanes<_>>(simd, base, face), else None)
 }
 
 #[inline(always)]

@@ -11,6 +11,7 @@ use smallvec::SmallVec;
 
 use super::facet::{Corner, Facet, LANES};
 use super::frame::{Candidate, Frame};
+use crate::math::lanes::with_lanes;
 use crate::math::{Point, Real, Wide, cross2, max, max_component};
 use crate::shape::FeatureId;
 
@@ -324,14 +325,9 @@ impl<N: Real> Rows<N> {
 
     /// Fills both with the vectors of an instruction set; the numbers do not depend on it.
     fn fill_at<const D: usize>(level: Level, overlap: &Overlap<'_, N, D>, rows: &mut [Self; 2]) {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = level.as_avx2() {
-            return simd.vectorize(
-                #[inline(always)]
-                || Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows),
-            );
-        }
-        fearless_simd::dispatch!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows));
+        with_lanes!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows), else {
+            fearless_simd::dispatch!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows));
+        });
     }
 
     #[inline(always)]

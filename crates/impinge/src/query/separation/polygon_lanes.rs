@@ -9,7 +9,7 @@ use fearless_simd::{Level, Select, Simd, SimdMask};
 use super::polygon_nearest::nearest_points;
 use super::polygon_polygon::Axis;
 use crate::convex::Separation;
-use crate::math::lanes::dot;
+use crate::math::lanes::{dot, with_lanes};
 use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max, perp, unit};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
@@ -112,22 +112,7 @@ pub(super) fn between<N: Real>(
     known: Option<Axis<N>>,
     limit: N,
 ) -> Verdict<N> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit),
-        )
-    } else if let Some(simd) = level.as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit),
-        )
-    } else {
-        Verdict::Undecided
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit), else Verdict::Undecided)
 }
 
 #[inline(always)]

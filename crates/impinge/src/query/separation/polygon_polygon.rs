@@ -203,7 +203,7 @@ fn direct_axis<N: Real>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::math::{Matrix, Pose};
     use crate::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Segment, Shape, Triangle};
@@ -327,7 +327,7 @@ mod tests {
     }
 
     /// A ball, a segment, a capsule, a triangle, a box or a polygon.
-    fn solid_of<N: Real>(
+    pub(in crate::query::separation) fn solid_of<N: Real>(
         random: &mut crate::query::separation::hulls::tests::Random,
         kind: usize,
     ) -> Box<dyn Shape<N, 2>> {

@@ -6,7 +6,7 @@
 use fearless_simd::{Level, Select, Simd, SimdMask};
 
 use super::near::{least_length, relative_slack};
-use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread};
+use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
 use crate::math::{Matrix, Real, Vector, Wide, min};
 use crate::query::tiles::{LANES, Tiles};
 
@@ -48,24 +48,7 @@ fn at<N: Real, const D: usize>(
     tiles: &Tiles<N, D>,
     sight: &Sight<N, D>,
 ) -> Option<Bounds<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        Some(simd.vectorize(
-            #[inline(always)]
-            || bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight),
-        ))
-    } else {
-        level.as_sse2().map(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(
-        fearless_simd::dispatch!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight)),
-    )
+    with_lanes!(level, simd => Some(bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight)), else None)
 }
 
 #[inline(always)]

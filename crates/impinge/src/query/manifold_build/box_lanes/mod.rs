@@ -22,6 +22,7 @@ use fearless_simd::{Level, Simd};
 use self::gather::Inputs;
 pub(super) use self::masks::{bits, transposed};
 use super::{ManifoldRequest, Pair, RawManifold};
+use crate::math::lanes::with_lanes;
 use crate::math::{Pose, Real, Wide};
 use crate::shape::{Cuboid, Kind};
 
@@ -73,29 +74,13 @@ pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
 }
 
 /// [`update_box_pairs3`] with the vectors of an instruction set.
-///
-/// Of those of x86 only the largest that is worth it and the one that is always there are compiled:
-/// wider registers than AVX2 has bring nothing to eight lanes.
 fn update_at<N: Real, E: Eights<N, D>, const D: usize>(
     level: Level,
     jobs: &mut [BoxJob<'_, N, D>],
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || update::<_, N, N::Lanes<_>, E, D>(simd, jobs),
-        );
-    } else if let Some(simd) = level.as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || update::<_, N, N::Lanes<_>, E, D>(simd, jobs),
-        );
-    } else {
+    with_lanes!(level, simd => update::<_, N, N::Lanes<_>, E, D>(simd, jobs), else {
         jobs.iter_mut().for_each(E::one_by_one);
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => update::<_, N, N::Lanes<_>, E, D>(simd, jobs));
+    });
 }
 
 /// Eight by eight. The numbers of the next eight are gathered before those gathered last are used,

@@ -34,6 +34,7 @@ use self::vectors::{bits, is_finite};
 use super::box_lanes::transposed;
 use super::{Candidate, Pair, names};
 use crate::convex::Separation;
+use crate::math::lanes::with_lanes;
 use crate::math::{Point, Pose, Real, Space, Vector, Wide};
 use crate::query::{ManifoldRequest, RawManifold};
 use crate::shape::FeatureId;
@@ -133,33 +134,19 @@ trait Form<N: Real, const D: usize> {
     fn features(parts: u8) -> [FeatureId; 2];
 }
 
-/// [`Form`] for all pairs, with the vectors of an instruction set: of those of x86 only the largest
-/// that is worth it and the one that is always there, as for boxes.
+/// [`Form`] for all pairs, with the vectors of an instruction set.
 fn update_at<F: Form<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     pairs: &mut P,
 ) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs),
-        );
-    } else if let Some(simd) = level.as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs),
-        );
-    } else {
+    with_lanes!(level, simd => update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs), else {
         for index in 0..pairs.len() {
             if pairs.begin(index).is_some() {
                 one_by_one(pairs, index);
                 pairs.end(index);
             }
         }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs));
+    });
 }
 
 /// A pair alone.

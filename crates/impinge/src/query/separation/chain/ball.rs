@@ -4,6 +4,7 @@ use fearless_simd::{Level, Simd, SimdMask};
 
 use super::super::ball_segment;
 use super::{ChainQuestion, Eight, Links};
+use crate::math::lanes::with_lanes;
 use crate::math::{Real, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
@@ -42,22 +43,7 @@ fn at<N: Real>(
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius),
-        )
-    } else {
-        level.as_sse2().and_then(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
+    with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius), else None)
 }
 
 /// By the distances that [`ball_segment`] finds.

@@ -5,7 +5,7 @@ use fearless_simd::{Level, Select, Simd, SimdMask};
 use super::super::polygon_lanes::{Outline, Polygon, of_axis};
 use super::super::polygon_polygon::Axis;
 use super::{ChainQuestion, Eight, Links};
-use crate::math::lanes::{dot, either, negated, over};
+use crate::math::lanes::{dot, either, negated, over, with_lanes};
 use crate::math::{Real, Vector, Wide, min};
 use crate::query::tiles::LANES;
 use crate::shape::Segment;
@@ -20,22 +20,7 @@ pub(super) fn links<N: Real>(
     polygon: &Polygon<N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, question, polygon, links),
-        )
-    } else {
-        level.as_sse2().and_then(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || search::<_, N, N::Lanes<_>>(simd, question, polygon, links),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links), else None)
 }
 
 #[inline(always)]

@@ -3,31 +3,9 @@
 use super::*;
 use crate::query::Pair;
 use crate::query::separation::hulls::tests::{Random, levels};
+use crate::query::separation::polygon_polygon::tests::solid_of;
 use crate::query::separation::separation_in_plane;
-use crate::shape::{Ball, Capsule, ConvexPolygon, Cuboid, Segment, Shape, Triangle};
-
-/// A ball, a capsule, a triangle, a box or a polygon.
-fn solid_of<N: Real>(random: &mut Random) -> Box<dyn Shape<N, 2>> {
-    let half = random.vector::<N>().xy().abs();
-    let on_grid = random.pick(2) == 0;
-    let mut point = || {
-        let point = random.vector::<N>().xy();
-        let rounded = point.map(|x| (x * N::lit(4.0)).round() * N::lit(0.25));
-        Point::from(if on_grid { rounded } else { point })
-    };
-    let [a, b, c] = [point(), point(), point()];
-    let points: Vec<_> = (0..8).map(|_| point()).collect();
-    match random.pick(5) {
-        0 => Box::new(Ball::new(half.x)),
-        1 => Box::new(Capsule::<N, 2>::new(half.x, half.y)),
-        2 => Box::new(Triangle::new(a, b, c)),
-        3 => Box::new(Cuboid::new(half)),
-        _ => match ConvexPolygon::try_from_points(&points) {
-            Ok(polygon) => Box::new(polygon),
-            Err(_) => Box::new(Cuboid::new(half)),
-        },
-    }
-}
+use crate::shape::{Ball, Segment};
 
 /// One to sixteen segments around an origin, and the same as tiles.
 fn segments_of<N: Real>(
@@ -53,7 +31,8 @@ fn compare<N: Real>(seed: u64) {
     let random = &mut Random(seed);
     let (mut found, mut decided, mut count) = (0, 0, 0);
     for round in 0..1500 {
-        let solid = solid_of::<N>(random);
+        let kind = [0, 2, 3, 4, 5][random.pick(5)];
+        let solid = solid_of::<N>(random, kind);
         let kind = solid.geometry().0;
         let is_ball = matches!(kind, Kind::Ball(_));
         let turn = random.turn::<N>().rotation;

@@ -23,7 +23,6 @@ pub(crate) struct Certificate<N: Real, const D: usize> {
     /// For each solid the number of a face or a code, and of another one that may be better; where a face
     /// parts the two, its solid and its number.
     faces: [[u8; 2]; 2],
-    aim: Aim,
     stage: Stage,
     /// How often it served.
     uses: u8,
@@ -36,7 +35,8 @@ enum Stage {
     /// Where the solids were.
     Pose,
     Faces,
-    FacesAndEdges,
+    /// Edges too, for what they are asked about.
+    Edges(Aim),
     Parting,
 }
 
@@ -60,7 +60,6 @@ impl<N: Real, const D: usize> Default for Certificate<N, D> {
             reach: N::ZERO,
             edges: [Few::default(); 2],
             faces: [[ANY; 2]; 2],
-            aim: Aim::Nothing,
             stage: Stage::Nothing,
             uses: 0,
         }
@@ -112,7 +111,7 @@ impl<N: Real> Certificate<N, 3> {
     /// The edges that may decide are known too.
     #[cfg(test)]
     pub(super) fn knows_edges(&self) -> bool {
-        self.stage == Stage::FacesAndEdges
+        matches!(self.stage, Stage::Edges(_))
     }
 
     /// How far any point of either solid has moved at most in the frame of the other, and edges have turned,
@@ -157,9 +156,13 @@ impl<N: Real> Certificate<N, 3> {
             [face, ANY] => Known::Is(usize::from(face)),
             [face, other] => Known::Either(usize::from(face), usize::from(other)),
         });
-        let asked = Asked { aim: self.aim, reach: self.reach };
-        let has_edges = self.stage == Stage::FacesAndEdges;
-        Guide::knowing(known, has_edges.then_some(Pools { edges: self.edges, asked }))
+        let pool = match self.stage {
+            Stage::Edges(aim) => {
+                Some(Pools { edges: self.edges, asked: Asked { aim, reach: self.reach } })
+            }
+            _ => None,
+        };
+        Guide::knowing(known, pool)
     }
 
     /// Notes what was found out.
@@ -180,8 +183,8 @@ impl<N: Real> Certificate<N, 3> {
                 });
                 self.stage = Stage::Faces;
                 if let Some(Pools { edges, asked }) = guide.noted() {
-                    (self.edges, self.aim, self.reach) = (edges, asked.aim, asked.reach);
-                    self.stage = Stage::FacesAndEdges;
+                    (self.edges, self.reach) = (edges, asked.reach);
+                    self.stage = Stage::Edges(asked.aim);
                 }
             }
         }

@@ -1,8 +1,6 @@
 //! An edge of each solid: faces of the Minkowski difference where they overlap, nearest points where
 //! they are apart.
 
-use core::array::from_fn;
-
 use fearless_simd::{Select, Simd, SimdMask};
 
 use super::cloud::highest_lane;

@@ -31,10 +31,11 @@ pub(crate) use self::certificate::Certificate;
 use self::cloud::{Cloud, Place};
 use self::face::{Meeting, Side};
 use self::guide::Guide;
-use self::pool::Reached;
+use self::pool::{Pool, Reached};
 use self::solid::{BoxParts, Flat};
 use super::{general, wrong_kinds};
 use crate::convex::{Separation, Units};
+use crate::math::lanes::with_lanes;
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::Pair;
 use crate::shape::{Cuboid, Kind, SupportMap};
@@ -144,22 +145,7 @@ fn at<N: Real>(
     question: (&Pose<N, 3>, N),
     guide: &mut Guide<N>,
 ) -> Verdict<N> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, solids, question, guide),
-        )
-    } else if let Some(simd) = level.as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || search::<_, N, N::Lanes<_>>(simd, solids, question, guide),
-        )
-    } else {
-        Verdict::Undecided
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, question, guide))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, question, guide), else Verdict::Undecided)
 }
 
 #[inline(always)]
@@ -210,19 +196,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
     let Some(found) = found else { return Verdict::Undecided };
     if guide.is_drafting() && guide.has_known_faces() {
-        let mut others = Reached::default();
-        if let Some(wide) = meeting.wide() {
-            for (which, known) in guide.faces().into_iter().enumerate() {
-                for face in known.faces() {
-                    let turned = view.meeting::<S, V>(simd, which == 1, face);
-                    others.add(
-                        turned.within_reach::<S, V>(simd, wide),
-                        which != usize::from(is_second),
-                    );
-                }
-            }
-        }
-        guide.note_edges(meeting.pool::<S, V>(simd, &others, &found), is_second);
+        let pool = view.pool::<S, V>(simd, (&meeting, is_second), &found, guide);
+        guide.note_edges(pool, is_second);
     }
     let restored = found.restored(units.scale);
     Verdict::Found(if is_second { in_first_frame(&restored, pose12) } else { restored })
@@ -261,6 +236,28 @@ impl<'s, 'a, N: Real> View<'s, 'a, N> {
             pool: None,
             asked: Cell::default(),
         }
+    }
+
+    /// The edges that may decide next time, whichever of the faces that may is the best then.
+    #[inline(always)]
+    fn pool<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        (meeting, is_second): (&Meeting<'_, '_, N>, bool),
+        found: &Found<N>,
+        guide: &Guide<N>,
+    ) -> Option<Pool<N>> {
+        let mut reached = Reached::default();
+        if let Some(wide) = meeting.wide() {
+            for (which, known) in guide.faces().into_iter().enumerate() {
+                for face in known.faces() {
+                    let other = self.meeting::<S, V>(simd, which == 1, face);
+                    let edges = other.within_reach::<S, V>(simd, wide);
+                    reached.add(edges, which != usize::from(is_second));
+                }
+            }
+        }
+        meeting.pool::<S, V>(simd, &reached, found)
     }
 }
 

@@ -16,7 +16,7 @@ use crate::math::lanes::{self, by_axis, dot, load, spread};
 use crate::math::{Real, Vector, Wide};
 
 /// So many edges of each solid are noted.
-const MOST: usize = 8;
+const MOST: usize = 7;
 
 /// What edges are looked at for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

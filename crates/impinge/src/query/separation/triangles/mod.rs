@@ -12,7 +12,9 @@ use smallvec::SmallVec;
 
 use super::triangle_axes::{Axis, AxisKind, Fin, THIN, noise};
 use crate::convex::Separation;
-use crate::math::lanes::{by_axis, cross, dot, either, load, minus, over, spread, times};
+use crate::math::lanes::{
+    by_axis, cross, dot, either, load, minus, over, spread, times, with_lanes,
+};
 use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
 use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{Kind, SupportMap, Triangle};
@@ -93,24 +95,7 @@ fn at<N: Real>(
     question: &Question<'_, N>,
     tiles: &Tiles<N, 3>,
 ) -> Option<Axes<N>> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = level.as_avx2() {
-        Some(simd.vectorize(
-            #[inline(always)]
-            || solid.search::<_, N::Lanes<_>>(simd, question, tiles),
-        ))
-    } else {
-        level.as_sse2().map(|simd| {
-            simd.vectorize(
-                #[inline(always)]
-                || solid.search::<_, N::Lanes<_>>(simd, question, tiles),
-            )
-        })
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(
-        fearless_simd::dispatch!(level, simd => solid.search::<_, N::Lanes<_>>(simd, question, tiles)),
-    )
+    with_lanes!(level, simd => Some(solid.search::<_, N::Lanes<_>>(simd, question, tiles)), else None)
 }
 
 /// What all triangles are asked.
