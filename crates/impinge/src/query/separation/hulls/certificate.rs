@@ -120,7 +120,8 @@ impl<N: Real> Certificate<N, 3> {
         if self.stage == Stage::Nothing || shrink != self.shrink {
             return N::INFINITY;
         }
-        let shift = (pose12.translation - self.translation).norm() * shrink;
+        // Of small lengths the squares are no numbers of the type: in units of the pair they are.
+        let shift = ((pose12.translation - self.translation) * shrink).norm();
         let mut squared = N::ZERO;
         for (column, kept) in self.rotation.iter().enumerate() {
             for (row, &kept) in kept.iter().enumerate() {
@@ -129,8 +130,8 @@ impl<N: Real> Certificate<N, 3> {
                 squared += change * change;
             }
         }
-        let away = reach1 + pose12.translation.norm();
-        let arm = max(max(away, reach2) * shrink, N::ONE);
+        let away = reach1 * shrink + (pose12.translation * shrink).norm();
+        let arm = max(max(away, reach2 * shrink), N::ONE);
         shift + (squared.sqrt() + N::lit(OFF)) * arm + noise()
     }
 
@@ -168,13 +169,13 @@ impl<N: Real> Certificate<N, 3> {
     /// Notes what was found out.
     fn note(&mut self, guide: &Guide<N>, verdict: &Verdict<N>) {
         match verdict {
-            Verdict::Undecided => {}
             Verdict::Beyond => {
                 let which = usize::from(guide.best[1].height > guide.best[0].height);
                 self.faces[0] = [which, guide.best[which].face].map(code);
                 self.stage = Stage::Parting;
             }
-            Verdict::Found(_) => {
+            // Where nothing is proved, that costs less the next time.
+            Verdict::Found(_) | Verdict::Undecided => {
                 self.faces = guide.faces().map(|known| match known {
                     Known::Any => [ANY; 2],
                     Known::Lower => [LOWER; 2],

@@ -194,11 +194,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     meeting.pool = guide.pool.map(|pool| pool.seen_from(is_second));
     let found = meeting.resolve::<S, V>(simd);
     guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
-    let Some(found) = found else { return Verdict::Undecided };
     if guide.is_drafting() && guide.has_known_faces() {
-        let pool = view.pool::<S, V>(simd, (&meeting, is_second), &found, guide);
+        let pool = view.pool::<S, V>(simd, (&meeting, is_second), found.as_ref(), guide);
         guide.note_edges(pool, is_second);
     }
+    let Some(found) = found else { return Verdict::Undecided };
     let restored = found.restored(units.scale);
     Verdict::Found(if is_second { in_first_frame(&restored, pose12) } else { restored })
 }
@@ -244,7 +244,7 @@ impl<'s, 'a, N: Real> View<'s, 'a, N> {
         &self,
         simd: S,
         (meeting, is_second): (&Meeting<'_, '_, N>, bool),
-        found: &Found<N>,
+        found: Option<&Found<N>>,
         guide: &Guide<N>,
     ) -> Option<Pool<N>> {
         let mut reached = Reached::default();

@@ -164,7 +164,7 @@ impl<N: Real> Meeting<'_, '_, N> {
         &self,
         simd: S,
         reached: &Reached,
-        found: &Found<N>,
+        found: Option<&Found<N>>,
     ) -> Option<Pool<N>> {
         let (room, asked) = (N::lit(ROOM), self.asked_by_then());
         let aim = asked.aim;
@@ -176,7 +176,12 @@ impl<N: Real> Meeting<'_, '_, N> {
         }
         let [own, other] = reached.0.map(Chosen::of_bits);
         let rounding = N::lit(16.0) * noise();
-        let apart = (found.on_other - found.on_own).norm() + N::TWO * room + rounding;
+        let nearest = match found {
+            Some(found) => (found.on_other - found.on_own).norm(),
+            None if aim == Aim::Nearest => return None,
+            None => N::ZERO,
+        };
+        let apart = nearest + N::TWO * room + rounding;
         // The squares of distances are off by some rounding errors of the squares of lengths.
         let squared = apart * apart + N::lit(32.0) * noise();
         let slack = Slack { room, floor: self.height() - rounding, squared };
