@@ -84,7 +84,8 @@ fn said_of<N: Space<3>>(
     [one, other]: [CollisionObjectHandle; 2],
 ) -> Vec<String> {
     let all = world.contact_manifolds();
-    let own = all.filter(|(handle1, handle2, _)| (*handle1, *handle2) == (one, other));
+    let own =
+        all.filter(|(object1, object2, _)| (object1.handle(), object2.handle()) == (one, other));
     facts(&own.map(|(_, _, manifold)| manifold).collect::<Vec<_>>())
 }
 
