@@ -96,7 +96,7 @@ impl<N: Real> Best<N> {
     #[inline(always)]
     fn rank(&mut self, heights: &[N]) {
         for (index, &height) in heights.iter().enumerate() {
-            if index == self.face || !(height > self.third) {
+            if index == self.face || height <= self.third {
                 continue;
             }
             if height > self.next.1 {
