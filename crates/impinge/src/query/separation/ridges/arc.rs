@@ -34,8 +34,9 @@ impl<N: Real> Line<N> {
     }
 }
 
-/// Less than half a circle, counter-clockwise, and what is highest at its ends. That is one point where it is a corner of both
-/// solids; else each of the two lines is the lower one at the other's end, so that they cross.
+/// Half a circle or less, counter-clockwise, and what is highest at its ends. That is one point where it is
+/// a corner of both solids; else each of the two lines is the lower one at the other's end, so that they
+/// cross. An arc may have no length: where a bound is taken at an end, one of the halves has none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -43,8 +44,12 @@ pub(super) struct Arc<N: Real> {
 }
 
 impl<N: Real> Arc<N> {
+    /// Whether a direction is on the arc, ends included. The two products alone are zero for the direction
+    /// opposite to both ends of an arc without length.
     fn holds(&self, u: &Vector<N, 2>) -> bool {
-        cross2(&self.ends[0], u) >= N::ZERO && cross2(u, &self.ends[1]) >= N::ZERO
+        let [from, to] = &self.ends;
+        let is_between = cross2(from, u) >= N::ZERO && cross2(u, to) >= N::ZERO;
+        is_between && u.dot(&(from + to)) >= N::ZERO
     }
 
     /// Where both lines are equally high; `None` if that is nowhere on the arc, up to rounding.
@@ -71,6 +76,14 @@ impl<N: Real> Arc<N> {
         }
     }
 
+    /// Whether it is certain that the depth is nowhere on the arc less than `least`, by [`are_above`].
+    fn is_above(&self, least: N) -> bool {
+        let [from, to] = &self.ends;
+        let has_base = self.lines.iter().any(|line| line.base > N::ZERO);
+        let heights = self.lines.map(|line| [line.at(from), line.at(to)]);
+        !has_base && are_above(&heights, least)
+    }
+
     /// A direction of the arc and a lower bound of the depth on all of it, but for its ends. The bound is the
     /// larger height of the two lines there, if there is one.
     fn bound(&self) -> (Vector<N, 2>, N) {
@@ -89,6 +102,19 @@ impl<N: Real> Arc<N> {
         }
         bound
     }
+}
+
+/// Whether the heights of two points, each at both ends of an arc, tell that the depth is nowhere on the arc less
+/// than a positive `least`: by products alone, unlike [`Arc::bound`], and not where that is close. The first is the
+/// highest at the first end, the second at the second; both heights there are no less.
+///
+/// A direction of the arc is a mix of the ends, over its length, which is at most 1. So if some mix of the points
+/// is high enough in every mix of the ends, and is no higher than its height in the middle of the circle, it is
+/// high enough on the arc. Whether there is one is the value of a game of two by two heights.
+pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
+    let [first, second] = heights.map(|[from, to]| [from - least, to - least]);
+    let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;
+    least > N::ZERO && (is_one || first[0] * second[1] >= first[1] * second[0])
 }
 
 /// A search along arcs.
@@ -123,6 +149,9 @@ impl<N: Real> Search<N> {
         let mut open = SmallVec::<[Arc<N>; 16]>::from_slice(&[arc]);
         for _ in 0..STEPS {
             let Some(arc) = open.pop() else { return Some(()) };
+            if arc.is_above(self.least - self.gap) {
+                continue;
+            }
             let (u, bound) = arc.bound();
             if bound >= self.least - self.gap {
                 continue;

@@ -47,7 +47,7 @@ impl<N: Real> Flat<N> {
                 flat.fill_segment([segment.a(), segment.b()], shrink)?;
             }
             Kind::Triangle(triangle) => flat.fill_triangle(triangle, shrink)?,
-            Kind::Cuboid(cuboid) => flat.fill_box(cuboid, shrink)?,
+            Kind::Cuboid(cuboid) => flat.fill_box(cuboid, shrink),
             Kind::Polytope(polytope) => flat.fill_polytope(polytope, shrink)?,
             _ => return None,
         }
@@ -114,13 +114,9 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
-    /// Not of a box that is flat, whose edges across have no direction.
-    fn fill_box(&mut self, cuboid: &Cuboid<N, 3>, shrink: N) -> Option<()> {
+    /// Extents may be zero: the arc of an edge without length is one of normals of its vertex, and as true.
+    fn fill_box(&mut self, cuboid: &Cuboid<N, 3>, shrink: N) {
         let half = cuboid.half_extents() * shrink;
-        let is_thick = half.iter().all(|&half| half > N::EPSILON.sqrt());
-        if !is_thick {
-            return None;
-        }
         for signs in 0..8_usize {
             let at = |axis: usize| if signs >> axis & 1 == 1 { half[axis] } else { -half[axis] };
             self.own_vertices.push(Vector::<N, 3>::new(at(0), at(1), at(2)));
@@ -138,7 +134,6 @@ impl<N: Real> Flat<N> {
                 self.push_edge([low, low | (1 << axis)], [2 * next + side1, 2 * after + side2]);
             }
         }
-        Some(())
     }
 
     fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {

@@ -9,6 +9,12 @@
 //! are searched by [`arc`], which proves what it finds. Nothing is iterated over two dimensions, as growing a
 //! polytope towards a curved surface does.
 //!
+//! Extents may be zero: an edge without length has an arc of normals of its vertex, which are worth a look
+//! like all others. What the arcs cannot tell is left to the general algorithm: a round solid, segment or
+//! triangle of hardly any size, of which no normals are known; a polytope with normals so poor, being flat up
+//! to rounding, that its vertices deny the depth found; and rings of normals that are all about as good, where
+//! an arc along the ring is cut too often.
+//!
 //! That faces and edges are enough for two polytopes is the separating axis test; the rest follows the
 //! same thought for the kinds of part that cylinders and cones have.
 
@@ -71,6 +77,9 @@ impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
             normal: Vector::<N, 3>::y(),
         };
         meeting.search(gap)?;
+        if !meeting.is_confirmed(gap) {
+            return None;
+        }
         Some(meeting.peak(&self.pair.pose12, shrink))
     }
 }
@@ -103,9 +112,10 @@ impl<N: Real> Meeting<'_, N> {
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
-            let point = self.round.support(normal) - self.flat.vertices[*vertex as usize];
-            self.note(normal.dot(&point), Place::Face(index), *normal);
-            ends.push(self.round.support(normal));
+            let end = self.round.support(normal);
+            let depth = normal.dot(&(end - self.flat.vertices[*vertex as usize]));
+            self.note(depth, Place::Face(index), *normal);
+            ends.push(end);
         }
         for &up in self.round.caps() {
             let normal = Vector::<N, 3>::y() * N::lit(up);
@@ -113,14 +123,31 @@ impl<N: Real> Meeting<'_, N> {
             let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
             self.note(depth, Place::Cap, normal);
         }
-        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, &ends, gap))?;
-        self.search_side(gap)
+        if self.search_edges(&ends, gap).is_some() {
+            return self.search_side(gap);
+        }
+        // Normals around the axis are all about as good, and parts of each arc that crosses them cannot be told
+        // from the best; but the best itself is found at once by the side.
+        self.search_side(gap)?;
+        self.search_edges(&ends, gap)
+    }
+
+    fn search_edges(&mut self, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
+        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, ends, gap))
     }
 
     fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {
         if depth < self.least {
             (self.least, self.at, self.normal) = (depth, at, normal);
         }
+    }
+
+    /// All vertices confirm the depth found, not only those of the face or edge that it was found by: theirs are
+    /// the lowest for as long as the normals of the faces are right.
+    fn is_confirmed(&self, gap: N) -> bool {
+        let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
+        let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
+        depth - self.least <= N::lit(8.0) * gap
     }
 
     /// Along the normals of an edge, in whose plane the end of the edge is a point; `ends` are the support
@@ -130,10 +157,16 @@ impl<N: Real> Meeting<'_, N> {
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
         let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
         let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
+        let ends = [first, second].map(|normal| ends[normal as usize]);
+        let heights = ends.map(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
+        if arc::are_above(&heights, self.least - gap) {
+            return Some(());
+        }
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
-        // Between normals so near to each other nothing is lower by as much as the gap.
-        if cosine > N::ZERO && sine * sine <= gap * N::TWO {
+        // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
+        // square: next to the normal of a cap the point of its rim runs as fast as the normal turns.
+        if cosine > N::ZERO && sine <= gap {
             return Some(());
         }
         let line = |point: &Vector<N, 3>| {
@@ -142,7 +175,7 @@ impl<N: Real> Meeting<'_, N> {
         };
         let arc = Arc {
             ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
-            lines: [line(&ends[first as usize]), line(&ends[second as usize])],
+            lines: ends.map(|end| line(&end)),
         };
         let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
         let mut search = Search::new(self.least, gap);

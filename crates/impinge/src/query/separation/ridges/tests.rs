@@ -1,7 +1,7 @@
 //! Depths are those that growing a polytope finds, and most are found without.
 
 use super::*;
-use crate::math::Point;
+use crate::math::{Matrix, Point};
 use crate::query::separation::cylinder_cylinder::tests::compare;
 use crate::query::separation::hulls::tests::Random;
 use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
@@ -141,4 +141,88 @@ fn none_is_better<N: Real>(accuracy: f64) {
 fn no_direction_is_better() {
     none_is_better::<f64>(1e-12);
     none_is_better::<f32>(1e-6);
+}
+
+fn pair_of<'a, N: Real>(shapes: &'a Solids<N>, pose12: Pose<N, 3>) -> Pair<'a, N, 3> {
+    let [first, second] = shapes.each_ref().map(|shape| shape.geometry().0);
+    Pair { first, second, pose12 }
+}
+
+/// A parallel of two edges of a sheet of paper on the axis of a cylinder: the point across from an edge lies
+/// straight along the normal of a side, so that the arc is cut at its end. The part without length held the
+/// opposite normal, and the depth of the edge along that was taken for one of the sheet.
+fn a_wire_in_a_sheet<N: Real>() {
+    let sheet = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
+    let wire = Cylinder::new(N::lit(0.125), N::lit(0.001));
+    let shapes: Solids<N> = [Box::new(sheet), Box::new(wire)];
+    let (zero, one) = (N::ZERO, N::ONE);
+    for across in [0.0, 0.0625, -0.0625, 0.25] {
+        let translation = Vector::<N, 3>::new(zero, zero, N::lit(across));
+        let turn = Matrix::<N, 3>::new(zero, one, zero, zero, zero, one, one, zero, zero);
+        for rotation in [turn, turn.transpose(), Matrix::<N, 3>::identity()] {
+            let pair = pair_of(&shapes, Pose { rotation, translation });
+            let found = separation(&pair, N::INFINITY).expect("no limit");
+            let least = [0, 1, 2]
+                .map(|axis| depth(&pair, &Matrix::<N, 3>::identity().column(axis).into_owned()));
+            let least = least.into_iter().fold(N::INFINITY, min);
+            assert!(-found.distance <= least, "{found:?}, not {least}, {across} {rotation:?}");
+            assert!(depth(&pair, &found.normal) + found.distance < N::EPSILON, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn an_arc_without_length_has_no_other_side() {
+    a_wire_in_a_sheet::<f64>();
+    a_wire_in_a_sheet::<f32>();
+}
+
+/// A roof that is bent by less than the root of the rounding unit, and a cylinder on its ridge that leans along
+/// the ridge by less still: the least depth is between the normals of the slopes, and none of those of faces.
+fn a_column_on_a_roof<N: Real>() {
+    let (bend, lean) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
+    let (zero, one) = (N::ZERO, N::ONE);
+    let corner = |x: N, y: N, z: N| Point::<N, 3>::new(x, y, z);
+    let mut corners = vec![corner(one, zero, zero), corner(-one, zero, zero)];
+    for (x, z) in [(one, one), (one, -one), (-one, one), (-one, -one)] {
+        corners.extend([corner(x, -bend, z), corner(x, -one, z)]);
+    }
+    let column = Cylinder::new(N::HALF, N::lit(0.25));
+    let shapes: Solids<N> = [Box::new(ConvexHull::from_points(&corners)), Box::new(column)];
+    let rotation = Matrix::<N, 3>::new(one, -lean, zero, lean, one, zero, zero, zero, one);
+    let translation = Vector::<N, 3>::new(zero, N::lit(0.4375), zero);
+    let pair = pair_of(&shapes, Pose { rotation, translation });
+    let found = separation(&pair, N::INFINITY).expect("no limit");
+    let up = depth(&pair, &Vector::<N, 3>::y());
+    assert!(-found.distance <= up + N::lit(4.0) * N::EPSILON, "{found:?}, not {up}");
+    let gap = max(N::lit(8.0) * N::EPSILON, N::lit(1e-12));
+    let peak = Overlap { pair: &pair }.best(N::ONE, gap).expect("it is found");
+    let named = depth(&pair, &peak.normal);
+    assert!(named <= up + gap * N::TWO, "{named}, not {up}");
+}
+
+#[test]
+fn a_roof_may_be_hardly_bent() {
+    a_column_on_a_roof::<f64>();
+    a_column_on_a_roof::<f32>();
+}
+/// A small sliver about the axis of a cone: all normals of the side are as good up to 10⁻⁹, so that arcs
+/// across them are cut without an end before the best of them is known.
+#[test]
+fn a_sliver_on_the_axis_of_a_cone() {
+    let corner = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);
+    let first = corner(6.1072e-6, 9.4966e-9, 9.0783e-8);
+    let second = corner(1.0678e-4, -0.058059, 2.0734e-4);
+    let triangle = Triangle::new(first, second, corner(3.7959e-5, -0.056211, 4.3429e-3));
+    let shapes: Solids<f64> = [Box::new(triangle), Box::new(Cone::new(0.85171, 0.56287))];
+    let pair = pair_of(&shapes, Pose::identity());
+    let peak = Overlap { pair: &pair }.best(1.0, 1e-12).expect("it is found");
+    let found = separation(&pair, f64::INFINITY).expect("no limit");
+    assert!((found.distance + depth(&pair, &peak.normal)).abs() < 2e-12, "{found:?}");
+    let slope = Round::new(&pair.second, 1.0).expect("it has a size").slope();
+    for step in 0..1000 {
+        let (sine, cosine) = f64::sine_cosine(f64::from(step) * 0.00628);
+        let normal = -Vector::<f64, 3>::new(cosine * slope.aside, slope.along, sine * slope.aside);
+        assert!(depth(&pair, &normal) >= -found.distance - 2e-12, "{normal:?}");
+    }
 }
