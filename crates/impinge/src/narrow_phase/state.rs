@@ -5,8 +5,9 @@ use crate::query::composite::Between;
 use crate::query::far::{Apart, Bounds};
 use crate::query::pair::is_swapped;
 use crate::query::{
-    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
-    Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
+    BoxJob, Certificate, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair,
+    PairQuestion, Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise,
+    own_distance,
 };
 use crate::shape::{Geometry, Kind, Shape};
 
@@ -111,6 +112,11 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
     ) -> Self::Manifolds;
 }
 
+/// It is a hull or a box.
+const fn is_flat<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> bool {
+    matches!(shape.0, Kind::Polytope(_) | Kind::Cuboid(_))
+}
+
 /// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
 #[derive(Clone, Debug, Default)]
 #[repr(C)]
@@ -125,8 +131,18 @@ pub(crate) struct InOrder<C> {
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: InOrder<RawManifold<N, D>>,
+    aside: Aside<N, D>,
+}
+
+/// What is kept of a pair to bring its contacts up to date sooner.
+#[derive(Clone, Debug, Default)]
+enum Aside<N: Real, const D: usize> {
+    #[default]
+    Nothing,
     /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
-    solids: Option<[Solid<N, D>; 2]>,
+    Copies([Solid<N, D>; 2]),
+    /// Of hulls and boxes, what is clear of them in canonical order.
+    Clear(Certificate<N, D>),
 }
 
 /// The contacts of a pair of which one solid at least is a composite.
@@ -171,8 +187,17 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         if posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction) {
             return self.clear();
         }
+        if let Aside::Clear(certificate) = &mut self.aside
+            && swapped != self.kept.swapped
+        {
+            certificate.forget();
+        }
         self.kept.turn(swapped, RawManifold::flip_names);
-        (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
+        let certificate = match &mut self.aside {
+            Aside::Clear(certificate) => Some(certificate),
+            _ => None,
+        };
+        (N::tables().contacts)(&pair, request, certificate, &mut self.kept.contacts);
     }
 
     fn manifolds(
@@ -201,13 +226,20 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
     /// The solids are these from now on.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
-        let [solid1, solid2] = shapes.map(|shape| Solid::of(shape.geometry()));
-        self.solids = solid1.zip(solid2).map(<[_; 2]>::from);
+        let [one, other] = shapes.map(Shape::geometry);
+        self.aside = match (Solid::of(one), Solid::of(other)) {
+            (Some(one), Some(other)) => Aside::Copies([one, other]),
+            _ if is_flat(one) && is_flat(other) => Aside::Clear(Certificate::default()),
+            _ => Aside::Nothing,
+        };
     }
 
     /// The copies of the solids, if both are such that a copy is worth it.
     pub(super) const fn solids(&self) -> Option<&[Solid<N, D>; 2]> {
-        self.solids.as_ref()
+        match &self.aside {
+            Aside::Copies(solids) => Some(solids),
+            _ => None,
+        }
     }
 
     /// The manifold, in canonical order.
@@ -224,7 +256,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
-        let solids = self.solids.as_ref()?;
+        let Aside::Copies(solids) = &self.aside else { return None };
         let kinds = [solids[0].kind(), solids[1].kind()];
         let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
@@ -252,7 +284,9 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
-        let Some([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.solids else { return None };
+        let Aside::Copies([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.aside else {
+            return None;
+        };
         let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);
         let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
         let (poses, cuboids) = ([poses[first], poses[second]], [cuboids[first], cuboids[second]]);

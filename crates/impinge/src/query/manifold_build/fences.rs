@@ -103,7 +103,7 @@ fn held<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// The unit normals inward of the sides of a polygon, which is given in lanes and as numbers; `None` of one
 /// without an area, or with a side that is none.
 #[inline(always)]
-fn fence<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn fence<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     flats: &[V; 2],
     (rows, count): (&[[N; LANES]; 2], usize),

@@ -79,6 +79,12 @@ impl<N: Real, const D: usize> Frame<N, D> {
         self.witness.normal
     }
 
+    /// The axes of what is seen along the normal.
+    #[inline(always)]
+    pub(super) const fn tangents(&self) -> &[Vector<N, D>; 2] {
+        &self.tangents
+    }
+
     /// Where a point lies when seen along the normal.
     #[inline]
     pub(super) fn flat(&self, point: &Point<N, D>) -> Vector<N, 2> {

@@ -19,6 +19,7 @@ mod box_sides;
 mod capsule_face;
 mod chain;
 mod closed_lanes;
+mod faces;
 mod facet;
 mod fences;
 mod frame;
@@ -53,6 +54,7 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
+use super::separation::hulls::{self, Certificate};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -87,7 +89,10 @@ pub(crate) fn build3<N: Real>(
     out: &mut RawManifold<N, 3>,
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
-    build(pair, &frame, (request, request.max_points), out);
+    let limits = (request, request.max_points);
+    if !faces::build(pair, &frame, limits, out) {
+        build(pair, &frame, limits, out);
+    }
 }
 
 /// Two directions that complete a normal of space to a right-handed basis.
@@ -101,11 +106,13 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in space, from nothing: by the fused algorithm of its kinds where there is
-/// one and it does not decline, else from the separation.
+/// The manifold of a pair in space: by the fused algorithm of its kinds where there is one and it does not
+/// decline, else from the separation. A pair that is asked again and again brings its certificate, which
+/// changes no bit.
 pub(crate) fn contacts3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
+    certificate: Option<&mut Certificate<N, 3>>,
     out: &mut RawManifold<N, 3>,
 ) {
     if let Kind::Ball(_) = pair.first {
@@ -114,7 +121,13 @@ pub(crate) fn contacts3<N: Real>(
     if box_faces::build(pair, request, out) {
         return;
     }
-    match separation_in_space(pair, request.prediction) {
+    let separation = match certificate {
+        Some(certificate) if hulls::treats(pair) => {
+            hulls::separation_again(pair, request.prediction, certificate)
+        }
+        _ => separation_in_space(pair, request.prediction),
+    };
+    match separation {
         Some(separation) => match segments::crossing_parts(pair, &separation, request) {
             Some(parts) => {
                 out.normal = separation.normal;
@@ -126,10 +139,11 @@ pub(crate) fn contacts3<N: Real>(
     }
 }
 
-/// The manifold of a pair in the plane, from nothing; as [`contacts3`].
+/// The manifold of a pair in the plane; as [`contacts3`]. Certificates are of space alone.
 pub(crate) fn contacts2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
+    _: Option<&mut Certificate<N, 2>>,
     out: &mut RawManifold<N, 2>,
 ) {
     if let Kind::Ball(_) = pair.first {

@@ -58,6 +58,7 @@ use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
+pub(crate) use hulls::Certificate;
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};

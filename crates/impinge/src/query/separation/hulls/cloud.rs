@@ -2,6 +2,7 @@
 
 use fearless_simd::{Simd, SimdMask};
 
+use super::solid::Flat;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::math::lanes::{by_axis, dot, load, spread};
 use crate::math::{Matrix, Real, Vector, Wide, max};
@@ -45,6 +46,7 @@ fn low_half(bits: u64) -> u32 {
 
 /// Where one frame lies in another, in units of the pair: `x` of the first is at
 /// `rotation · x + translation` of the second.
+#[derive(Clone, Copy)]
 pub(super) struct Place<N: Real> {
     pub(super) rotation: Matrix<N, 3>,
     pub(super) translation: Vector<N, 3>,
@@ -74,6 +76,38 @@ impl<N: Real> Place<N> {
     }
 }
 
+/// The face of a solid that the other one lies farthest above.
+#[derive(Clone, Copy)]
+pub(super) struct Best<N> {
+    pub(super) face: usize,
+    pub(super) height: N,
+    /// The next best face with its height and the height of the third, if they were asked for.
+    pub(super) next: (usize, N),
+    pub(super) third: N,
+}
+
+impl<N: Real> Best<N> {
+    /// One of which nothing more is known.
+    pub(super) fn alone(face: usize, height: N) -> Self {
+        Self { face, height, next: (face, -N::INFINITY), third: -N::INFINITY }
+    }
+
+    /// Finds the two faces that come after the best one.
+    #[inline(always)]
+    fn rank(&mut self, heights: &[N]) {
+        for (index, &height) in heights.iter().enumerate() {
+            if index == self.face || height <= self.third {
+                continue;
+            }
+            if height > self.next.1 {
+                (self.third, self.next) = (self.next.1, (index, height));
+            } else {
+                self.third = height;
+            }
+        }
+    }
+}
+
 impl<N: Real> Cloud<N> {
     /// Vertices in their own frame.
     #[inline(always)]
@@ -93,18 +127,28 @@ impl<N: Real> Cloud<N> {
         cloud
     }
 
-    /// The vertices of a cloud in another frame.
+    /// No vertices.
     #[inline(always)]
-    pub(super) fn placed<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, at: &Place<N>) -> Self {
-        let mut cloud = Self { blocks: [[[N::ZERO; LANES]; 3]; BLOCKS], ..*self };
+    pub(super) const fn empty() -> Self {
+        Self { blocks: [[[N::ZERO; LANES]; 3]; BLOCKS], used: 0, count: 0 }
+    }
+
+    /// The vertices of a cloud in another frame, in place of those of `out`.
+    #[inline(always)]
+    pub(super) fn place<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        at: &Place<N>,
+        out: &mut Self,
+    ) {
+        (out.used, out.count) = (self.used, self.count);
         let origin: [V; 3] = spread(simd, &at.translation);
-        for (block, out) in self.blocks[..self.used].iter().zip(&mut cloud.blocks) {
+        for (block, out) in self.blocks[..self.used].iter().zip(&mut out.blocks) {
             let turned = at.turned(simd, &load::<_, _, V, 3, LANES>(simd, block));
             for (axis, out) in out.iter_mut().enumerate() {
                 (turned[axis] + origin[axis]).store(out);
             }
         }
-        cloud
     }
 
     #[inline(always)]
@@ -142,14 +186,16 @@ impl<N: Real> Cloud<N> {
         -highest_lane(-low)
     }
 
-    /// The plane that lies farthest below all vertices, the first of equals, and how far.
+    /// The plane that lies farthest below all vertices, the first of equals. Those of the `count` planes
+    /// that come next are found if that is asked for.
     #[inline(always)]
     pub(super) fn farthest_plane<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        planes: &[Planes<N, 3>],
+        (planes, count): (&[Planes<N, 3>], usize),
         shrink: N,
-    ) -> (usize, N) {
+        with_next: bool,
+    ) -> Best<N> {
         let mut heights = [[N::ZERO; LANES]; PLANE_BLOCKS];
         let mut highest = V::all(simd, -N::INFINITY);
         for (block, out) in planes.iter().zip(&mut heights) {
@@ -159,15 +205,31 @@ impl<N: Real> Cloud<N> {
             height.store(out);
             highest = height.larger(highest);
         }
-        let most = highest_lane(highest);
+        let (most, mut face) = (highest_lane(highest), 0);
         let all = V::all(simd, most);
         for (index, heights) in heights[..planes.len()].iter().enumerate() {
             let is_most = V::load(simd, heights).simd_eq(all).to_bitmask();
             if is_most != 0 {
-                return (index * LANES + is_most.trailing_zeros() as usize, most);
+                face = index * LANES + is_most.trailing_zeros() as usize;
+                break;
             }
         }
-        (0, most)
+        let mut best = Best::alone(face, most);
+        if with_next {
+            best.rank(&heights.as_flattened()[..count]);
+        }
+        best
+    }
+
+    /// How far the vertices lie above a plane, the number that [`Self::farthest_plane`] finds for it.
+    #[inline(always)]
+    pub(super) fn above<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        (solid, face): (&Flat<'_, N>, usize),
+        shrink: N,
+    ) -> N {
+        self.low::<S, V>(simd, &solid.normal(face)) - solid.offset(face) * shrink
     }
 
     /// The least height of the vertices along each of eight vectors.

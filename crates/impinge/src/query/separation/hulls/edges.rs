@@ -1,12 +1,11 @@
 //! An edge of each solid: faces of the Minkowski difference where they overlap, nearest points where
 //! they are apart.
 
-use core::array::from_fn;
-
 use fearless_simd::{Select, Simd, SimdMask};
 
 use super::cloud::highest_lane;
 use super::face::{Meeting, Side};
+use super::pool::Asked;
 use super::{Found, LANES, noise};
 use crate::math::lanes::{self, by_axis, dot, load, spread};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
@@ -14,46 +13,79 @@ use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
 
 /// An edge of the solid with the face, in its frame.
-struct Edge<N: Real> {
-    index: usize,
-    from: Vector<N, 3>,
-    along: Vector<N, 3>,
-    squared: N,
+pub(super) struct Edge<N: Real> {
+    pub(super) index: usize,
+    pub(super) from: Vector<N, 3>,
+    pub(super) along: Vector<N, 3>,
+    pub(super) squared: N,
 }
 
 /// Eight edges of the other solid, in the same frame.
-struct Edges<N: Real> {
-    indices: [usize; LANES],
-    from: [[N; LANES]; 3],
-    along: [[N; LANES]; 3],
-    normals: [[[N; LANES]; 3]; 2],
+pub(super) struct Edges<N: Real> {
+    pub(super) indices: [usize; LANES],
+    pub(super) from: [[N; LANES]; 3],
+    pub(super) along: [[N; LANES]; 3],
+    pub(super) normals: [[[N; LANES]; 3]; 2],
 }
 
 /// As many edges as 32 vertices may have.
 pub(super) const MOST_EDGES: usize = 90;
 
-/// The edges that may decide.
-struct Chosen {
+/// The edges that may decide, ascending.
+pub(super) struct Chosen {
     indices: [u8; MOST_EDGES],
     len: usize,
 }
 
 impl Chosen {
+    pub(super) const NONE: Self = Self { indices: [0; MOST_EDGES], len: 0 };
+
     /// Those that end at one of some vertices, given as bits.
     fn of(edges: &[PolytopeEdge], vertices: u32) -> Self {
-        let mut chosen = Self { indices: [0; MOST_EDGES], len: 0 };
+        let mut chosen = Self::NONE;
         for (index, edge) in (0_u8..).zip(edges) {
             // Written over by the next one if this one is not.
             chosen.indices[chosen.len] = index;
-            let ends = vertices >> edge.vertices[0] | vertices >> edge.vertices[1];
-            chosen.len += (ends & 1) as usize;
+            chosen.len += usize::from(ends_at(edge, vertices));
         }
         chosen
     }
 
-    fn indices(&self) -> &[u8] {
+    /// The same of some edges.
+    fn among(edges: &[PolytopeEdge], some: &[u8], vertices: u32) -> Self {
+        let mut chosen = Self::NONE;
+        for &index in some {
+            chosen.indices[chosen.len] = index;
+            chosen.len += usize::from(ends_at(&edges[usize::from(index)], vertices));
+        }
+        chosen
+    }
+
+    /// Those whose numbers are bits.
+    pub(super) fn of_bits(mut bits: u128) -> Self {
+        let mut chosen = Self::NONE;
+        while bits != 0 {
+            let [index, ..] = bits.trailing_zeros().to_le_bytes();
+            chosen.indices[chosen.len] = index;
+            chosen.len += 1;
+            bits &= bits - 1;
+        }
+        chosen
+    }
+
+    pub(super) fn bits(&self) -> u128 {
+        self.indices().iter().fold(0, |bits, &index| bits | 1 << index)
+    }
+
+    pub(super) fn indices(&self) -> &[u8] {
         &self.indices[..self.len]
     }
+}
+
+/// An edge ends at one of some vertices, given as bits.
+#[inline(always)]
+fn ends_at(edge: &PolytopeEdge, vertices: u32) -> bool {
+    (vertices >> edge.vertices[0] | vertices >> edge.vertices[1]) & 1 == 1
 }
 
 /// An edge of each solid that are a face of the Minkowski difference.
@@ -66,15 +98,38 @@ pub(super) struct Crossing<N> {
 impl<N: Real> Meeting<'_, '_, N> {
     /// The edges of each solid that may hold the points of the answer, if these are no farther from
     /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
-    /// other.
+    /// other. Of those that are known to be all that decide, if this is what is known.
     #[inline(always)]
-    fn chosen<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> [Chosen; 2] {
+    fn chosen<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, asked: Asked<N>) -> [Chosen; 2] {
+        self.asked.set(self.asked.get().and(asked));
+        let pool = match &self.pool {
+            Some(pool) if pool.serves(asked) => pool,
+            _ => return self.within_reach::<S, V>(simd, asked.reach),
+        };
+        let [own, other] = self.near::<S, V>(simd, asked.reach);
+        [
+            Chosen::among(self.own.solid.edges, pool.own.indices(), own),
+            Chosen::among(self.other.solid.edges, pool.other.indices(), other),
+        ]
+    }
+
+    /// [`Self::chosen`] of all edges.
+    #[inline(always)]
+    pub(super) fn within_reach<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> [Chosen; 2] {
+        let [own, other] = self.near::<S, V>(simd, reach);
+        [Chosen::of(self.own.solid.edges, own), Chosen::of(self.other.solid.edges, other)]
+    }
+
+    /// The vertices of each solid within reach, as bits.
+    #[inline(always)]
+    fn near<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> [u32; 2] {
         let slack = N::lit(4.0) * noise();
         let (least, most) = (self.other.heights.low - reach - slack, self.level() + reach + slack);
-        [
-            Chosen::of(self.own.solid.edges, self.own.heights.up_to::<S, V>(simd, -least)),
-            Chosen::of(self.other.solid.edges, self.other.heights.up_to::<S, V>(simd, most)),
-        ]
+        [self.own.heights.up_to::<S, V>(simd, -least), self.other.heights.up_to::<S, V>(simd, most)]
     }
 
     #[inline(always)]
@@ -84,45 +139,47 @@ impl<N: Real> Meeting<'_, '_, N> {
     }
 
     #[inline(always)]
-    fn edge(&self, index: usize) -> Edge<N> {
+    pub(super) fn edge(&self, index: usize) -> Edge<N> {
         let [from, to] = Self::ends(&self.own, index);
         let along = to - from;
         Edge { index, from, along, squared: along.norm_squared() }
     }
 
-    /// Eight edges of the other solid; the last one fills the rest.
+    /// Up to eight edges of the other solid, with the normals of the faces beside them where these are asked
+    /// for. The rest are copies of the first, and with normals points without a direction.
     #[inline(always)]
-    fn edges<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(super) fn edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         chosen: &[u8],
         with_normals: bool,
     ) -> Edges<N> {
-        let last = chosen.len() - 1;
-        let indices: [usize; LANES] =
-            from_fn(|lane| usize::from(chosen[if lane < last { lane } else { last }]));
         let zero = [[N::ZERO; LANES]; 3];
-        let mut edges = Edges { indices, from: zero, along: zero, normals: [zero; 2] };
-        for (lane, &index) in indices.iter().enumerate() {
-            let [from, to] = Self::ends(&self.other, index);
+        let mut edges = Edges { indices: [0; LANES], from: zero, along: zero, normals: [zero; 2] };
+        let mut local = [zero; 2];
+        for (lane, &index) in chosen.iter().enumerate().take(LANES) {
+            let edge = &self.other.solid.edges[usize::from(index)];
+            edges.indices[lane] = usize::from(index);
+            let [from, to] = edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize));
+            let [one, other] = edge.faces.map(|face| self.other.solid.normal(face as usize));
             for axis in 0..3 {
                 edges.from[axis][lane] = from[axis];
                 edges.along[axis][lane] = to[axis] - from[axis];
+                (local[0][axis][lane], local[1][axis][lane]) = (one[axis], other[axis]);
             }
         }
         if with_normals {
-            for side in 0..2 {
-                let normal = |index: usize| {
-                    let face = self.other.solid.edges[index].faces[side];
-                    self.other.solid.normal(face as usize)
-                };
-                let mut local = zero;
-                for (lane, &index) in indices.iter().enumerate() {
-                    let normal = normal(index);
-                    (0..3).for_each(|axis| local[axis][lane] = normal[axis]);
+            for (local, normals) in local.iter().zip(&mut edges.normals) {
+                let turned = self.place.turned::<S, V>(simd, &load(simd, local));
+                (0..3).for_each(|axis| turned[axis].store(&mut normals[axis]));
+            }
+        } else {
+            for lane in chosen.len()..LANES {
+                edges.indices[lane] = edges.indices[0];
+                for axis in 0..3 {
+                    edges.from[axis][lane] = edges.from[axis][0];
+                    edges.along[axis][lane] = edges.along[axis][0];
                 }
-                let turned = self.place.turned::<S, V>(simd, &load(simd, &local));
-                (0..3).for_each(|axis| turned[axis].store(&mut edges.normals[side][axis]));
             }
         }
         edges
@@ -136,8 +193,9 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Crossing<N>> {
-        let [chosen1, chosen2] = self.chosen::<S, V>(simd, reach);
-        let (mut best, mut least) = (None, self.height() + N::TWO * noise());
+        let [chosen1, chosen2] = self.chosen::<S, V>(simd, Asked::crossing(reach));
+        let (mut best, mut least): (Option<Crossing<N>>, N) =
+            (None, self.height() + N::TWO * noise());
         for eight in chosen2.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, true);
             for &index in chosen1.indices() {
@@ -148,7 +206,8 @@ impl<N: Real> Meeting<'_, '_, N> {
                 let heights = heights::<S, N, V>(simd, (&edge1, &normals1), &edges2);
                 let Some(heights) = heights else { continue };
                 let highest = highest_lane(heights);
-                if highest > least {
+                let is_before = |best: &Crossing<N>| best.edges[0] > edge1.index;
+                if highest > least || highest == least && best.as_ref().is_some_and(is_before) {
                     let is_highest = heights.simd_eq(V::all(simd, highest)).to_bitmask();
                     let lane = is_highest.trailing_zeros() as usize;
                     let edges = [edge1.index, edges2.indices[lane]];
@@ -181,15 +240,16 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Found<N>> {
-        let [chosen1, chosen2] = self.chosen::<S, V>(simd, reach);
-        let (mut nearest, mut least) = (None, N::INFINITY);
+        let [chosen1, chosen2] = self.chosen::<S, V>(simd, Asked::nearest(reach));
+        let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
         for eight in chosen2.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, false);
             for &index in chosen1.indices() {
                 let edge1 = self.edge(usize::from(index));
                 let squares = squares::<S, N, V>(simd, &edge1, &edges2);
                 let lowest = -highest_lane(-squares);
-                if lowest < least {
+                let is_before = |best: [usize; 2]| best[0] > edge1.index;
+                if lowest < least || lowest == least && nearest.is_some_and(is_before) {
                     let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
                     let lane = is_lowest.trailing_zeros() as usize;
                     (nearest, least) = (Some([edge1.index, edges2.indices[lane]]), lowest);
@@ -277,7 +337,7 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
 /// 5.1.9. Edges of no length count as their first ends.
 #[inline(always)]
-fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     edge1: &Edge<N>,
     edges2: &Edges<N>,

@@ -1,10 +1,12 @@
 //! A face of one solid, and the vertices of the other that lie nearest to it.
 
+use core::cell::Cell;
 use core::ops::ControlFlow;
 
 use fearless_simd::Simd;
 
 use super::cloud::{Cloud, Heights, Place, highest_over};
+use super::pool::{Asked, Pool};
 use super::solid::Flat;
 use super::{Found, noise};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
@@ -39,6 +41,10 @@ pub(super) struct Meeting<'s, 'a, N: Real> {
     pub(super) face: usize,
     pub(super) normal: Vector<N, 3>,
     pub(super) shrink: N,
+    /// The edges of each solid that may decide, if that is known.
+    pub(super) pool: Option<Pool<N>>,
+    /// What edges were asked about, and within what reach.
+    pub(super) asked: Cell<Asked<N>>,
 }
 
 /// Whether the other solid lies above the face, there where it is lowest.
@@ -86,9 +92,10 @@ impl<N: Real> Meeting<'_, '_, N> {
         let mut are_apart = self.height() > N::ZERO;
         if !are_apart {
             let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
-                let is_decided = above.is_some() || is_last;
-                return if is_decided {
+                return if above.is_some() {
                     ControlFlow::Break(above)
+                } else if is_last {
+                    ControlFlow::Break(self.nearly_above::<S, V>(simd))
                 } else {
                     ControlFlow::Continue(())
                 };
@@ -163,6 +170,30 @@ impl<N: Real> Meeting<'_, '_, N> {
         self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
     }
 
+    /// The answer where no edges are better than the face by more than noise, though the lowest vertex lies
+    /// beside it: the solids are all but flush there, and an edge that is as low but for noise enters what
+    /// lies above the face.
+    #[inline(always)]
+    fn nearly_above<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
+        let most = self.other.heights.low + N::lit(3.0) * noise();
+        let low = self.other.heights.up_to::<S, V>(simd, most);
+        let is_low = |vertex: u32| low >> vertex & 1 == 1;
+        for edge in self.other.solid.edges {
+            let [from, to] = edge.vertices;
+            if !is_low(from) && !is_low(to) {
+                continue;
+            }
+            let ends = if is_low(from) { [from, to] } else { [to, from] };
+            let [from, to] = ends.map(|vertex| self.other.cloud.at(vertex as usize));
+            let Some((share, _)) = self.span([from, to]) else { continue };
+            let point = from + (to - from) * share;
+            if self.normal.dot(&point) <= most {
+                return Some(self.at(&point));
+            }
+        }
+        None
+    }
+
     /// The ends of the sides of the face, and the vectors in its plane into the face across them, as long as
     /// the sides.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
@@ -212,6 +243,12 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// The middle of the part of an edge that lies above the face.
     fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
+        let (from, to) = self.span([a, b])?;
+        Some(a + (b - a) * ((from + to) * N::HALF))
+    }
+
+    /// Where the part of an edge that lies above the face begins and ends, as shares of the edge.
+    fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
         let (mut from, mut to) = (N::ZERO, N::ONE);
         for (ends, inward) in self.sides() {
             let [inside1, inside2] = [a, b].map(|end| inward.dot(&(end - ends[0])));
@@ -224,7 +261,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                     if inside1 < N::ZERO { (max(at, from), to) } else { (from, min(at, to)) };
             }
         }
-        (from <= to).then(|| a + (b - a) * ((from + to) * N::HALF))
+        (from <= to).then_some((from, to))
     }
 
     /// Whether a face of the other solid that lies along the plane lies above a point.

@@ -1,0 +1,177 @@
+//! Hulls and boxes that are followed step by step: what a world says of them goes by certificates, and is
+//! to the bit what is computed without.
+//!
+//! The twin of each pair is a generator: it has the same history and knows nothing but poses and shapes.
+
+use impinge::math::na::{Translation3, UnitQuaternion};
+use impinge::math::{Isometry3, Point, Real, Space, Vector};
+use impinge::narrow_phase::{
+    CollisionObjectHandle, ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher,
+    GeometricQueryType, IdAllocator, PairManifoldGenerator,
+};
+use impinge::query::ContactManifold;
+use impinge::shape::{ConvexHull, Cuboid, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionWorld};
+
+/// Numbers between −1 and 1.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let bits = u32::try_from(self.0 >> 33).expect("31 bits are left");
+        f64::from(bits) / f64::from(1_u32 << 30) - 1.0
+    }
+
+    fn vector(&mut self) -> [f64; 3] {
+        [self.next(), self.next(), self.next()]
+    }
+}
+
+/// Where a solid is, in double precision: what the worlds are told is rounded.
+#[derive(Clone, Copy)]
+struct Place {
+    at: [f64; 3],
+    turn: UnitQuaternion<f64>,
+}
+
+impl Place {
+    fn moved(&self, noise: &mut Noise, size: f64) -> Self {
+        let [at, turn] = [noise.vector(), noise.vector()];
+        let turn = UnitQuaternion::from_scaled_axis(Vector::<f64, 3>::from(turn) * size);
+        Self {
+            at: std::array::from_fn(|axis| self.at[axis] + at[axis] * size),
+            turn: turn * self.turn,
+        }
+    }
+
+    fn isometry<N: Real>(&self, scale: f64) -> Isometry3<N> {
+        let at = Vector::<N, 3>::from(self.at.map(|x| N::lit(x * scale)));
+        let turn = self.turn.into_inner().coords.map(N::lit);
+        let turn = UnitQuaternion::new_normalize(turn.into());
+        Isometry3::from_parts(Translation3::from(at), turn)
+    }
+}
+
+fn shape<N: Space<3>>(noise: &mut Noise, kind: usize, scale: f64) -> ShapeHandle<N, 3> {
+    let scaled = |v: [f64; 3]| Vector::<N, 3>::from(v.map(|x| N::lit(x * scale)));
+    let point = |noise: &mut Noise| {
+        let v = noise.vector();
+        // On a sphere, or of a grid, which has faces that are flush.
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let v = if kind == 1 { v.map(|x| x / length) } else { v.map(|x| (x * 1.6).round()) };
+        Point::from(scaled(v.map(|x| x * 0.6)))
+    };
+    if kind > 0 {
+        let points: Vec<_> = (0..14).map(|_| point(noise)).collect();
+        if let Ok(hull) = ConvexHull::try_from_points(&points) {
+            return ShapeHandle::new(hull);
+        }
+    }
+    ShapeHandle::new(Cuboid::new(scaled([0.5, 0.4, 0.6])))
+}
+
+/// What a manifold says, but for the numbers of its points.
+fn facts<N: Real>(manifolds: &[&ContactManifold<N, 3>]) -> Vec<String> {
+    let contacts = manifolds.iter().flat_map(|manifold| manifold.contacts());
+    contacts.map(|tracked| format!("{:?} {:?}", tracked.contact, tracked.kinematic)).collect()
+}
+
+/// What a world says of a pair.
+fn said_of<N: Space<3>>(
+    world: &CollisionWorld<N, 3, ()>,
+    [one, other]: [CollisionObjectHandle; 2],
+) -> Vec<String> {
+    let all = world.contact_manifolds();
+    let own =
+        all.filter(|(object1, object2, _)| (object1.handle(), object2.handle()) == (one, other));
+    facts(&own.map(|(_, _, manifold)| manifold).collect::<Vec<_>>())
+}
+
+/// A pair in the world, and its twin.
+struct Twins<N: Space<3>> {
+    places: [Place; 2],
+    shapes: [ShapeHandle<N, 3>; 2],
+    handles: [CollisionObjectHandle; 2],
+    twin: PairManifoldGenerator<N, 3>,
+}
+
+/// How far a step goes: mostly little, now and then to somewhere else or nowhere.
+fn size(noise: &mut Noise, step: usize) -> f64 {
+    const SIZES: [f64; 8] = [1e-3, 3e-4, 1e-3, 0.0, 1e-5, 2e-3, 1e-3, 1e-7];
+    let is_jump = step % 16 == 15;
+    if is_jump { noise.next() * 0.2 } else { SIZES[step % 8] * noise.next().abs() }
+}
+
+/// Follows pairs for some steps; answers how many manifolds were compared.
+fn follow<N: Space<3, Isometry = Isometry3<N>>>(seed: u64, scale: f64, far: f64) -> usize {
+    let noise = &mut Noise(seed);
+    let margin = N::lit(0.0625 * scale);
+    let mut world = CollisionWorld::<N, 3, ()>::new(margin);
+    let query = GeometricQueryType::Contacts(margin, N::ZERO);
+    let mut pairs = Vec::new();
+    for index in 0..48_usize {
+        let shapes = [0, 1].map(|which| shape(noise, (index >> which) % 3, scale));
+        let corner = [far + 8.0 * f64::from(u32::try_from(index).expect("few")), 0.0, 0.0];
+        let here = Place { at: corner, turn: UnitQuaternion::identity() };
+        let there = here.moved(noise, [0.0, 1.0][index % 2]);
+        // Above, as if it stood there, or to either side: the order of the two may change on the way.
+        let away = [[0.0, 0.95, 0.0], [0.05, 1.0, 0.2], [0.7, 0.6, 0.1], [-0.001, 0.9, 0.3]];
+        let at = std::array::from_fn(|axis| corner[axis] + away[index % 4][axis]);
+        let places = [here, Place { at, ..there }];
+        let add = |which: usize| {
+            let place = places[which].isometry(scale);
+            world.add(place, shapes[which].clone(), CollisionGroups::new(), query, ())
+        };
+        let handles = [0, 1].map(add);
+        pairs.push(Twins { places, shapes, handles, twin: PairManifoldGenerator::default() });
+    }
+    let (mut compared, mut ids) = (0, IdAllocator::new());
+    let (dispatcher, linear) = (DefaultContactDispatcher::new(), margin + margin);
+    let prediction = ContactPrediction::new(linear, N::ZERO, N::ZERO);
+    for step in 0..80 {
+        world.update();
+        let said: Vec<_> = pairs.iter().map(|twins| said_of(&world, twins.handles)).collect();
+        for (index, twins) in pairs.iter_mut().enumerate() {
+            let [one, other] = twins.places.map(|place| place.isometry::<N>(scale));
+            let [shape1, shape2] = &twins.shapes;
+            let twin = &mut twins.twin;
+            twin.update(
+                &dispatcher,
+                &one,
+                shape1.as_ref(),
+                &other,
+                shape2.as_ref(),
+                &prediction,
+                &mut ids,
+            );
+            let mut expected = Vec::new();
+            twin.contacts(&mut expected);
+            assert_eq!(said[index], facts(&expected), "pair {index} in step {step}");
+            compared += usize::from(!expected.is_empty());
+            // Another shape, now and then.
+            if step % 40 == 20 && index % 6 == 0 {
+                twins.shapes[1] = shape(noise, index / 6 % 3, scale);
+                world.set_shape(twins.handles[1], twins.shapes[1].clone());
+            }
+            let size = size(noise, step);
+            let which = (index + step) % 2;
+            twins.places[which] = twins.places[which].moved(noise, size);
+            world.set_position(twins.handles[which], twins.places[which].isometry(scale));
+        }
+    }
+    compared
+}
+
+#[test]
+fn certificates_change_no_bit() {
+    let compared = [
+        follow::<f32>(1, 1.0, 0.0),
+        follow::<f64>(2, 1.0, 0.0),
+        follow::<f32>(3, 1e-3, 0.0),
+        follow::<f64>(4, 1e4, 0.0),
+        follow::<f32>(5, 1.0, 1000.0),
+    ];
+    assert!(compared.iter().all(|&compared| compared > 1000), "{compared:?} manifolds");
+}
