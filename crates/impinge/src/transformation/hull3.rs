@@ -24,8 +24,8 @@ const ROUNDS: usize = 8;
 
 /// The convex hull of some points.
 ///
-/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that stick out of
-/// all faces by less than 2 u are left out, triangles within 4 u of a plane are merged into one
+/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that are
+/// outside by less than 2 u are left out, triangles within 4 u of a plane are merged into one
 /// polygon, vertices within 4 u of the segment between two neighbors or of the plane of all their
 /// neighbors are taken out. A face has the normal of the largest triangle in it. So every point given is in
 /// front of no face, taken at its highest vertex, by more than 8 u, and usually by no more than 4 u;

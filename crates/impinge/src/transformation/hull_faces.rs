@@ -2,7 +2,7 @@
 //! polygon.
 
 use super::quickhull::Facet;
-use super::span::{Scaled, direction, distance_from_segment, precedes};
+use super::span::{Scaled, direction, distance_from_segment, larger, precedes};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -58,9 +58,25 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
     let pairs =
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
+    let is_amid = |normal: Vector<f64, 3>| {
+        neighbors.iter().all(|p| normal.dot(&(p - vertex)).abs() <= flat)
+            && is_surrounded(vertex, neighbors, &normal)
+    };
     pairs.clone().any(|(a, b)| distance_from_segment(vertex, a, b) <= flat)
-        || widest_normal(vertex, pairs)
-            .is_some_and(|normal| neighbors.iter().all(|p| normal.dot(&(p - vertex)).abs() <= flat))
+        || widest_normal(vertex, pairs).is_some_and(is_amid)
+}
+
+/// Seen along a normal, there are neighbors on both sides of each line from the vertex to one of them. At
+/// the rim of something hardly thicker than rounding all of them lie in one plane, but on one side.
+fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
+    neighbors.iter().all(|to| {
+        let across = normal.cross(&(to - vertex));
+        let sides = neighbors.iter().map(|p| across.dot(&(p - vertex)));
+        let (low, high) = sides.fold((0.0, 0.0), |(low, high): (f64, f64), side| {
+            (if side < low { side } else { low }, larger(side, high))
+        });
+        low < 0.0 && high > 0.0
+    })
 }
 
 /// The unit normal of the largest triangle of a vertex and two of its neighbors.
@@ -90,8 +106,7 @@ pub(super) struct Face {
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Face> {
     let points = &scaled.points;
     let mut faces = Merger::new(facets, scaled).merged();
-    straighten(&mut faces, points.len());
-    if !is_closed(&faces) {
+    if !(straighten(&mut faces, scaled) && is_closed(&faces)) {
         let triangle =
             |facet: &Facet| Face { normal: facet.normal(points), ring: facet.corners.to_vec() };
         faces = facets.iter().map(triangle).collect();
@@ -212,9 +227,11 @@ impl<'a> Merger<'a> {
     }
 }
 
-/// Drops the vertices that only two faces share: in each of them the sides there form one line.
-fn straighten(faces: &mut [Face], vertices: usize) {
-    let mut uses = vec![(0_u32, [0_usize; 2]); vertices];
+/// Drops the vertices that only two faces share: in each of them the sides there form one line. Answers
+/// false if there is one where they do not, as where two faces that hardly lean against each other meet all
+/// around: a vertex of two sides is none.
+fn straighten(faces: &mut [Face], scaled: &Scaled<3>) -> bool {
+    let mut uses = vec![(0_u32, [0_usize; 2]); scaled.points.len()];
     for (index, face) in faces.iter().enumerate() {
         for &vertex in &face.ring {
             let (count, users) = &mut uses[at(vertex)];
@@ -224,11 +241,24 @@ fn straighten(faces: &mut [Face], vertices: usize) {
             *count += 1;
         }
     }
-    for (vertex, (count, users)) in (0_u32..).zip(uses) {
-        if count == 2 && users.iter().all(|&user| faces[user].ring.len() > 3) {
+    (0_u32..).zip(uses).filter(|(_, (count, _))| *count == 2).all(|(vertex, (_, users))| {
+        let can_do_without = |user: &usize| {
+            let ring = &faces[*user].ring;
+            ring.len() > 3 && is_straight(ring, vertex, scaled)
+        };
+        let is_needless = users.iter().all(can_do_without);
+        if is_needless {
             users.iter().for_each(|&user| faces[user].ring.retain(|&corner| corner != vertex));
         }
-    }
+        is_needless
+    })
+}
+
+/// A vertex of a ring lies on the segment between those before and after it.
+fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
+    let Some(place) = ring.iter().position(|&corner| corner == vertex) else { return false };
+    let corner = |step: usize| &scaled.points[at(ring[(place + step) % ring.len()])];
+    distance_from_segment(corner(0), corner(ring.len() - 1), corner(1)) <= scaled.flat()
 }
 
 /// Each side of a face is, backwards, the side of one other face.

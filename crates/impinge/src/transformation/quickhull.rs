@@ -6,7 +6,7 @@
 //! that stick out by no more than the tolerance from every facet are left outside.
 
 use super::exact::{area_vector, volume};
-use super::span::{larger, precedes};
+use super::span::{distance_from_segment, larger, precedes};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -256,32 +256,55 @@ impl<'a> Surface<'a> {
     }
 
     /// Moves each point left outside to the facet that it is highest over, and names those facets
-    /// over which this is above the tolerance. The others stay: the surface may yet turn below them.
+    /// for which it is farther outside than the tolerance. The others stay: the surface may yet turn below
+    /// them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if !self.facets[at(facet)].is_alive {
                 continue;
             }
             for (point, _) in core::mem::take(&mut self.facets[at(facet)].outside) {
-                let (best, height) = self.highest_above(point, facet);
-                self.facets[at(best)].outside.push((point, height));
-                if height > self.tolerance {
+                let (best, distance) = self.farthest_outside(point, facet);
+                self.facets[at(best)].outside.push((point, distance));
+                if distance > self.tolerance {
                     pending.push(best);
                 }
             }
         }
     }
 
-    /// The facet over which a point is highest, found from one that it is in front of.
-    fn highest_above(&mut self, point: u32, first: u32) -> (u32, f64) {
+    /// The facet over which a point is highest, found from one that it is in front of, and how far it is
+    /// outside: by that height, or from the surface. Beside the rim of something thin no facet has it in
+    /// front by much.
+    fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         let mut best = (first, 0.0);
-        for facet in self.visible_from(point, first) {
+        let visible = self.visible_from(point, first);
+        for &facet in &visible {
             let height = self.height(facet, point);
             if height > best.1 {
                 best = (facet, height);
             }
         }
-        best
+        if best.1 > self.tolerance {
+            return best;
+        }
+        let distances = visible.iter().map(|&facet| self.distance(facet, point));
+        (best.0, larger(best.1, distances.fold(f64::INFINITY, f64::min)))
+    }
+
+    /// How far a point in front of a facet is from it.
+    fn distance(&self, facet: u32, point: u32) -> f64 {
+        let facet = &self.facets[at(facet)];
+        let [a, b, c] = facet.corners.map(|corner| &self.points[at(corner)]);
+        let (place, normal) = (&self.points[at(point)], facet.normal(self.points));
+        let sides = [(a, b), (b, c), (c, a)];
+        let is_inside =
+            |(from, to): &(&P3, &P3)| normal.cross(&(*to - *from)).dot(&(place - *from)) >= 0.0;
+        if sides.iter().all(is_inside) {
+            return facet.height(self.points, point);
+        }
+        let distances = sides.map(|(from, to)| distance_from_segment(place, from, to));
+        distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// The facets that are left, numbered anew.

@@ -1,6 +1,6 @@
 //! What makes a hull a hull, checked slowly.
 
-use impinge::math::{Point, Real};
+use impinge::math::{Point, Real, Vector};
 use impinge::transformation::{IndexedHull, convex_hull3};
 
 use super::points::P3;
@@ -74,7 +74,24 @@ pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull<N>) -> M
             assert!(outside_chord >= -8.0, "a face turns right by {outside_chord}: {ring:?}");
         }
     }
+    measured.outside = measured.outside.max(cut_off(&exact, hull) / unit);
     measured
+}
+
+/// By how much the points reach farther than the vertices along the axes and diagonals, at most: what is
+/// missing at the rim of something flat, where no face looks.
+fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
+    let reach = |along: &Vector<f64, 3>, points: &mut dyn Iterator<Item = &P3>| {
+        points.map(|p| along.dot(&p.coords)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let third = |digit: i32| f64::from(digit % 3 - 1);
+    let directions = (0..27).filter(|&n| n != 13).map(|n| [third(n), third(n / 3), third(n / 9)]);
+    let missing = directions.map(|along| {
+        let along = Vector::<f64, 3>::from(along).normalize();
+        let vertices = &mut hull.vertices.iter().map(|&vertex| &points[vertex]);
+        reach(&along, &mut points.iter()) - reach(&along, vertices)
+    });
+    missing.fold(0.0, f64::max)
 }
 
 /// The hull of points given as `f64`, in one scalar, checked against the documented tolerance.

@@ -170,6 +170,30 @@ fn slabs<N: Real>() {
     }
 }
 
+/// Prisms hardly thicker than rounding: every corner of the outline is one of the hull.
+fn sheets<N: Real>() {
+    for sides in [3, 5, 16, 40] {
+        for units in [1e3, 30.0, 10.0, 7.0, 5.0, 4.0] {
+            let half = units * N::EPSILON.as_f64() / 2.0;
+            let flattened = |p: &P3| P3::new(p.x, p.y, half.copysign(p.z));
+            let points: Vec<P3> = prism(sides).iter().map(flattened).collect();
+            match convex_hull3(&cast::<N>(&points)) {
+                Ok(_) => drop(hull_of::<N>("sheet", &points)),
+                Err(error) => {
+                    assert_eq!(error, ShapeError::Degenerate { dimension: 2 }, "{units}");
+                    assert!(units <= 5.0, "a sheet {units} units thick is no plane");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn sheets_keep_their_outline() {
+    sheets::<f32>();
+    sheets::<f64>();
+}
+
 #[test]
 fn slabs_down_to_nothing() {
     slabs::<f32>();
