@@ -155,7 +155,8 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> {
     pub(super) fn new(own: &Vector<N, D>, placement: Placement<'a, N, D>) -> Self {
         let turned = placement.pose1.vector(own);
         // Which solid comes first is a toss: looked up, not branched on.
-        let (first, second) = (usize::from(placement.is_swapped), usize::from(!placement.is_swapped));
+        let (first, second) =
+            (usize::from(placement.is_swapped), usize::from(!placement.is_swapped));
         let ways = [Vector::<N, D>::zeros(), turned];
         let normal = turned * [N::ONE, -N::ONE][first];
         Self { placement, normal, ways: [ways[first], ways[second]] }

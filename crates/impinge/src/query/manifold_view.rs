@@ -93,6 +93,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
 
     /// The contact of the largest depth, the first of equals.
     #[must_use]
+    #[expect(clippy::missing_panics_doc, reason = "a view is never empty")]
     pub fn deepest_contact(&self) -> ContactPoint<N, D> {
         let deeper = |best: ContactPoint<N, D>, other: ContactPoint<N, D>| {
             if other.contact.depth > best.contact.depth { other } else { best }

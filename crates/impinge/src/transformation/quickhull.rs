@@ -3,7 +3,7 @@
 //! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). Who sees which
 //! facet is decided by exact orientation, so the facets a point sees are always connected and their
 //! border is always one loop: the surface stays closed and weakly convex whatever the input. Points
-//! that stick out by no more than the tolerance from every facet are left outside.
+//! that are outside by no more than the tolerance are left there.
 
 use super::exact::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
