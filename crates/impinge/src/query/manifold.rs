@@ -1,7 +1,7 @@
 //! Contact manifolds as users see them: world frame, kinematics, ids.
 
 use super::kinematic::Sides;
-use super::{Contact, ContactKinematic, ContactPoint, Pair, RawManifold, RawPoint};
+use super::{Contact, ContactKinematic, Pair, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.
@@ -40,6 +40,19 @@ pub struct TrackedContact<N: Real, const D: usize> {
     pub part1: u32,
     /// The part of the second shape that touches; 0 if the shape is not a composite.
     pub part2: u32,
+}
+
+impl<N: Real, const D: usize> TrackedContact<N, D> {
+    /// The same contact with the solids swapped.
+    pub(super) fn flipped(&self) -> Self {
+        Self {
+            contact: self.contact.flipped(),
+            kinematic: self.kinematic.flipped(),
+            id: self.id,
+            part1: self.part2,
+            part2: self.part1,
+        }
+    }
 }
 
 /// Points that delimit a flat area of contact, with one common normal.
@@ -129,86 +142,32 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     old: ContactManifold<N, D>,
 ) -> ContactManifold<N, D> {
     let mut sides = Sides::new(pair, &raw.normal);
-    let placing = Placing::new(&raw.normal, *placement);
-    let mut manifold = old;
-    manifold.refill(raw.points.iter().map(|point| {
+    let normal = placement.pose1.vector(&raw.normal);
+    let tracked = |point: &RawPoint<N, D>| {
+        let contact = placed(&raw.normal, point, placement.pose1, normal);
         let kinematic = sides.kinematic(point);
-        placing.tracked(point, kinematic, [0; 2])
-    }));
-    manifold
+        let id = ContactId { pair: placement.pair, number: point.id };
+        let tracked = TrackedContact { contact, kinematic, id, part1: 0, part2: 0 };
+        if placement.is_swapped { tracked.flipped() } else { tracked }
+    };
+    let mut contacts = old.contacts;
+    contacts.clear();
+    contacts.extend(raw.points.iter().map(tracked));
+    ContactManifold { contacts }
 }
 
-/// What the contacts of a manifold have in common on their way to the world.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Placing<'a, N: Real, const D: usize> {
-    placement: Placement<'a, N, D>,
-    /// Unit, in the world, from the user's first solid to the second.
+/// A point in the world; `own` is the manifold's normal, `normal` that in the world.
+#[inline]
+pub(super) fn placed<N: Real, const D: usize>(
+    own: &Vector<N, D>,
+    point: &RawPoint<N, D>,
+    pose1: &Pose<N, D>,
     normal: Vector<N, D>,
-    /// By how much a distance leads from the point that is kept to those of the user's first and second
-    /// solid: not at all, and along the normal that is kept.
-    ways: [Vector<N, D>; 2],
-}
-
-impl<'a, N: Real, const D: usize> Placing<'a, N, D> {
-    /// Of a manifold whose normal, as it is kept, is `own`.
-    #[inline]
-    pub(super) fn new(own: &Vector<N, D>, placement: Placement<'a, N, D>) -> Self {
-        let turned = placement.pose1.vector(own);
-        // Which solid comes first is a toss: looked up, not branched on.
-        let (first, second) =
-            (usize::from(placement.is_swapped), usize::from(!placement.is_swapped));
-        let ways = [Vector::<N, D>::zeros(), turned];
-        let normal = turned * [N::ONE, -N::ONE][first];
-        Self { placement, normal, ways: [ways[first], ways[second]] }
-    }
-
-    /// The unit vector from the user's first solid to the second.
-    pub(super) fn normal(&self) -> Unit<Vector<N, D>> {
-        Unit::new_unchecked(self.normal)
-    }
-
-    /// A contact as the user's order of the solids has it.
-    #[inline]
-    pub(super) fn contact(&self, point: &RawPoint<N, D>) -> Contact<N, D> {
-        let (place, distance) = (self.placement.pose1.point(&point.point1), point.distance);
-        Contact {
-            world1: place + self.ways[0] * distance,
-            world2: place + self.ways[1] * distance,
-            normal: self.normal(),
-            depth: -distance,
-        }
-    }
-
-    /// A contact with its name, and how it moves, which is told for the solids as they are kept; so are
-    /// the parts.
-    pub(super) fn tracked(
-        &self,
-        point: &RawPoint<N, D>,
-        kinematic: ContactKinematic<N, D>,
-        parts: [u32; 2],
-    ) -> TrackedContact<N, D> {
-        let kinematic = if self.placement.is_swapped { kinematic.flipped() } else { kinematic };
-        let [part1, part2] = self.in_order(parts);
-        TrackedContact { contact: self.contact(point), kinematic, id: self.id(point), part1, part2 }
-    }
-
-    /// A contact with its name alone.
-    #[inline]
-    pub(super) fn point(&self, point: &RawPoint<N, D>, parts: [u32; 2]) -> ContactPoint<N, D> {
-        let [feature1, feature2] = self.in_order([point.feature1, point.feature2]);
-        let [part1, part2] = self.in_order(parts);
-        let (contact, id) = (self.contact(point), self.id(point));
-        ContactPoint { contact, id, feature1, feature2, part1, part2 }
-    }
-
-    #[inline]
-    const fn id(&self, point: &RawPoint<N, D>) -> ContactId {
-        ContactId { pair: self.placement.pair, number: point.id }
-    }
-
-    /// What belongs to the solids as they are kept, in the user's order.
-    #[inline]
-    const fn in_order<T: Copy>(&self, [first, second]: [T; 2]) -> [T; 2] {
-        if self.placement.is_swapped { [second, first] } else { [first, second] }
+) -> Contact<N, D> {
+    Contact {
+        world1: pose1.point(&point.point1),
+        world2: pose1.point(&(point.point1 + own * point.distance)),
+        normal: Unit::new_unchecked(normal),
+        depth: -point.distance,
     }
 }

@@ -1,12 +1,8 @@
 //! Manifolds read where they are kept.
 
-use core::slice;
-
-use super::manifold::Placing;
-use super::manifold_build::{Patch, PatchPoint};
-use super::{
-    Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint, TrackedContact,
-};
+use super::manifold::placed;
+use super::manifold_build::Patch;
+use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
 use crate::math::{Real, Unit, Vector};
 use crate::shape::FeatureId;
 
@@ -79,77 +75,87 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     /// contact, which all contacts of a manifold share.
     #[must_use]
     pub fn normal(&self) -> Unit<Vector<N, D>> {
-        match self.points() {
-            Points::Convex(_, placing) | Points::Patch(_, placing) => placing.normal(),
-            Points::Made(contacts) => contacts.as_slice()[0].contact.normal,
+        let world = |own: &Vector<N, D>, placement: &Placement<'_, N, D>| {
+            let normal = placement.pose1.vector(own);
+            Unit::new_unchecked(if placement.is_swapped { -normal } else { normal })
+        };
+        match self.0 {
+            Kept::Convex(raw, placement) => world(&raw.normal, &placement),
+            Kept::Patch(patch, placement) => world(&patch.normal, &placement),
+            Kept::Made(manifold) => manifold.contacts()[0].contact.normal,
         }
     }
 
     /// The contacts, in the order in which they began.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
-        self.points()
+        let normal = self.own_normal();
+        (0..self.len()).map(move |index| self.contact(index, &normal))
     }
 
     /// The contact of the largest depth, the first of equals.
     #[must_use]
-    #[expect(clippy::missing_panics_doc, reason = "a view is never empty")]
     pub fn deepest_contact(&self) -> ContactPoint<N, D> {
-        let deeper = |best: ContactPoint<N, D>, other: ContactPoint<N, D>| {
-            if other.contact.depth > best.contact.depth { other } else { best }
+        let depth = |index: usize| match self.0 {
+            Kept::Convex(raw, _) => -raw.points[index].distance,
+            Kept::Patch(patch, _) => -patch.points[index].raw.distance,
+            Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
-        self.points().reduce(deeper).expect("a view is never empty")
+        let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
+        self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
     }
 
+    /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
+    /// nothing of use for manifolds that are made.
     #[inline]
-    fn points(self) -> Points<'a, N, D> {
+    fn own_normal(&self) -> [Vector<N, D>; 2] {
+        let (own, pose1) = match self.0 {
+            Kept::Convex(raw, placement) => (raw.normal, placement.pose1),
+            Kept::Patch(patch, placement) => (patch.normal, placement.pose1),
+            Kept::Made(_) => return [Vector::<N, D>::zeros(); 2],
+        };
+        [own, pose1.vector(&own)]
+    }
+
+    /// The contact at an index; `normal` is [`Self::own_normal`].
+    #[inline]
+    fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
-            Kept::Convex(raw, placement) => {
-                Points::Convex(raw.points.iter(), Placing::new(&raw.normal, placement))
-            }
+            Kept::Convex(raw, placement) => point(normal, &raw.points[index], [0; 2], &placement),
             Kept::Patch(patch, placement) => {
-                Points::Patch(patch.points.iter(), Placing::new(&patch.normal, placement))
+                let found = &patch.points[index];
+                point(normal, &found.raw, found.parts, &placement)
             }
-            Kept::Made(manifold) => Points::Made(manifold.contacts().iter()),
+            Kept::Made(manifold) => {
+                let made = &manifold.contacts()[index];
+                ContactPoint {
+                    contact: made.contact,
+                    id: made.id,
+                    feature1: made.kinematic.feature1(),
+                    feature2: made.kinematic.feature2(),
+                    part1: made.part1,
+                    part2: made.part2,
+                }
+            }
         }
     }
 }
 
-/// The contacts of a [`ManifoldView`] that are yet to be read.
-enum Points<'a, N: Real, const D: usize> {
-    Convex(slice::Iter<'a, RawPoint<N, D>>, Placing<'a, N, D>),
-    Patch(slice::Iter<'a, PatchPoint<N, D>>, Placing<'a, N, D>),
-    Made(slice::Iter<'a, TrackedContact<N, D>>),
-}
-
-impl<N: Real, const D: usize> Iterator for Points<'_, N, D> {
-    type Item = ContactPoint<N, D>;
-
-    #[inline]
-    fn next(&mut self) -> Option<ContactPoint<N, D>> {
-        Some(match self {
-            Self::Convex(points, placing) => placing.point(points.next()?, [0; 2]),
-            Self::Patch(points, placing) => {
-                let point = points.next()?;
-                placing.point(&point.raw, point.parts)
-            }
-            Self::Made(contacts) => {
-                let TrackedContact { contact, kinematic, id, part1, part2 } = *contacts.next()?;
-                let (feature1, feature2) = (kinematic.feature1(), kinematic.feature2());
-                ContactPoint { contact, id, feature1, feature2, part1, part2 }
-            }
-        })
+/// A point in the world, by the normal as it is kept and in the world, as the user's order of the solids has it.
+#[inline]
+fn point<N: Real, const D: usize>(
+    [own, normal]: &[Vector<N, D>; 2],
+    raw: &RawPoint<N, D>,
+    [part1, part2]: [u32; 2],
+    placement: &Placement<'_, N, D>,
+) -> ContactPoint<N, D> {
+    let contact = placed(own, raw, placement.pose1, *normal);
+    let id = ContactId { pair: placement.pair, number: raw.id };
+    let (feature1, feature2) = (raw.feature1, raw.feature2);
+    if placement.is_swapped {
+        let contact = contact.flipped();
+        let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
+        return ContactPoint { contact, id, feature1, feature2, part1, part2 };
     }
-
-    #[inline]
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let len = match self {
-            Self::Convex(points, _) => points.len(),
-            Self::Patch(points, _) => points.len(),
-            Self::Made(contacts) => contacts.len(),
-        };
-        (len, Some(len))
-    }
+    ContactPoint { contact, id, feature1, feature2, part1, part2 }
 }
-
-impl<N: Real, const D: usize> ExactSizeIterator for Points<'_, N, D> {}

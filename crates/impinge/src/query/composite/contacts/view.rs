@@ -3,9 +3,9 @@
 use super::CompositeContacts;
 use crate::math::{Pose, Space, Vector};
 use crate::query::kinematic::{ContactKinematic, Sides};
-use crate::query::manifold::Placing;
+use crate::query::manifold::{TrackedContact, placed};
 use crate::query::manifold_build::{Patch, PatchPoint};
-use crate::query::{ContactManifold, ManifoldView, Pair, Placement};
+use crate::query::{ContactId, ContactManifold, ManifoldView, Pair, Placement};
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 
 /// Normals that differ by no more than so many rounding units are the same.
@@ -30,14 +30,27 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     ) -> Vec<ContactManifold<N, D>> {
         old.resize_with(self.patches.len(), ContactManifold::default);
         for (manifold, patch) in old.iter_mut().zip(&self.patches) {
-            let placing = Placing::new(&patch.normal, *placement);
-            manifold.refill(patch.points.iter().map(|point| {
-                let kinematic = kinematic(pair, patch, point);
-                placing.tracked(&point.raw, kinematic, point.parts)
-            }));
+            let tracked = patch.points.iter().map(|point| tracked(pair, patch, point, placement));
+            manifold.refill(tracked);
         }
         old
     }
+}
+
+/// One contact in the world.
+fn tracked<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    patch: &Patch<N, D>,
+    point: &PatchPoint<N, D>,
+    placement: &Placement<'_, N, D>,
+) -> TrackedContact<N, D> {
+    let normal = placement.pose1.vector(&patch.normal);
+    let contact = placed(&patch.normal, &point.raw, placement.pose1, normal);
+    let kinematic = kinematic(pair, patch, point);
+    let id = ContactId { pair: placement.pair, number: point.raw.id };
+    let [part1, part2] = point.parts;
+    let tracked = TrackedContact { contact, kinematic, id, part1, part2 };
+    if placement.is_swapped { tracked.flipped() } else { tracked }
 }
 
 /// How a contact moves: as one of its two parts, seen from the frames of the shapes.
