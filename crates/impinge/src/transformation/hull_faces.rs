@@ -2,7 +2,7 @@
 //! polygon.
 
 use super::quickhull::Facet;
-use super::span::{Scaled, direction, distance_from_segment, larger, precedes};
+use super::span::{Scaled, direction, distance_from_segment, precedes};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -71,11 +71,8 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
 fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
-        let sides = neighbors.iter().map(|p| across.dot(&(p - vertex)));
-        let (low, high) = sides.fold((0.0, 0.0), |(low, high): (f64, f64), side| {
-            (if side < low { side } else { low }, larger(side, high))
-        });
-        low < 0.0 && high > 0.0
+        let side = |p: &P3| across.dot(&(p - vertex));
+        neighbors.iter().any(|p| side(p) < 0.0) && neighbors.iter().any(|p| side(p) > 0.0)
     })
 }
 

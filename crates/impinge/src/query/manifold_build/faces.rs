@@ -8,9 +8,10 @@
 
 use fearless_simd::{Level, Simd, SimdMask};
 
-use super::fences::fence;
+use super::fences::{fence, placed};
 use super::frame::Frame;
 use super::overlap::Candidates;
+use super::triangle_face::along_side;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
 use crate::math::lanes::{dot, load, minus, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, max_component};
@@ -113,23 +114,6 @@ fn laid_out<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     one.hold(simd, (&flats1, &inward1), (&other.flats, second.count), tolerance);
     other.hold(simd, (&flats2, &inward2), (&one.flats, first.count), tolerance);
     Some(places)
-}
-
-/// Points of the second solid's frame in that of the first.
-#[inline(always)]
-fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    pose: &Pose<N, 3>,
-    local: &[V; 3],
-) -> [V; 3] {
-    let mut all = *local;
-    for (row, value) in all.iter_mut().enumerate() {
-        let turned = V::all(simd, pose.rotation[(row, 0)]) * local[0]
-            + V::all(simd, pose.rotation[(row, 1)]) * local[1]
-            + V::all(simd, pose.rotation[(row, 2)]) * local[2];
-        *value = turned + V::all(simd, pose.translation[row]);
-    }
-    all
 }
 
 /// Where points are seen along the normal of a frame.
@@ -273,8 +257,8 @@ impl<N: Real> Meeting<'_, N> {
                 }
                 let insides1 = [side1, next1].map(|corner| other.insides[corner][side2]);
                 let insides2 = [side2, next2].map(|corner| one.insides[corner][side1]);
-                let core1 = along_side([side1, next1].map(|at| one.point(at)), insides1);
-                let core2 = along_side([side2, next2].map(|at| other.point(at)), insides2);
+                let core1 = along_side(&[side1, next1].map(|at| one.point(at)), insides1);
+                let core2 = along_side(&[side2, next2].map(|at| other.point(at)), insides2);
                 self.push([core1, core2], [ring1.sides[side1], ring2.sides[side2]], out);
             }
         }
@@ -321,9 +305,4 @@ fn on_side<N: Real>(
     let along = ends[1] - ends[0];
     let (share, length) = ((place - ends[0]).dot(&along), along.norm());
     (share >= N::ZERO && share <= length * length).then_some(side)
-}
-
-/// The point of a side that lies on a line, given how far inside of that its ends are.
-fn along_side<N: Real>([from, to]: [Point<N, 3>; 2], [start, end]: [N; 2]) -> Point<N, 3> {
-    from + (to - from) * (start / (start - end))
 }

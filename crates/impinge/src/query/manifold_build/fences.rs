@@ -151,7 +151,7 @@ fn signs<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, insides: V, toleranc
 
 /// Points of a frame in that which a pose leads to.
 #[inline(always)]
-fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     pose: &Pose<N, 3>,
     local: &[V; 3],

@@ -78,6 +78,23 @@ fn pose_of<N: Real>(place: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: place }
 }
 
+/// What two ways say is the same, names and all.
+pub(super) fn assert_same<N: Real, const D: usize>(
+    quick: &CompositeContacts<N, D>,
+    slow: &CompositeContacts<N, D>,
+    what: impl Fn() -> String,
+) {
+    assert_eq!(quick.reference, slow.reference, "{}", what());
+    assert_eq!(quick.patches.len(), slow.patches.len(), "{}", what());
+    for (patch, expected) in quick.patches.iter().zip(&slow.patches) {
+        assert_eq!(patch.normal, expected.normal, "{}", what());
+        assert_eq!(patch.points.len(), expected.points.len(), "{}", what());
+        for (point, expected) in patch.points.iter().zip(&expected.points) {
+            assert_eq!((point.raw, point.parts), (expected.raw, expected.parts), "{}", what());
+        }
+    }
+}
+
 /// What two ways say of one solid that moves; how many updates the quick one did, and what it found.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, ground) = (solid_of::<N>(random), ground_of::<N>(random, round));
@@ -103,15 +120,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
         }
         slow.update_in_general(&between, false, &request);
         let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
-        assert_eq!(quick.reference, slow.reference, "{}", what());
-        assert_eq!(quick.patches.len(), slow.patches.len(), "{}", what());
-        for (patch, expected) in quick.patches.iter().zip(&slow.patches) {
-            assert_eq!(patch.normal, expected.normal, "{}", what());
-            assert_eq!(patch.points.len(), expected.points.len(), "{}", what());
-            for (point, expected) in patch.points.iter().zip(&expected.points) {
-                assert_eq!((point.raw, point.parts), (expected.raw, expected.parts), "{}", what());
-            }
-        }
+        assert_same(&quick, &slow, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
         place += random.vector::<N>().xy() * N::lit(0.04);
         angle += random.vector::<N>().x * N::lit(0.02);

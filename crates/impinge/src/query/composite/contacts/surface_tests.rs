@@ -1,6 +1,7 @@
 //! Contacts of balls on surfaces against the general way, which defines them: the same, step after step.
 
 use super::CompositeContacts;
+use super::chain_tests::assert_same;
 use super::surface_ball::update_on_surface;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::ManifoldRequest;
@@ -108,15 +109,7 @@ fn follow<N: Space<3>>(random: &mut Random, round: usize) -> (usize, usize) {
         }
         slow.update_in_general(&between, false, &request);
         let what = || format!("{ball:?} on {ground:?} at {pose:?}, step {step}");
-        assert_eq!(quick.reference, slow.reference, "{}", what());
-        assert_eq!(quick.patches.len(), slow.patches.len(), "{}", what());
-        for (patch, expected) in quick.patches.iter().zip(&slow.patches) {
-            assert_eq!(patch.normal, expected.normal, "{}", what());
-            assert_eq!(patch.points.len(), expected.points.len(), "{}", what());
-            for (point, expected) in patch.points.iter().zip(&expected.points) {
-                assert_eq!((point.raw, point.parts), (expected.raw, expected.parts), "{}", what());
-            }
-        }
+        assert_same(&quick, &slow, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
         place += random.vector::<N>() * N::lit(0.04);
     }
