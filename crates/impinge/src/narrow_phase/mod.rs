@@ -4,6 +4,8 @@
 //! [`ProximityDetector`] stand for the algorithm of one pair, to use alone or to plug in through a
 //! dispatcher. Nothing here knows users' data: objects are rows of an [`ObjectTable`].
 
+mod ahead;
+mod composite_views;
 mod convex_views;
 mod default_narrow_phase;
 mod detector;

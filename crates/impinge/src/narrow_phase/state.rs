@@ -45,7 +45,8 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 
     /// The solids are certainly farther apart than `limit`.
-    fn are_beyond(&self, limit: N) -> bool {
+    #[inline]
+    pub(super) fn are_beyond(&self, limit: N) -> bool {
         let between = self.pose2.translation - self.pose1.translation;
         self.bounds.is_some_and(|[one, other]| one.is_clear_of(other, &between, limit))
     }
@@ -217,6 +218,12 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactState<N, D> {
+    /// A number of the contacts, of no meaning: reading it brings them near.
+    #[inline]
+    pub(super) fn glance(&self) -> N {
+        self.kept.contacts.points.last().map_or(N::ZERO, |point| point.distance)
+    }
+
     /// There are no contacts.
     pub(super) fn clear(&mut self) {
         self.kept.contacts.points.clear();
@@ -303,6 +310,18 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeState<N, D> {
+    /// As [`ContactState::glance`].
+    #[inline]
+    pub(super) fn glance(&self) -> N {
+        self.contacts.glance()
+    }
+
+    /// Of the two objects of the pair, that in whose frame the contacts are kept.
+    #[inline]
+    pub(super) const fn home(&self, (first, second): (u32, u32)) -> u32 {
+        if self.swapped { second } else { first }
+    }
+
     /// One of the shapes may be another one now.
     pub(crate) fn forget_shapes(&mut self) {
         self.contacts.forget_shapes();
@@ -310,13 +329,15 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
-    /// As [`ContactState::view`], one for each patch.
-    pub(crate) fn views<'a>(
+    /// As [`ContactState::view`], of one patch of several; `None` behind the last.
+    #[inline]
+    pub(crate) fn view<'a>(
         &'a self,
-        poses: [&'a Pose<N, D>; 2],
-        pair_number: u64,
-    ) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
-        self.contacts.views(Placement::new(poses, pair_number, self.swapped))
+        patch: usize,
+        (pose1, pair): (&'a Pose<N, D>, u64),
+    ) -> Option<ManifoldView<'a, N, D>> {
+        let placement = Placement { pose1, pair, is_swapped: self.swapped };
+        self.contacts.view(patch, placement)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::ahead::update_due;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
@@ -66,12 +67,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 update_convex(rows, table, changes, solids.as_ref());
             });
         }
-        update_group(&mut self.lanes.composites, changes, |rows, changes| {
-            update_each(rows, table, changes, update_contact);
+        update_group(&mut self.lanes.composites, changes, |mut rows, changes| {
+            let due = (table, rows.take_all_due(table));
+            update_due(&mut rows, due, |rows, at| update_contact(rows, table, at, changes));
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
-            update_group(group, changes, |rows, changes| {
-                update_each(rows, table, changes, update_status);
+            update_group(group, changes, |mut rows, changes| {
+                let due = (table, rows.take_all_due(table));
+                update_due(&mut rows, due, |rows, at| update_status(rows, table, at, changes));
             });
         }
         self.update_all_custom(table, changes);
@@ -223,7 +226,7 @@ fn update_convex<N: Space<D>, const D: usize>(
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
+        update_due(&mut rows, (table, due), |rows, at| update_contact(rows, table, at, changes));
     }
 }
 
@@ -324,7 +327,7 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
 ) {
     let rows = group.rows();
     #[cfg(feature = "parallel")]
-    if rows.len() >= 2 * CHUNK {
+    if rows.keys.len() >= 2 * CHUNK {
         use rayon::prelude::*;
         let chunks: Vec<_> = rows.chunks().collect();
         let chunk = |rows| {
@@ -338,19 +341,5 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
     }
     for rows in rows.chunks() {
         update(rows, changes);
-    }
-}
-
-/// Updates the pairs of a chunk that need it, one by one.
-fn update_each<N: Space<D>, S, V, const D: usize>(
-    mut rows: Rows<'_, S, V>,
-    table: &ObjectTable<N, D>,
-    changes: &mut Changes,
-    update: impl Fn(&mut Rows<'_, S, V>, &ObjectTable<N, D>, usize, &mut Changes),
-) {
-    for place in 0..rows.len() {
-        if rows.take_due(place, table) {
-            update(&mut rows, table, place, changes);
-        }
     }
 }

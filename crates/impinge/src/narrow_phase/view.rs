@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::entry::posed;
 use super::lanes::{CompositeGroup, ContactGroup, Lane};
@@ -214,11 +215,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &'a self,
         table: &'a ObjectTable<N, D>,
     ) -> impl Iterator<Item = (u32, u32, ManifoldView<'a, N, D>)> + 'a {
-        let poses = |(first, second)| [table.pose(first), table.pose(second)];
-        let composites = self.lanes.composites.iter_touching().flat_map(move |(key, entry)| {
-            let views = entry.state.views(poses(key), entry.number);
-            views.map(move |view| (key.0, key.1, view))
-        });
+        let composites = CompositeViews::new(&self.lanes.composites, table);
         let custom = self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
             let views = manifolds.filter_map(ManifoldView::of_manifold);

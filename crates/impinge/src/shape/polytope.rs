@@ -4,6 +4,8 @@ use core::array::from_fn;
 use core::ops::Range;
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::FeatureId;
 use super::segment::length_of;
 use crate::math::{Point, Real, Vector, max, unit};
@@ -16,16 +18,21 @@ use crate::math::{Point, Real, Vector, max, unit};
 ///
 /// Features are named by their place in [`Self::vertices`], [`Self::edges`] and [`Self::faces`].
 /// Finding a support point takes time in proportion to the number of vertices.
+// What questions about small solids read lies in front and in one piece: among thousands of solids each further
+// place is a wait for memory.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(C)]
 pub struct Polytope<N: Real, const D: usize> {
+    pub(super) center: Point<N, D>,
+    pub(super) reach: N,
     pub(super) vertices: Vec<Point<N, D>>,
     /// The vertices again, eight at a time, coordinate by coordinate; the last one fills the rest.
-    pub(super) blocks: Vec<[[N; LANES]; D]>,
-    /// The same by four, for code without vectors.
-    pub(super) quartets: Vec<[[N; QUARTET]; D]>,
-    pub(super) faces: Vec<PolytopeFace<N, D>>,
+    pub(super) blocks: Blocks<N, D>,
     /// The planes of the faces again, as the vertices in `blocks`.
-    pub(super) planes: Vec<Planes<N, D>>,
+    pub(super) planes: SmallVec<[Planes<N, D>; 1]>,
+    /// The vertices by four, for code without vectors.
+    pub(super) quartets: Quartets<N, D>,
+    pub(super) faces: Vec<PolytopeFace<N, D>>,
     /// The vertices of all faces, one loop after the other.
     pub(super) loops: Vec<u32>,
     /// For each entry of `loops`, the edge (in the plane: the face) that leads to the next vertex.
@@ -38,8 +45,6 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fan_starts: Vec<u32>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
-    pub(super) center: Point<N, D>,
-    pub(super) reach: N,
     /// Shared by copies, and by nothing else: a solid never changes once it is made.
     pub(super) identity: Arc<()>,
 }
@@ -48,6 +53,11 @@ pub struct Polytope<N: Real, const D: usize> {
 const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
 pub(super) const QUARTET: usize = 4;
+
+/// Vertices by eights; those of a small solid within it.
+type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
+/// Vertices by fours, likewise.
+type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;
 
 /// The planes of some faces side by side, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,7 +191,10 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// What [`Self::blocks`] and `quartets` hold.
-    pub(super) fn blocks_of<const COUNT: usize>(vertices: &[Point<N, D>]) -> Vec<[[N; COUNT]; D]> {
+    pub(super) fn blocks_of<Blocks, const COUNT: usize>(vertices: &[Point<N, D>]) -> Blocks
+    where
+        Blocks: FromIterator<[[N; COUNT]; D]>,
+    {
         let block = |some: &[Point<N, D>]| {
             let last = some.len() - 1;
             from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
@@ -190,7 +203,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// What [`Self::planes`] holds.
-    pub(super) fn planes_of(faces: &[PolytopeFace<N, D>]) -> Vec<Planes<N, D>> {
+    pub(super) fn planes_of(faces: &[PolytopeFace<N, D>]) -> SmallVec<[Planes<N, D>; 1]> {
         let block = |some: &[PolytopeFace<N, D>]| {
             let last = some.len() - 1;
             let at = |lane: usize| &some[if lane < last { lane } else { last }];

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::polytope::count32;
 use super::{Polytope, PolytopeEdge, PolytopeFace};
 use crate::math::{Point, Real, Vector, max, perp, unit};
@@ -38,7 +40,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             identity: Arc::new(()),
             vertices,
             faces: Vec::new(),
-            planes: Vec::new(),
+            planes: SmallVec::new(),
             loops: Vec::new(),
             loop_sides: Vec::new(),
             edges: Vec::new(),

@@ -35,6 +35,14 @@ pub(super) struct Around<N: Real, const D: usize> {
     is_dense: bool,
 }
 
+impl<N: Real, const D: usize> Around<N, D> {
+    /// A number of the first corner that is kept, of no meaning.
+    #[inline]
+    pub(super) fn glance(&self) -> N {
+        self.tiles.first().map_or(N::ZERO, |tiles| tiles.corners[0][0][0])
+    }
+}
+
 impl<N: Space<D>, const D: usize> Around<N, D> {
     /// Makes sure that the parts are among those kept that overlap a box; answers whether they are.
     pub(super) fn reaches(

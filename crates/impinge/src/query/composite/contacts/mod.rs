@@ -77,6 +77,15 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         self.around = Around::default();
     }
 
+    /// A number of each place in memory that an update reads first, of no meaning.
+    #[inline]
+    pub(crate) fn glance(&self) -> N {
+        let patch = self.patches.first();
+        let point = patch.and_then(|patch| patch.points.first());
+        let normal = patch.map_or(N::ZERO, |patch| patch.normal[0]);
+        max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.glance())
+    }
+
     /// How many contact points there are.
     pub(crate) fn len(&self) -> usize {
         self.patches.iter().map(|patch| patch.points.len()).sum()

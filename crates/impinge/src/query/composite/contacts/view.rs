@@ -12,12 +12,14 @@ use crate::shape::{Geometry, Kind, Part, PartSolid};
 const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// The manifolds, read in place.
-    pub(crate) fn views<'a>(
+    /// One of the manifolds, read in place; `None` behind the last.
+    #[inline]
+    pub(crate) fn view<'a>(
         &'a self,
+        patch: usize,
         placement: Placement<'a, N, D>,
-    ) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
-        self.patches.iter().map(move |patch| ManifoldView::of_patch(patch, placement))
+    ) -> Option<ManifoldView<'a, N, D>> {
+        Some(ManifoldView::of_patch(self.patches.get(patch)?, placement))
     }
 
     /// One manifold for each patch; `pair` is that of the last update. They are written over the

@@ -1,0 +1,78 @@
+//! All contacts of pairs with composites, read where they lie.
+
+use super::ObjectTable;
+use super::lanes::CompositeGroup;
+use crate::math::{Space, max};
+use crate::query::ManifoldView;
+
+/// The manifolds that hold a contact, in the order in which they lie.
+pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
+    table: &'a ObjectTable<N, D>,
+    group: &'a CompositeGroup<N, D>,
+    /// The next word of flags, and what is left of the one before.
+    word: usize,
+    flags: u64,
+    /// The pair under way and the next of its patches.
+    place: usize,
+    patch: usize,
+}
+
+impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
+    pub(super) fn new(group: &'a CompositeGroup<N, D>, table: &'a ObjectTable<N, D>) -> Self {
+        Self { table, group, word: 0, flags: 0, place: 0, patch: usize::MAX }
+    }
+
+    /// Goes to the next pair that touches; `None` after the last.
+    #[inline(never)]
+    fn next_pair(&mut self) -> Option<()> {
+        while self.flags == 0 {
+            self.flags = *self.group.touching().get(self.word)?;
+            self.word += 1;
+            self.fetch();
+        }
+        (self.place, self.patch) = (self.lowest(self.flags), 0);
+        self.flags &= self.flags - 1;
+        Some(())
+    }
+
+    /// The place of the lowest flag of the word before.
+    const fn lowest(&self, flags: u64) -> usize {
+        (self.word - 1) * 64 + flags.trailing_zeros() as usize
+    }
+
+    /// Brings what is to be read for a word of flags into the cache: its pairs wait for memory at once,
+    /// where whoever reads would wait for one after the other. Changes nothing.
+    fn fetch(&self) {
+        let (mut flags, mut seen) = (self.flags, N::ZERO);
+        while flags != 0 {
+            let place = self.lowest(flags);
+            flags &= flags - 1;
+            let (key, entry) = (self.group.keys()[place], &self.group.states()[place]);
+            let home = self.table.pose(entry.state.home(key));
+            seen = max(seen, max(entry.state.glance(), home.translation[0]));
+        }
+        core::hint::black_box(seen);
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> Iterator for CompositeViews<'a, N, D> {
+    type Item = (u32, u32, ManifoldView<'a, N, D>);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if self.patch != usize::MAX {
+                let (key, entry) =
+                    (self.group.keys()[self.place], &self.group.states()[self.place]);
+                let home = self.table.pose(entry.state.home(key));
+                let view = entry.state.view(self.patch, (home, entry.number));
+                self.patch += 1;
+                if let Some(view) = view {
+                    return Some((key.0, key.1, view));
+                }
+                self.patch = usize::MAX;
+            }
+            self.next_pair()?;
+        }
+    }
+}
