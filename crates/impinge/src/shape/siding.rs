@@ -1,5 +1,7 @@
 //! Which normals a segment of a chain in the plane has: told by its ends and those of the segments around it.
 
+use smallvec::SmallVec;
+
 use super::polyline_parts::across;
 use super::seam::{Seam, slack};
 use super::{FeatureId, Surface};
@@ -83,31 +85,43 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Self { surface, siding, others, ends, along }
     }
 
-    /// The rule of [`Seam`] at one of the ends; `None` if it is not known what is joined there.
-    fn joint_admits(
-        &self,
-        siding: Siding,
-        (part, end): (u32, u32),
-        normal: &Vector<N, 2>,
-    ) -> Option<bool> {
+    /// The segments joined to this one at one of its ends; `None` if these are not known.
+    fn joined(&self, siding: Siding, (part, end): (u32, u32)) -> Option<Joined<N>> {
         let at = self.ends.get(end as usize)?;
         if siding.joining == Joining::Unknown || !self.others.are_all_at(at) {
             return None;
         }
-        let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
-        let mut seam = Seam::of_segments(own, normal);
+        let mut joined = Joined::new();
         self.others.each_ending_at(at, &mut |other, [a, b]| {
             let starts_here = a == *at;
             let is_joined = siding.joining == Joining::All
                 || other == if starts_here { part + end } else { (part + end).wrapping_sub(1) };
             if let (true, Some((along, _))) = (is_joined, unit(&(b - a))) {
-                let away = if starts_here { along } else { -along };
-                seam.add_segment(&away, siding.height_over(Some(&along), normal));
+                joined.push((along, starts_here));
             }
         });
-        Some(seam.admits(siding.is_one_sided))
+        Some(joined)
+    }
+
+    /// The rule of [`Seam`] for a normal at an end with these segments.
+    fn seam_admits(&self, siding: Siding, joined: &Joined<N>, normal: &Vector<N, 2>) -> bool {
+        let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
+        for (along, starts_here) in joined {
+            let away = if *starts_here { *along } else { -along };
+            seam.add_segment(&away, siding.height_over(Some(along), normal));
+        }
+        seam.admits(siding.is_one_sided)
+    }
+
+    /// A normal is the segment's own, but for rounding; `None` if it has none.
+    fn is_own(&self, normal: &Vector<N, 2>) -> Option<bool> {
+        self.along.map(|along| along.dot(normal).abs() <= slack())
     }
 }
+
+/// Segments at one point: unit vectors from their first ends to their second, and whether they start there.
+type Joined<N> = SmallVec<[(Vector<N, 2>, bool); 4]>;
 
 impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
@@ -116,14 +130,35 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
         if siding.keeps_internal_edges {
             return height >= -slack::<N>();
         }
-        let own = self.along.map(|along| along.dot(normal).abs() <= slack());
+        let own = self.is_own(normal);
         match feature {
             FeatureId::Vertex(end) if own != Some(true) => {
-                let known = self.joint_admits(siding, (part, end), normal);
+                let known = self.joined(siding, (part, end));
+                let known = known.map(|joined| self.seam_admits(siding, &joined, normal));
                 known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
             }
             _ => own.is_none_or(|own| own) && height >= N::ZERO,
         }
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, 2>; 2],
+    ) -> [bool; 2] {
+        // Who asks about an end asks about normals that are not the segment's own.
+        if let (Some(siding), FeatureId::Vertex(end)) = (self.siding, feature)
+            && !siding.keeps_internal_edges
+            && self.is_own(first) != Some(true)
+            && self.is_own(second) != Some(true)
+            && let Some(joined) = self.joined(siding, (part, end))
+        {
+            let is_first = self.seam_admits(siding, &joined, first);
+            return [is_first, !is_first && self.seam_admits(siding, &joined, second)];
+        }
+        let is_first = self.admits(part, feature, first);
+        [is_first, !is_first && self.admits(part, feature, second)]
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {

@@ -3,10 +3,12 @@
 //! The same as [`merge`](super::merge), which defines it, bit for bit: seen along the normal all points lie in
 //! a row, so that the outline of a patch is its first and its last point.
 
+use core::ops::Range;
+
 use smallvec::SmallVec;
 
 use super::patch::{
-    Kept, Merging, Patch, PatchPoint, are_level, blank, by_depth, merge, merge_one,
+    Kept, Merging, Patch, PatchPoint, Piece, are_level, blank, by_depth, merge, merge_one,
 };
 use super::reduce::{ALMOST, NEW_POINT_WEIGHT};
 use super::{deepest_of, tangents2};
@@ -44,7 +46,7 @@ fn merge_some<N: Real>(
     let row = Row { merging, kept: &kept };
     let mut order = [Placed { piece: 0, deepest: 0, group: 0 }; MOST_PIECES];
     let count = row.order(&mut order);
-    let mut groups = [Group { lead: 0, first: [0; 2] }; MOST_PIECES];
+    let mut groups = [Group { lead: 0, first: [0; 2], count: 0 }; MOST_PIECES];
     let of_groups = row.group(&mut order[..count], &mut groups);
     let (order, groups) = (&order[..count], &mut groups[..of_groups]);
     groups.sort_unstable_by_key(|group| group.first);
@@ -53,7 +55,9 @@ fn merge_some<N: Real>(
         let lead = order[group.lead];
         if merging.points[lead.deepest].distance <= merging.request.prediction {
             let points = blank(patches, made, merging.pieces[lead.piece].normal);
-            row.fill_patch(lead, order, (points, ids));
+            if !(group.count == 1 && row.fill_from_few(lead, (&mut *points, &mut *ids))) {
+                row.fill_patch(lead, order, (points, ids));
+            }
             made += 1;
         }
     }
@@ -75,6 +79,8 @@ struct Group {
     lead: usize,
     /// The first of the parts.
     first: [u32; 2],
+    /// How many there are.
+    count: u32,
 }
 
 /// A point of a patch, seen along its normal.
@@ -128,13 +134,64 @@ impl<N: Real> Row<'_, N> {
                 group += 1;
             }
             if group == count {
-                groups[group] = Group { lead: at, first: own.parts };
+                groups[group] = Group { lead: at, first: own.parts, count: 0 };
                 count += 1;
             }
+            groups[group].count += 1;
             groups[group].first = groups[group].first.min(own.parts);
             order[at].group = group;
         }
         count
+    }
+
+    /// [`Self::fill_patch`] for a group of one piece of one or two points, of which nothing is left out; answers
+    /// whether it is that.
+    fn fill_from_few(
+        &self,
+        lead: Placed,
+        (out, ids): (&mut SmallVec<[PatchPoint<N, 2>; 4]>, &mut PairIds),
+    ) -> bool {
+        let Merging { request, pieces, points, tolerance } = *self.merging;
+        let Piece { normal, parts, points: Range { start, end } } = pieces[lead.piece];
+        let lowest = points[lead.deepest].distance;
+        if end - start == 1 {
+            out.push(self.patch_point(lead.deepest, lowest, (parts, ids)));
+            return true;
+        }
+        let other = if lead.deepest == start { start + 1 } else { start };
+        let arm = points[other].point1 - points[lead.deepest].point1;
+        let tangents = tangents2(&normal);
+        let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+        let reach = if request.sine > N::ZERO { request.sine * flat.norm() } else { N::ZERO };
+        let is_near = points[other].distance <= request.prediction + reach;
+        let is_apart = flat.x.abs() > N::lit(8.0) * tolerance;
+        if end - start > 2 || request.max_points < 2 || !(is_near && is_apart) {
+            return false;
+        }
+        let row = if flat.x < N::ZERO { [other, lead.deepest] } else { [lead.deepest, other] };
+        let what = |index: usize| (self.kept[row[index]].is_some(), points[row[index]].distance);
+        let deepest = row[deepest_of(2, lowest + tolerance, what)];
+        for point in row {
+            let distance = if point == deepest { lowest } else { points[point].distance };
+            out.push(self.patch_point(point, distance, (parts, &mut *ids)));
+        }
+        if out[0].raw.id > out[1].raw.id {
+            out.swap(0, 1);
+        }
+        true
+    }
+
+    /// A point with its number, or the next one.
+    #[inline]
+    fn patch_point(
+        &self,
+        point: usize,
+        distance: N,
+        (parts, ids): ([u32; 2], &mut PairIds),
+    ) -> PatchPoint<N, 2> {
+        let id = self.kept[point].unwrap_or_else(|| ids.next());
+        let raw = RawPoint { id, code: 0, distance, ..self.merging.points[point] };
+        PatchPoint { raw, parts }
     }
 
     /// Fills the patch of a group: its deepest point and, of the two ends, those that span most.

@@ -97,13 +97,21 @@ impl<N: Real> KnownSegments<N> for Kept<'_, N> {
     }
 
     fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2])) {
-        for (index, &part) in self.parts.iter().enumerate() {
-            let [[from_x, from_y], [to_x, to_y], _] = &self.tiles[index / LANES].corners;
-            let lane = index % LANES;
-            let is_start = from_x[lane] == point.x && from_y[lane] == point.y;
-            let is_end = to_x[lane] == point.x && to_y[lane] == point.y;
-            if is_start || is_end {
-                visit(part, self.ends(index));
+        for (block, tiles) in self.tiles.iter().enumerate() {
+            let [[from_x, from_y], [to_x, to_y], _] = &tiles.corners;
+            let mut ending = 0_u8;
+            for lane in 0..LANES {
+                let is_start = (from_x[lane] == point.x) & (from_y[lane] == point.y);
+                let is_end = (to_x[lane] == point.x) & (to_y[lane] == point.y);
+                ending |= u8::from(is_start | is_end) << lane;
+            }
+            while ending != 0 {
+                let index = block * LANES + ending.trailing_zeros() as usize;
+                ending &= ending - 1;
+                // Beyond the last part are copies of it.
+                if let Some(&part) = self.parts.get(index) {
+                    visit(part, self.ends(index));
+                }
             }
         }
     }
