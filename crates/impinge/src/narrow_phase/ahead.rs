@@ -5,7 +5,7 @@
 //! the other; a processor that meets the reads of several pairs close to each other waits for all at once.
 
 use super::ObjectTable;
-use super::entry::{ContactEntry, ProximityEntry, posed};
+use super::entry::{ContactEntry, ProximityEntry};
 use super::group::{Chosen, Rows};
 use super::state::{CompositeState, ContactState};
 use crate::math::{Real, Space, max};
@@ -16,40 +16,59 @@ const PAIRS: usize = 8;
 
 /// Pairs whose memory can be asked for.
 pub(super) trait Awaited<N: Space<D>, const D: usize> {
-    /// Reads a number of each place that an update of the pair will read; answers one of no meaning.
-    fn glance(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> N;
+    /// The objects are certainly so far apart that an update will not ask what they are.
+    fn is_far(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> bool;
+
+    /// A number of each place that an update reads of what is kept of the pair; of no meaning.
+    fn glance(&self) -> N;
 }
 
 impl<N: Space<D>, const D: usize> Awaited<N, D> for ContactEntry<N, ContactState<N, D>> {
     #[inline]
-    fn glance(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> N {
-        max(self.state.glance(), solids(table, key, self.request.prediction))
+    fn is_far(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> bool {
+        are_beyond(table, key, self.request.prediction)
+    }
+
+    #[inline]
+    fn glance(&self) -> N {
+        self.state.glance()
     }
 }
 
 impl<N: Space<D>, const D: usize> Awaited<N, D> for ContactEntry<N, CompositeState<N, D>> {
+    /// Nothing is known of composites.
     #[inline]
-    fn glance(&self, table: &ObjectTable<N, D>, (first, second): (u32, u32)) -> N {
-        let poses = table.pose(first).translation[0] + table.pose(second).translation[0];
-        let [one, other] = [first, second].map(|index| solid(table.shape(index).geometry()));
-        max(max(self.state.glance(), poses), max(one, other))
+    fn is_far(&self, _: &ObjectTable<N, D>, _: (u32, u32)) -> bool {
+        false
+    }
+
+    #[inline]
+    fn glance(&self) -> N {
+        self.state.glance()
     }
 }
 
 impl<N: Space<D>, const D: usize> Awaited<N, D> for ProximityEntry<N> {
     #[inline]
-    fn glance(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> N {
-        solids(table, key, self.margin)
+    fn is_far(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> bool {
+        are_beyond(table, key, self.margin)
+    }
+
+    #[inline]
+    fn glance(&self) -> N {
+        N::ZERO
     }
 }
 
-/// A number of two solids, of which nobody will ask if they are certainly farther apart than a limit.
+/// Two objects are certainly farther apart than a limit.
 #[inline]
-fn solids<N: Space<D>, const D: usize>(table: &ObjectTable<N, D>, key: (u32, u32), limit: N) -> N {
-    if posed(table, key).are_beyond(limit) {
-        return N::ZERO;
-    }
-    max(solid(table.shape(key.0).geometry()), solid(table.shape(key.1).geometry()))
+fn are_beyond<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    (first, second): (u32, u32),
+    limit: N,
+) -> bool {
+    let between = table.pose(second).translation - table.pose(first).translation;
+    table.bounds(first).is_clear_of(table.bounds(second), &between, limit)
 }
 
 /// A number of each place in memory that a small solid takes up.
@@ -78,18 +97,38 @@ pub(super) fn update_due<N: Space<D>, S: Awaited<N, D>, V, const D: usize>(
     (table, due): (&ObjectTable<N, D>, Chosen),
     mut update: impl FnMut(&mut Rows<'_, S, V>, usize),
 ) {
-    let mut ahead = due.indices();
-    let mut rest = due.indices();
+    let mut due = due.indices();
+    let mut next = [0; PAIRS];
     loop {
-        let (mut count, mut seen) = (0, N::ZERO);
-        for place in ahead.by_ref().take(PAIRS) {
-            seen = max(seen, rows.states[place].glance(table, rows.keys[place]));
+        let mut count = 0;
+        for (slot, place) in next.iter_mut().zip(due.by_ref()) {
+            *slot = place;
             count += 1;
         }
-        core::hint::black_box(seen);
-        if count == 0 {
+        await_all(rows, table, &next[..count]);
+        next[..count].iter().for_each(|&place| update(rows, place));
+        if count < PAIRS {
             return;
         }
-        rest.by_ref().take(count).for_each(|place| update(rows, place));
     }
+}
+
+/// Reads a little of all that the updates of some pairs will read. What tells whether shapes are needed comes
+/// for all pairs before the shapes do for any.
+#[inline]
+fn await_all<N: Space<D>, S: Awaited<N, D>, V, const D: usize>(
+    rows: &Rows<'_, S, V>,
+    table: &ObjectTable<N, D>,
+    places: &[usize],
+) {
+    let (mut are_near, mut seen) = ([false; PAIRS], N::ZERO);
+    for (is_near, &place) in are_near.iter_mut().zip(places) {
+        *is_near = !rows.states[place].is_far(table, rows.keys[place]);
+    }
+    for (_, &place) in are_near.iter().zip(places).filter(|(is_near, _)| **is_near) {
+        let (first, second) = rows.keys[place];
+        let [one, other] = [first, second].map(|index| solid(table.shape(index).geometry()));
+        seen = max(seen, max(rows.states[place].glance(), max(one, other)));
+    }
+    core::hint::black_box(seen);
 }

@@ -45,8 +45,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 
     /// The solids are certainly farther apart than `limit`.
-    #[inline]
-    pub(super) fn are_beyond(&self, limit: N) -> bool {
+    fn are_beyond(&self, limit: N) -> bool {
         let between = self.pose2.translation - self.pose1.translation;
         self.bounds.is_some_and(|[one, other]| one.is_clear_of(other, &between, limit))
     }

@@ -8,7 +8,7 @@
 
 use smallvec::SmallVec;
 
-use crate::math::{Real, Vector, cross2, max, min, perp, unit};
+use crate::math::{Real, Vector, cross2, min, perp, unit};
 
 /// Cap on the directions asked for along one arc. About twenty are enough in `f32`, forty in `f64`: the part
 /// of the arc around the best direction is halved until the bound is good enough, and to each side of it there
@@ -115,14 +115,6 @@ pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
     let [first, second] = heights.map(|[from, to]| [from - least, to - least]);
     let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;
     least > N::ZERO && (is_one || first[0] * second[1] >= first[1] * second[0])
-}
-
-/// About the least that [`are_above`] denies: by how far an arc may lower the depth. Not a number where that is
-/// the same for all directions.
-pub(super) fn promise<N: Real>(&[first, second]: &[[N; 2]; 2]) -> N {
-    let mixed = (first[0] * second[1] - first[1] * second[0])
-        / (first[0] + second[1] - (first[1] + second[0]));
-    max(mixed, max(first[1], second[0]))
 }
 
 /// A search along arcs.

@@ -84,9 +84,6 @@ impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
     }
 }
 
-/// The heights of two points, each along both normals of an edge.
-type Heights<N> = [[N; 2]; 2];
-
 /// Where on the sphere of directions the least depth is.
 #[derive(Clone, Copy)]
 enum Place {
@@ -135,33 +132,8 @@ impl<N: Real> Meeting<'_, N> {
         self.search_edges(&ends, gap)
     }
 
-    /// The edge that promises least comes first: what is found there tells most others at once to be no better.
     fn search_edges(&mut self, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
-        let mut all = SmallVec::<[Heights<N>; 32]>::new();
-        let (mut first, mut least) = (0, N::INFINITY);
-        for (index, edge) in self.flat.edges.iter().enumerate() {
-            let heights = self.heights(edge, ends);
-            let promise = arc::promise(&heights);
-            (first, least) = if promise < least { (index, promise) } else { (first, least) };
-            all.push(heights);
-        }
-        for index in 0..all.len() {
-            let edge = if index == 0 { first } else { index - usize::from(index <= first) };
-            if !arc::are_above(&all[edge], self.least - gap) {
-                self.search_edge(edge, ends, gap)?;
-            }
-        }
-        Some(())
-    }
-
-    /// How high the support points along the two normals of an edge are over it, along each of these.
-    fn heights(&self, edge: &flat::Edge, ends: &[Vector<N, 3>]) -> Heights<N> {
-        let vertex = self.flat.vertices[edge.vertices[0] as usize];
-        let [from, to] = edge.normals.map(|normal| self.flat.normals[normal as usize].0);
-        edge.normals.map(|normal| {
-            let away = ends[normal as usize] - vertex;
-            [from.dot(&away), to.dot(&away)]
-        })
+        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, ends, gap))
     }
 
     fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {
@@ -186,6 +158,10 @@ impl<N: Real> Meeting<'_, N> {
         let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
         let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
         let ends = [first, second].map(|normal| ends[normal as usize]);
+        let heights = ends.map(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
+        if arc::are_above(&heights, self.least - gap) {
+            return Some(());
+        }
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
         // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
