@@ -205,6 +205,11 @@ impl Chosen {
 }
 
 impl<'a, S, V> Rows<'a, S, V> {
+    /// How many pairs there are.
+    pub(crate) const fn len(&self) -> usize {
+        self.keys.len()
+    }
+
     /// The same rows, to be used once more afterwards.
     pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V> {
         let Rows { keys, due, touching, states, views } = self;
@@ -310,8 +315,7 @@ mod tests {
         assert_eq!(touching, expected.collect::<Vec<_>>(), "in order");
         assert!((10..25).contains(&touching.len()), "about a third: {}", touching.len());
         for mut rows in group.rows().chunks() {
-            let flags =
-                (0..rows.keys.len()).map(|n| (is_third(*rows.row(n).1), n)).collect::<Vec<_>>();
+            let flags = (0..rows.len()).map(|n| (is_third(*rows.row(n).1), n)).collect::<Vec<_>>();
             assert!(flags.iter().all(|&(flag, n)| !rows.set_touching(n, flag)), "nothing new");
             assert!(flags.iter().all(|&(flag, n)| rows.set_touching(n, !flag)), "all new");
         }

@@ -217,12 +217,6 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactState<N, D> {
-    /// A number of the contacts, of no meaning: reading it brings them near.
-    #[inline]
-    pub(super) fn glance(&self) -> N {
-        self.kept.contacts.points.last().map_or(N::ZERO, |point| point.distance)
-    }
-
     /// There are no contacts.
     pub(super) fn clear(&mut self) {
         self.kept.contacts.points.clear();
@@ -309,7 +303,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeState<N, D> {
-    /// As [`ContactState::glance`].
+    /// A number of each place in memory that an update reads first, of no meaning: reading it brings them near.
     #[inline]
     pub(super) fn glance(&self) -> N {
         self.contacts.glance()

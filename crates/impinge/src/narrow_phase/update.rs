@@ -72,9 +72,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             update_due(&mut rows, due, |rows, at| update_contact(rows, table, at, changes));
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
-            update_group(group, changes, |mut rows, changes| {
-                let due = (table, rows.take_all_due(table));
-                update_due(&mut rows, due, |rows, at| update_status(rows, table, at, changes));
+            update_group(group, changes, |rows, changes| {
+                update_each(rows, table, changes, update_status);
             });
         }
         self.update_all_custom(table, changes);
@@ -226,7 +225,7 @@ fn update_convex<N: Space<D>, const D: usize>(
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        update_due(&mut rows, (table, due), |rows, at| update_contact(rows, table, at, changes));
+        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
     }
 }
 
@@ -327,7 +326,7 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
 ) {
     let rows = group.rows();
     #[cfg(feature = "parallel")]
-    if rows.keys.len() >= 2 * CHUNK {
+    if rows.len() >= 2 * CHUNK {
         use rayon::prelude::*;
         let chunks: Vec<_> = rows.chunks().collect();
         let chunk = |rows| {
@@ -341,5 +340,19 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
     }
     for rows in rows.chunks() {
         update(rows, changes);
+    }
+}
+
+/// Updates the pairs of a chunk that need it, one by one.
+fn update_each<N: Space<D>, S, V, const D: usize>(
+    mut rows: Rows<'_, S, V>,
+    table: &ObjectTable<N, D>,
+    changes: &mut Changes,
+    update: impl Fn(&mut Rows<'_, S, V>, &ObjectTable<N, D>, usize, &mut Changes),
+) {
+    for place in 0..rows.len() {
+        if rows.take_due(place, table) {
+            update(&mut rows, table, place, changes);
+        }
     }
 }

@@ -351,3 +351,62 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::query::ManifoldRequest;
+    use crate::query::separation::hulls::tests::Random;
+    use crate::shape::FeatureId;
+
+    /// Points of a piece: one to three, some of them at one place or beyond reach.
+    fn points(random: &mut Random, count: u32) -> Vec<RawPoint<f64, 2>> {
+        let point = |feature: u32| {
+            let at = random.vector::<f64>();
+            let x = if at.z > 0.6 { 0.25 } else { at.x };
+            RawPoint {
+                point1: Point::<f64, 2>::new(x, 1e-4 * at.y),
+                distance: 0.06 * at.y,
+                feature1: FeatureId::Vertex(feature),
+                feature2: FeatureId::Edge(0),
+                id: 0,
+                code: 0,
+            }
+        };
+        (0..count).map(point).collect()
+    }
+
+    /// Over several updates, as names are handed on, with few points and with several pieces of one patch.
+    #[test]
+    fn rows_are_merged_as_all_points_are() {
+        let random = &mut Random(5);
+        let (mut ways, mut both) = ([Vec::new(), Vec::new()], 0);
+        let mut ids = [PairIds::default(), PairIds::default()];
+        for round in 0..4000_u32 {
+            let (mut all, mut pieces) = (Vec::new(), Vec::new());
+            for part in 0..=round % 3 {
+                let lean = if round % 5 == 0 { 0.0 } else { 0.2 * f64::from(part) };
+                let normal = Vector::<f64, 2>::new(lean, 1.0).normalize();
+                let own = points(random, 1 + (round / 3 + part) % 3);
+                pieces.push(Piece {
+                    normal,
+                    parts: [0, part],
+                    points: all.len()..all.len() + own.len(),
+                });
+                all.extend(own);
+            }
+            let (sine, max_points) =
+                (f64::from(round % 2) * 0.02, [2, 1, 4][round as usize % 7 % 3]);
+            let request = ManifoldRequest { prediction: 0.03, sine, max_points };
+            let merging =
+                Merging { request: &request, tolerance: 1e-12, pieces: &pieces, points: &all };
+            merge(&merging, &mut ways[0], &mut ids[0]);
+            merge_in_plane(&merging, &mut ways[1], &mut ids[1]);
+            let [expected, found] = [format!("{:?}", ways[0]), format!("{:?}", ways[1])];
+            assert_eq!(found, expected, "in round {round}");
+            both += ways[1].iter().filter(|patch| patch.points.len() == 2).count();
+        }
+        assert!(both > 1000, "{both} patches of two points");
+    }
+}
