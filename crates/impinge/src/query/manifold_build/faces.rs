@@ -20,21 +20,24 @@ use crate::shape::{FaceRing, FeatureId, Kind};
 /// How many corners or sides are side by side.
 const LANES: usize = FaceRing::<f32>::MOST;
 
-/// Builds the manifold of two solids whose nearest points are known; answers whether it did.
+/// Builds the manifold of two solids whose nearest points are known, and perhaps faces that they likely show
+/// each other. If it does not, the parts that they do show, where these are known then.
 pub(super) fn build<N: Real>(
-    pair: &Pair<'_, N, 3>,
+    (pair, likely): (&Pair<'_, N, 3>, Option<[u32; 2]>),
     frame: &Frame<N, 3>,
     (request, limit): (&ManifoldRequest<N>, usize),
     out: &mut RawManifold<N, 3>,
-) -> bool {
+) -> Result<(), [Option<FeatureId>; 2]> {
     let (distance, normal) = (frame.witness.distance, frame.normal());
     if !(distance <= request.prediction && distance.is_finite_number()) {
-        return false;
+        return Err([None; 2]);
     }
     let toward = pair.pose12.inverse_vector(&-normal);
-    let Some(first) = &shown(&pair.first, &normal) else { return false };
-    let Some(second) = &shown(&pair.second, &toward) else { return false };
-    let Some(places) = &Places::of(frame, (first, second), &pair.pose12) else { return false };
+    let [likely1, likely2] = [likely.map(|[first, _]| first), likely.map(|[_, second]| second)];
+    let first = &shown(&pair.first, &normal, likely1).map_err(|part| [part, None])?;
+    let second = &shown(&pair.second, &toward, likely2).map_err(|part| [Some(first.id), part])?;
+    let parts = [Some(first.id), Some(second.id)];
+    let places = &Places::of(frame, (first, second), &pair.pose12).ok_or(parts)?;
     let [lean1, lean2] = [first.normal, pair.pose12.vector(&second.normal)];
     let meeting = Meeting { frame, rings: [first, second], leans: [lean1, lean2], places };
     let mut candidates = Candidates::new();
@@ -42,19 +45,30 @@ pub(super) fn build<N: Real>(
     meeting.crossings(&mut candidates);
     let nearest = distance + frame.tolerance;
     if !candidates.iter().any(|candidate| candidate.distance <= nearest) {
-        return false;
+        return Err(parts);
     }
     out.normal = normal;
     choose(&mut candidates, (distance, frame.tolerance), limit, out);
-    true
+    Ok(())
 }
 
-/// The face of few corners that a solid shows to a direction, if it does.
-fn shown<N: Real>(kind: &Kind<'_, N, 3>, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+/// The face of few corners that a solid shows to a direction; if it does not, what a hull does show.
+fn shown<N: Real>(
+    kind: &Kind<'_, N, 3>,
+    direction: &Vector<N, 3>,
+    likely: Option<u32>,
+) -> Result<FaceRing<N>, Option<FeatureId>> {
     match kind {
-        Kind::Cuboid(cuboid) => cuboid.face_ring(direction),
-        Kind::Polytope(hull) => hull.face_ring(direction),
-        _ => None,
+        Kind::Cuboid(cuboid) => cuboid.face_ring(direction).ok_or(None),
+        Kind::Polytope(hull) => {
+            let part = hull.part_shown(direction, likely);
+            let ring = match part {
+                FeatureId::Face(face) => hull.face_ring_at(face),
+                FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
+            };
+            ring.ok_or(Some(part))
+        }
+        _ => Err(None),
     }
 }
 

@@ -20,8 +20,8 @@ pub(crate) struct Certificate<N: Real, const D: usize> {
     shrink: N,
     reach: N,
     edges: [Few; 2],
-    /// For each solid the number of a face or a code, and of another one that may be better; where a face
-    /// parts the two, its solid and its number.
+    /// For each solid the number of a face or a code, and of another one that may be better, or that is the
+    /// best of those that are lower; where a face parts the two, its solid and its number.
     faces: [[u8; 2]; 2],
     stage: Stage,
     /// How often it served.
@@ -79,7 +79,7 @@ impl<N: Real> Certificate<N, 3> {
         &mut self,
         solids: [&Flat<'_, N>; 2],
         pose12: &Pose<N, 3>,
-        ask: impl Fn(&mut Guide<N>) -> Verdict<N>,
+        ask: impl FnOnce(&mut Guide<N>) -> Verdict<N>,
     ) -> Verdict<N> {
         let reaches = solids.map(|solid| solid.reach);
         let Units { shrink, .. } = Units::of(reaches[0], reaches[1], &pose12.translation);
@@ -153,7 +153,7 @@ impl<N: Real> Certificate<N, 3> {
         }
         let known = self.faces.map(|faces| match faces {
             [ANY, _] => Known::Any,
-            [LOWER, _] => Known::Lower,
+            [LOWER, face] => Known::Lower(usize::from(face)),
             [face, ANY] => Known::Is(usize::from(face)),
             [face, other] => Known::Either(usize::from(face), usize::from(other)),
         });
@@ -178,7 +178,7 @@ impl<N: Real> Certificate<N, 3> {
             Verdict::Found(_) | Verdict::Undecided => {
                 self.faces = guide.faces().map(|known| match known {
                     Known::Any => [ANY; 2],
-                    Known::Lower => [LOWER; 2],
+                    Known::Lower(face) => [LOWER, code(face)],
                     Known::Is(face) => [code(face), ANY],
                     Known::Either(face, other) => [face, other].map(code),
                 });

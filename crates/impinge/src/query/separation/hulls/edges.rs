@@ -3,11 +3,10 @@
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::cloud::highest_lane;
 use super::face::{Meeting, Side};
 use super::pool::Asked;
 use super::{Found, LANES, noise};
-use crate::math::lanes::{self, by_axis, dot, load, spread};
+use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
@@ -40,15 +39,14 @@ pub(super) struct Chosen {
 impl Chosen {
     pub(super) const NONE: Self = Self { indices: [0; MOST_EDGES], len: 0 };
 
-    /// Those that end at one of some vertices, given as bits.
-    fn of(edges: &[PolytopeEdge], vertices: u32) -> Self {
-        let mut chosen = Self::NONE;
-        for (index, edge) in (0_u8..).zip(edges) {
-            // Written over by the next one if this one is not.
-            chosen.indices[chosen.len] = index;
-            chosen.len += usize::from(ends_at(edge, vertices));
+    /// Those that end at one of some vertices, given as bits; `edge_bits` are those of all vertices.
+    fn of(edge_bits: &[u128], mut vertices: u32) -> Self {
+        let mut bits = 0;
+        while vertices != 0 {
+            bits |= edge_bits[vertices.trailing_zeros() as usize];
+            vertices &= vertices - 1;
         }
-        chosen
+        Self::of_bits(bits)
     }
 
     /// The same of some edges.
@@ -62,13 +60,16 @@ impl Chosen {
     }
 
     /// Those whose numbers are bits.
-    pub(super) fn of_bits(mut bits: u128) -> Self {
+    pub(super) fn of_bits(bits: u128) -> Self {
         let mut chosen = Self::NONE;
-        while bits != 0 {
-            let [index, ..] = bits.trailing_zeros().to_le_bytes();
-            chosen.indices[chosen.len] = index;
-            chosen.len += 1;
-            bits &= bits - 1;
+        let [low, high] = halves(bits);
+        for (mut rest, first) in [(low, 0), (high, 64)] {
+            while rest != 0 {
+                let [index, ..] = (rest.trailing_zeros() + first).to_le_bytes();
+                chosen.indices[chosen.len] = index;
+                chosen.len += 1;
+                rest &= rest - 1;
+            }
         }
         chosen
     }
@@ -80,6 +81,12 @@ impl Chosen {
     pub(super) fn indices(&self) -> &[u8] {
         &self.indices[..self.len]
     }
+}
+
+/// The lower and the upper half of some bits.
+#[expect(clippy::cast_possible_truncation, reason = "the halves are what is wanted")]
+const fn halves(bits: u128) -> [u64; 2] {
+    [bits as u64, (bits >> 64) as u64]
 }
 
 /// An edge ends at one of some vertices, given as bits.
@@ -121,7 +128,7 @@ impl<N: Real> Meeting<'_, '_, N> {
         reach: N,
     ) -> [Chosen; 2] {
         let [own, other] = self.near::<S, V>(simd, reach);
-        [Chosen::of(self.own.solid.edges, own), Chosen::of(self.other.solid.edges, other)]
+        [Chosen::of(self.own.solid.edge_bits, own), Chosen::of(self.other.solid.edge_bits, other)]
     }
 
     /// The vertices of each solid within reach, as bits.
