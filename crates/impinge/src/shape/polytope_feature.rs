@@ -266,17 +266,23 @@ impl<N: Real> Polytope<N, 3> {
 
     /// A face by its number, which there must be, if it has few corners.
     pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let mut ring = FaceRing::blank();
+        self.fill_ring(index, &mut ring).then_some(ring)
+    }
+
+    /// [`Self::face_ring_at`] in place of a blank ring; answers whether it is one.
+    pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
         if !(3..=FaceRing::<N>::MOST).contains(&vertices.len()) {
-            return None;
+            return false;
         }
-        let mut ring = FaceRing::new(FeatureId::Face(index), face.normal);
+        (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);
         for (&vertex, &side) in vertices.iter().zip(sides) {
             let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
             ring.push(&self.vertices[vertex as usize], names);
         }
-        Some(ring)
+        true
     }
 }
 

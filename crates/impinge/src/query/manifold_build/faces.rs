@@ -34,10 +34,19 @@ pub(super) fn build<N: Real>(
     }
     let toward = pair.pose12.inverse_vector(&-normal);
     let [likely1, likely2] = [likely.map(|[first, _]| first), likely.map(|[_, second]| second)];
-    let first = &shown(&pair.first, &normal, likely1).map_err(|part| [part, None])?;
-    let second = &shown(&pair.second, &toward, likely2).map_err(|part| [Some(first.id), part])?;
-    let parts = [Some(first.id), Some(second.id)];
-    let places = &Places::of(frame, (first, second), &pair.pose12).ok_or(parts)?;
+    let Some(part1) = part(&pair.first, &normal, likely1) else { return Err([None; 2]) };
+    let parts = [Some(part1), part(&pair.second, &toward, likely2)];
+    let [mut first, mut second] = [FaceRing::blank(), FaceRing::blank()];
+    let is_whole = |kind: &Kind<'_, N, 3>, part: Option<FeatureId>, ring: &mut FaceRing<N>| matches!(part, Some(FeatureId::Face(face)) if fill(kind, face, ring));
+    if !is_whole(&pair.first, parts[0], &mut first)
+        || !is_whole(&pair.second, parts[1], &mut second)
+    {
+        return Err(parts);
+    }
+    let (first, second) = (&first, &second);
+    let Some(places) = &Places::of(frame, (first, second), &pair.pose12) else {
+        return Err(parts);
+    };
     let [lean1, lean2] = [first.normal, pair.pose12.vector(&second.normal)];
     let meeting = Meeting { frame, rings: [first, second], leans: [lean1, lean2], places };
     let mut candidates = Candidates::new();
@@ -52,23 +61,25 @@ pub(super) fn build<N: Real>(
     Ok(())
 }
 
-/// The face of few corners that a solid shows to a direction; if it does not, what a hull does show.
-fn shown<N: Real>(
+/// The part that a box or a hull shows to a direction.
+fn part<N: Real>(
     kind: &Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
     likely: Option<u32>,
-) -> Result<FaceRing<N>, Option<FeatureId>> {
+) -> Option<FeatureId> {
     match kind {
-        Kind::Cuboid(cuboid) => cuboid.face_ring(direction).ok_or(None),
-        Kind::Polytope(hull) => {
-            let part = hull.part_shown(direction, likely);
-            let ring = match part {
-                FeatureId::Face(face) => hull.face_ring_at(face),
-                FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
-            };
-            ring.ok_or(Some(part))
-        }
-        _ => Err(None),
+        Kind::Cuboid(cuboid) => Some(cuboid.part_shown(direction)),
+        Kind::Polytope(hull) => Some(hull.part_shown(direction, likely)),
+        _ => None,
+    }
+}
+
+/// Makes a blank ring a face of a box or a hull, if that has few corners and an area.
+fn fill<N: Real>(kind: &Kind<'_, N, 3>, face: u32, ring: &mut FaceRing<N>) -> bool {
+    match kind {
+        Kind::Cuboid(cuboid) => cuboid.fill_ring(face, ring),
+        Kind::Polytope(hull) => hull.fill_ring(face, ring),
+        _ => false,
     }
 }
 

@@ -46,13 +46,19 @@ fn by_depth<N: Real, const D: usize>(
 ) -> SmallVec<[usize; 16]> {
     let mut order: SmallVec<[usize; 16]> = SmallVec::new();
     for index in 0..candidates.len() {
-        if index != without {
-            order.push(index);
+        if index == without {
+            continue;
+        }
+        // There are few, mostly less than ten: each is put where it belongs at once.
+        order.push(index);
+        let depth = candidates[index].distance.as_f64();
+        let order = order.as_mut_slice();
+        let mut at = order.len() - 1;
+        while at > 0 && depth.total_cmp(&candidates[order[at - 1]].distance.as_f64()).is_lt() {
+            order.swap(at, at - 1);
+            at -= 1;
         }
     }
-    order.sort_by(|&a, &b| {
-        candidates[a].distance.as_f64().total_cmp(&candidates[b].distance.as_f64())
-    });
     order
 }
 
@@ -100,19 +106,29 @@ impl<'a, N: Real, const D: usize> Outline<'a, N, D> {
         let before = self.corners[place - 1];
         let after = self.corners[if place < self.corners.len() { place } else { 0 }];
         let [to, from] = [self.side(before, index), self.side(index, after)];
-        self.corners.insert(place, index);
+        insert(&mut self.corners, place, index);
         if let Some(side) = self.sides.get_mut(place - 1) {
             *side = to;
-            self.sides.insert(place, from);
         } else {
-            self.sides.extend([to, from]);
+            self.sides.push(to);
         }
+        insert(&mut self.sides, place, from);
     }
 
     fn side(&self, from: usize, to: usize) -> Side<N> {
         let from = self.candidates[from].flat;
         let along = self.candidates[to].flat - from;
         Side { from, along, least: self.tolerance * along.norm() }
+    }
+}
+
+/// Puts an item at a place of a short list: by pushes and swaps, which are inlined.
+#[inline]
+fn insert<T>(list: &mut SmallVec<[T; 8]>, place: usize, item: T) {
+    list.push(item);
+    let list = list.as_mut_slice();
+    for at in (place + 1..list.len()).rev() {
+        list.swap(at, at - 1);
     }
 }
 

@@ -34,6 +34,9 @@ enum Stage {
     Nothing,
     /// Where the solids were.
     Pose,
+    /// The same, and that the edges known were too few for what was asked, and within what reach.
+    Crossing,
+    Nearest,
     Faces,
     /// Edges too, for what they are asked about.
     Edges(Aim),
@@ -90,11 +93,12 @@ impl<N: Real> Certificate<N, 3> {
             self.uses = self.uses.saturating_add(1);
             if guide.has_missed {
                 self.set_pose(pose12, shrink);
+                self.expect(guide.asked);
             }
             return verdict;
         }
         let is_worth = moved <= room || self.is_made() && self.uses >= WORTH;
-        let mut guide = if is_worth { Guide::drafting() } else { Guide::default() };
+        let mut guide = if is_worth { Guide::drafting(self.expected()) } else { Guide::default() };
         let verdict = ask(&mut guide);
         self.set_pose(pose12, shrink);
         if is_worth {
@@ -105,7 +109,26 @@ impl<N: Real> Certificate<N, 3> {
 
     /// There is something to go by.
     pub(super) fn is_made(&self) -> bool {
-        !matches!(self.stage, Stage::Nothing | Stage::Pose)
+        matches!(self.stage, Stage::Faces | Stage::Edges(_) | Stage::Parting)
+    }
+
+    /// This was asked about edges in vain.
+    fn expect(&mut self, asked: Asked<N>) {
+        self.reach = asked.reach;
+        self.stage = match asked.aim {
+            Aim::Crossing => Stage::Crossing,
+            Aim::Nearest => Stage::Nearest,
+            Aim::Nothing | Aim::Both => Stage::Pose,
+        };
+    }
+
+    /// What is likely to be asked about edges again.
+    fn expected(&self) -> Asked<N> {
+        match self.stage {
+            Stage::Crossing => Asked::crossing(self.reach),
+            Stage::Nearest => Asked::nearest(self.reach),
+            _ => Asked::default(),
+        }
     }
 
     /// The edges that may decide are known too.

@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 
 use super::cloud::{Best, Cloud};
 use super::noise;
-use super::pool::{Pool, Pools};
+use super::pool::{Asked, Pool, Pools};
 use super::solid::Flat;
 use crate::math::{Real, Wide};
 
@@ -49,6 +49,8 @@ pub(super) struct Guide<N: Real> {
     noted: Option<Pools<N>>,
     /// What was known did not do.
     pub(super) has_missed: bool,
+    /// What was asked about edges then; where everything is to be noted, what is likely to be asked.
+    pub(super) asked: Asked<N>,
 }
 
 impl<N: Real> Default for Guide<N> {
@@ -62,14 +64,15 @@ impl<N: Real> Default for Guide<N> {
             is_drafting: false,
             noted: None,
             has_missed: false,
+            asked: Asked::default(),
         }
     }
 }
 
 impl<N: Real> Guide<N> {
     /// Nothing is known, and everything is to be noted.
-    pub(super) fn drafting() -> Self {
-        Self { is_drafting: true, ..Self::default() }
+    pub(super) fn drafting(asked: Asked<N>) -> Self {
+        Self { is_drafting: true, asked, ..Self::default() }
     }
 
     /// So much is known.

@@ -200,8 +200,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         view.meeting::<S, V>(simd, is_second, guide.best[usize::from(is_second)].face);
     meeting.pool = guide.pool.map(|pool| pool.seen_from(is_second));
     let found = meeting.resolve::<S, V>(simd);
-    guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
+    if meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get())) {
+        (guide.has_missed, guide.asked) = (true, meeting.asked.get());
+    }
     if guide.is_drafting() && guide.has_known_faces() {
+        meeting.expect(guide.asked);
         let pool = view.pool::<S, V>(simd, (&meeting, is_second), found.as_ref(), guide);
         guide.note_edges(pool, is_second);
     }
