@@ -9,7 +9,7 @@ use super::solid::Flat;
 use crate::math::{Real, Wide};
 
 /// How far the solids may move before what is noted of them means nothing, in units of the pair.
-pub(super) const ROOM: f64 = 1.0 / 128.0;
+pub(super) const ROOM: f64 = 1.0 / 256.0;
 
 /// What is known of the faces of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
