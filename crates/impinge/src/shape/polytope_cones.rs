@@ -99,9 +99,9 @@ mod tests {
         let mut within = 0;
         for (index, face) in (0_u32..).zip(&hull.faces) {
             let cone = hull.cones[index as usize];
-            for at in 0..200_u32 {
-                let part = |prime: u32| (at * prime % 101) as f32 / 50.0 - 1.0;
-                let share = if at % 3 == 0 { 0.0 } else { f32::from(at as u8) / 190.0 };
+            for at in 0..200_u8 {
+                let part = |prime: u32| (u32::from(at) * prime % 101) as f32 / 50.0 - 1.0;
+                let share = if at % 3 == 0 { 0.0 } else { f32::from(at) / 190.0 };
                 let aside = Vector::<f32, 3>::new(part(7), part(13), part(29)).normalize();
                 let way = (face.normal + aside * (cone.max(0.0).sqrt() * share)).normalize();
                 if (way - face.normal).norm_squared() <= cone {

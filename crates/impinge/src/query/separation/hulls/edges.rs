@@ -194,14 +194,13 @@ impl<N: Real> Meeting<'_, '_, N> {
         } else {
             for lane in chosen.len()..LANES {
                 edges.indices[lane] = edges.indices[0];
-                for axis in 0..3 {
-                    edges.from[axis][lane] = edges.from[axis][0];
-                    ends[axis][lane] = ends[axis][0];
+                for (from, ends) in edges.from.iter_mut().zip(&mut ends) {
+                    (from[lane], ends[lane]) = (from[0], ends[0]);
                 }
             }
         }
-        for axis in 0..3 {
-            let along = V::load(simd, &ends[axis]) - V::load(simd, &edges.from[axis]);
+        for (axis, ends) in ends.iter().enumerate() {
+            let along = V::load(simd, ends) - V::load(simd, &edges.from[axis]);
             along.store(&mut edges.along[axis]);
         }
         edges
