@@ -5,7 +5,7 @@
 
 use fearless_simd::{Select, Simd};
 
-use super::{Real, Vector, Wide};
+use super::{Real, Vector, Wide, max};
 
 /// Runs `$body` with `$simd` bound to the vectors of `$level`, and `$otherwise` where it has none.
 ///
@@ -41,6 +41,15 @@ pub(crate) use with_lanes;
 #[inline(always)]
 pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
     V::all(simd, N::lit(value))
+}
+
+/// The greatest of eight numbers.
+#[inline(always)]
+pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
+    let mut lanes = [N::ZERO; 8];
+    numbers.store(&mut lanes);
+    let [a, b, c, d, e, f, g, h] = lanes;
+    max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
 }
 
 /// What there is for each axis.

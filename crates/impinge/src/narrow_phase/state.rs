@@ -184,8 +184,11 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return self.clear();
         }
         let (pair, swapped) = posed.canonical();
-        if posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction) {
-            return self.clear();
+        // Boxes tell no more than the algorithm: what was near is mostly near.
+        if self.kept.contacts.points.is_empty()
+            && posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction)
+        {
+            return;
         }
         if let Aside::Clear(certificate) = &mut self.aside
             && swapped != self.kept.swapped

@@ -1,10 +1,13 @@
 //! Boxes and spheres around shapes placed somewhere.
 
-use super::polytope::QUARTET;
+use fearless_simd::{Level, Simd, SimdMask};
+
+use super::polytope::LANES;
 use super::segment::length_of;
 use super::{Polytope, Shape};
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, max, min};
+use crate::math::lanes::{highest_lane, load, with_lanes};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector, Wide, max};
 
 /// The box around a shape placed at `pose`, in the frame that the pose leads to; as small as is
 /// cheap. Unbounded for a half-space, but for the axis that its normal lies along exactly.
@@ -27,40 +30,11 @@ pub fn bounding_sphere<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 impl<N: Real, const D: usize> Polytope<N, D> {
     /// The smallest box around the solid placed at `pose`.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let (mut mins, mut maxs) = (pose.translation, pose.translation);
-        for axis in 0..D {
-            // A pose that is not finite gives no box; then everything is in it.
-            let Some(extent) = self.extent_along(axis, pose) else { return Aabb::unbounded() };
-            [mins[axis], maxs[axis]] = extent;
-        }
+        // A pose that is not finite gives no box; then everything is in it.
+        let Some([mins, maxs]) = extents(Level::new(), &self.blocks, pose) else {
+            return Aabb::unbounded();
+        };
         Aabb::try_new(Point::from(mins), Point::from(maxs)).unwrap_or_else(|_| Aabb::unbounded())
-    }
-
-    /// The least and the greatest coordinate of the vertices on one axis of the frame that a pose leads to:
-    /// four vertices at a time, each as [`Pose::point`] has it. `None` if a coordinate is not a number.
-    fn extent_along(&self, axis: usize, pose: &Pose<N, D>) -> Option<[N; 2]> {
-        let mut are_numbers = [true; QUARTET];
-        let mut lows = [N::INFINITY; QUARTET];
-        let mut highs = [-N::INFINITY; QUARTET];
-        for quartet in &self.quartets {
-            let mut at = quartet[0].map(|x| pose.rotation[(axis, 0)] * x);
-            for (column, coordinates) in quartet.iter().enumerate().skip(1) {
-                let factor = pose.rotation[(axis, column)];
-                for (at, x) in at.iter_mut().zip(coordinates) {
-                    *at += factor * *x;
-                }
-            }
-            for lane in 0..QUARTET {
-                let at = at[lane] + pose.translation[axis];
-                are_numbers[lane] &= at <= N::INFINITY;
-                lows[lane] = if at < lows[lane] { at } else { lows[lane] };
-                highs[lane] = if at > highs[lane] { at } else { highs[lane] };
-            }
-        }
-        let [a, b, c, d] = lows;
-        let [e, f, g, h] = highs;
-        let extent = [min(min(a, c), min(b, d)), max(max(e, g), max(f, h))];
-        are_numbers.into_iter().all(|is| is).then_some(extent)
     }
 
     /// The sphere around the middle of the box; a little larger than the farthest vertex asks for,
@@ -73,6 +47,48 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
     }
 }
+
+/// [`extents_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
+fn extents<N: Real, const D: usize>(
+    level: Level,
+    blocks: &[[[N; LANES]; D]],
+    pose: &Pose<N, D>,
+) -> Option<[Vector<N, D>; 2]> {
+    with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, pose), else None)
+}
+
+/// The least and the greatest coordinates of vertices in the frame that a pose leads to: eight at a time, each
+/// as [`Pose::point`] has it. `None` if a coordinate is not a number.
+#[inline(always)]
+fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    blocks: &[[[N; LANES]; D]],
+    pose: &Pose<N, D>,
+) -> Option<[Vector<N, D>; 2]> {
+    let (mut mins, mut maxs) = (pose.translation, pose.translation);
+    for axis in 0..D {
+        let most = V::all(simd, N::INFINITY);
+        let (mut low, mut high, mut are_numbers) = (most, -most, true);
+        for block in blocks {
+            let local: [V; D] = load(simd, block);
+            let mut at = V::all(simd, pose.rotation[(axis, 0)]) * local[0];
+            for (column, local) in local.iter().enumerate().skip(1) {
+                at += V::all(simd, pose.rotation[(axis, column)]) * *local;
+            }
+            at += V::all(simd, pose.translation[axis]);
+            are_numbers &= at.simd_le(most).to_bitmask() == ALL;
+            (low, high) = (at.smaller(low), at.larger(high));
+        }
+        if !are_numbers {
+            return None;
+        }
+        (mins[axis], maxs[axis]) = (-highest_lane(-low), highest_lane(high));
+    }
+    Some([mins, maxs])
+}
+
+/// A bit for each lane.
+const ALL: u64 = (1 << LANES) - 1;
 
 #[cfg(test)]
 mod tests {

@@ -27,10 +27,11 @@ impl<N: Real> FaceRing<N> {
     /// So many corners a face may have here.
     pub(crate) const MOST: usize = MOST;
 
-    /// A face without corners.
+    /// No face yet.
     #[inline]
-    pub(crate) fn new(id: FeatureId, normal: Vector<N, 3>) -> Self {
-        let (corners, ids) = ([[N::ZERO; MOST]; 3], [id; MOST]);
+    pub(crate) fn blank() -> Self {
+        let (id, corners) = (FeatureId::Face(0), [[N::ZERO; MOST]; 3]);
+        let (ids, normal) = ([id; MOST], Vector::<N, 3>::zeros());
         Self { id, count: 0, corners, ids, sides: ids, normal }
     }
 
@@ -56,26 +57,37 @@ impl<N: Real> FaceRing<N> {
 impl<N: Real> Cuboid<N, 3> {
     /// What [`core_feature`](super::SupportMap::core_feature) answers, if it is a face with an area.
     pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        match Part::<3>::facing(direction, Tilt::usual()).name() {
+        match self.part_shown(direction) {
             FeatureId::Face(index) => self.face_ring_at(index),
             FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
         }
     }
 
+    /// The name of what [`core_feature`](super::SupportMap::core_feature) answers of a box with a volume.
+    #[inline]
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
+        Part::<3>::facing(direction, Tilt::usual()).name()
+    }
+
     /// A face by its number, which there must be, if it has an area.
     pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let mut ring = FaceRing::blank();
+        self.fill_ring(index, &mut ring).then_some(ring)
+    }
+
+    /// [`Self::face_ring_at`] in place of a blank ring; answers whether it is one.
+    pub(crate) fn fill_ring(&self, index: u32, face: &mut FaceRing<N>) -> bool {
         let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
         if (0..3).any(|other| other != axis && self.half_extents()[other] == N::ZERO) {
-            return None;
+            return false;
         }
         let (ring, sides) = &Part::<3>::FACES[index as usize];
-        let mut normal = Vector::<N, 3>::zeros();
-        normal[axis] = if is_negative { -N::ONE } else { N::ONE };
-        let mut face = FaceRing::new(FeatureId::Face(index), normal);
+        face.id = FeatureId::Face(index);
+        face.normal[axis] = if is_negative { -N::ONE } else { N::ONE };
         for (&corner, &side) in ring.corners.iter().zip(sides) {
             face.push(&self.corner(corner), [FeatureId::Vertex(corner), side]);
         }
-        Some(face)
+        true
     }
 }
 

@@ -4,9 +4,11 @@ use core::array::from_fn;
 use core::ops::Range;
 use std::sync::Arc;
 
+use fearless_simd::Level;
 use smallvec::SmallVec;
 
 use super::FeatureId;
+use super::polytope_support;
 use super::segment::length_of;
 use crate::math::{Point, Real, Vector, max, unit};
 
@@ -43,14 +45,20 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fans: Vec<u32>,
     /// Where the fan of each vertex starts, and at last where the last one ends.
     pub(super) fan_starts: Vec<u32>,
+    /// The edges at each vertex again, as bits by their numbers; empty where these are too many, and in the
+    /// plane.
+    pub(super) edge_bits: Vec<u128>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
+    /// For each face how far a direction may lean from its normal and certainly still be shown it; empty of
+    /// large solids and in the plane. See `polytope_cones.rs`.
+    pub(super) cones: Vec<N>,
     /// Shared by copies, and by nothing else: a solid never changes once it is made.
     pub(super) identity: Arc<()>,
 }
 
 /// How many vertices or faces are looked at side by side.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
 pub(super) const QUARTET: usize = 4;
 
@@ -133,6 +141,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.planes
     }
 
+    /// The edges at each vertex, as bits by their numbers; empty if there are more than bits, and in the plane.
+    pub(crate) fn edge_bits(&self) -> &[u128] {
+        &self.edge_bits
+    }
+
     /// The edges (in the plane: the faces) that end at a vertex.
     pub(super) fn fan(&self, vertex: usize) -> &[u32] {
         &self.fans[self.fan_range(vertex)]
@@ -169,9 +182,18 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// The index of a vertex farthest along a direction: the first of equals.
+    pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
+        if self.blocks.len() > 1 {
+            polytope_support::vertex(Level::new(), &self.blocks, direction)
+        } else {
+            self.support_vertex_of_few(direction)
+        }
+    }
+
+    /// The same without vectors, which is as fast for few vertices.
     ///
     /// Written for the compiler to keep each array in one register.
-    pub(super) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
+    fn support_vertex_of_few(&self, direction: &Vector<N, D>) -> usize {
         let (mut heights, mut places) = (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
         for (place, quartet) in (1_u32..).zip(&self.quartets[1..]) {
             let candidates = self::heights(quartet, direction);
@@ -235,6 +257,10 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             unit(&(b - a)).map(|(along, _)| along)
         };
         self.fan_directions = self.fans.iter().map(direction).collect();
+        if (1..=u128::BITS as usize).contains(&self.edges.len()) {
+            let bits = |fan: &[u32]| fan.iter().fold(0, |bits, &edge| bits | 1_u128 << edge);
+            self.edge_bits = (0..self.vertices.len()).map(|at| bits(self.fan(at))).collect();
+        }
     }
 }
 

@@ -102,6 +102,24 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    fn named(part: Part) -> FeatureId {
+        match part {
+            Part::Face(face) => FeatureId::Face(face),
+            Part::Side(side) => Self::side_id(side),
+            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+        }
+    }
+
+    /// The part of this name, which there must be.
+    pub(crate) fn fill_named(&self, name: FeatureId, out: &mut Feature<N, D>) {
+        let part = match name {
+            FeatureId::Vertex(vertex) => Part::Vertex(vertex as usize),
+            FeatureId::Edge(side) => Part::Side(side),
+            FeatureId::Face(face) => Part::Face(face),
+        };
+        self.fill(part, out);
+    }
+
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();
@@ -226,19 +244,45 @@ impl<N: Real> Polytope<N, 3> {
         self.face_ring_at(index)
     }
 
+    /// The name of what [`SupportMap::core_feature`] answers. A face may be known that it likely is, which is
+    /// told at once then.
+    #[inline]
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>, likely: Option<u32>) -> FeatureId {
+        match likely {
+            Some(face) if self.certainly_shows(face, direction) => FeatureId::Face(face),
+            _ => Self::named(self.part_toward(direction, Tilt::usual())),
+        }
+    }
+
+    /// Whether a unit vector is so near to the normal of a face that it is shown that face for certain.
+    #[inline]
+    fn certainly_shows(&self, face: u32, direction: &Vector<N, 3>) -> bool {
+        let index = face as usize;
+        match (self.faces.get(index), self.cones.get(index)) {
+            (Some(face), Some(&cone)) => (direction - face.normal).norm_squared() <= cone,
+            _ => false,
+        }
+    }
+
     /// A face by its number, which there must be, if it has few corners.
     pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
+        let mut ring = FaceRing::blank();
+        self.fill_ring(index, &mut ring).then_some(ring)
+    }
+
+    /// [`Self::face_ring_at`] in place of a blank ring; answers whether it is one.
+    pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
         if !(3..=FaceRing::<N>::MOST).contains(&vertices.len()) {
-            return None;
+            return false;
         }
-        let mut ring = FaceRing::new(FeatureId::Face(index), face.normal);
+        (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);
         for (&vertex, &side) in vertices.iter().zip(sides) {
             let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
             ring.push(&self.vertices[vertex as usize], names);
         }
-        Some(ring)
+        true
     }
 }
 
@@ -299,10 +343,6 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        match self.part_toward(direction, Tilt::least()) {
-            Part::Face(face) => FeatureId::Face(face),
-            Part::Side(side) => Self::side_id(side),
-            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
-        }
+        Self::named(self.part_toward(direction, Tilt::least()))
     }
 }

@@ -119,7 +119,7 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
-    build(pair, &frame(pair, separation, request), (request, request.max_points), out);
+    build((pair, [None; 2]), &frame(pair, separation, request), (request, request.max_points), out);
 }
 
 pub(super) fn frame<N: Space<D>, const D: usize>(

@@ -20,21 +20,33 @@ use crate::shape::{FaceRing, FeatureId, Kind};
 /// How many corners or sides are side by side.
 const LANES: usize = FaceRing::<f32>::MOST;
 
-/// Builds the manifold of two solids whose nearest points are known; answers whether it did.
+/// Builds the manifold of two solids whose nearest points are known, and perhaps faces that they likely show
+/// each other. If it does not, the parts that they do show, where these are known then.
 pub(super) fn build<N: Real>(
-    pair: &Pair<'_, N, 3>,
+    (pair, likely): (&Pair<'_, N, 3>, Option<[u32; 2]>),
     frame: &Frame<N, 3>,
     (request, limit): (&ManifoldRequest<N>, usize),
     out: &mut RawManifold<N, 3>,
-) -> bool {
+) -> Result<(), [Option<FeatureId>; 2]> {
     let (distance, normal) = (frame.witness.distance, frame.normal());
     if !(distance <= request.prediction && distance.is_finite_number()) {
-        return false;
+        return Err([None; 2]);
     }
     let toward = pair.pose12.inverse_vector(&-normal);
-    let Some(first) = &shown(&pair.first, &normal) else { return false };
-    let Some(second) = &shown(&pair.second, &toward) else { return false };
-    let Some(places) = &Places::of(frame, (first, second), &pair.pose12) else { return false };
+    let [likely1, likely2] = [likely.map(|[first, _]| first), likely.map(|[_, second]| second)];
+    let Some(part1) = part(&pair.first, &normal, likely1) else { return Err([None; 2]) };
+    let parts = [Some(part1), part(&pair.second, &toward, likely2)];
+    let [mut first, mut second] = [FaceRing::blank(), FaceRing::blank()];
+    let is_whole = |kind: &Kind<'_, N, 3>, part: Option<FeatureId>, ring: &mut FaceRing<N>| matches!(part, Some(FeatureId::Face(face)) if fill(kind, face, ring));
+    if !is_whole(&pair.first, parts[0], &mut first)
+        || !is_whole(&pair.second, parts[1], &mut second)
+    {
+        return Err(parts);
+    }
+    let (first, second) = (&first, &second);
+    let Some(places) = &Places::of(frame, (first, second), &pair.pose12) else {
+        return Err(parts);
+    };
     let [lean1, lean2] = [first.normal, pair.pose12.vector(&second.normal)];
     let meeting = Meeting { frame, rings: [first, second], leans: [lean1, lean2], places };
     let mut candidates = Candidates::new();
@@ -42,19 +54,32 @@ pub(super) fn build<N: Real>(
     meeting.crossings(&mut candidates);
     let nearest = distance + frame.tolerance;
     if !candidates.iter().any(|candidate| candidate.distance <= nearest) {
-        return false;
+        return Err(parts);
     }
     out.normal = normal;
     choose(&mut candidates, (distance, frame.tolerance), limit, out);
-    true
+    Ok(())
 }
 
-/// The face of few corners that a solid shows to a direction, if it does.
-fn shown<N: Real>(kind: &Kind<'_, N, 3>, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+/// The part that a box or a hull shows to a direction.
+fn part<N: Real>(
+    kind: &Kind<'_, N, 3>,
+    direction: &Vector<N, 3>,
+    likely: Option<u32>,
+) -> Option<FeatureId> {
     match kind {
-        Kind::Cuboid(cuboid) => cuboid.face_ring(direction),
-        Kind::Polytope(hull) => hull.face_ring(direction),
+        Kind::Cuboid(cuboid) => Some(cuboid.part_shown(direction)),
+        Kind::Polytope(hull) => Some(hull.part_shown(direction, likely)),
         _ => None,
+    }
+}
+
+/// Makes a blank ring a face of a box or a hull, if that has few corners and an area.
+fn fill<N: Real>(kind: &Kind<'_, N, 3>, face: u32, ring: &mut FaceRing<N>) -> bool {
+    match kind {
+        Kind::Cuboid(cuboid) => cuboid.fill_ring(face, ring),
+        Kind::Polytope(hull) => hull.fill_ring(face, ring),
+        _ => false,
     }
 }
 

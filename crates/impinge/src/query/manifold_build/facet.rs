@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::frame::Frame;
 use crate::math::{Point, Pose, Real, Vector, cross2, max, max_component, min};
-use crate::shape::{Feature, FeatureId, SupportMap};
+use crate::shape::{Feature, FeatureId, Polytope, SupportMap};
 
 /// Parts that lean more than 60° out of the plane of contact count as their nearest point.
 pub(super) const LEAST_COSINE: f64 = 0.5;
@@ -118,14 +118,31 @@ impl<N: Real, const D: usize> Facet<N, D> {
             None => map.core_feature(&outward, &mut feature),
             Some(pose) => map.core_feature(&pose.inverse_vector(&outward), &mut feature),
         }
-        self.id = feature.id;
-        self.normal = feature.normal.map(|normal| pose.map_or(normal, |pose| pose.vector(&normal)));
         self.rounding = map.rounding();
-        self.take_corners(&feature, pose, frame);
-        self.settle(&outward, frame.tolerance);
+        self.take(&feature, pose, frame);
         if self.rounding > N::ZERO {
             self.find_top(frame);
         }
+    }
+
+    /// [`Self::face`] of a hull of which it is known what part it shows.
+    pub(super) fn part(
+        &mut self,
+        hull: &Polytope<N, D>,
+        part: FeatureId,
+        pose: Option<&Pose<N, D>>,
+        frame: &Frame<N, D>,
+    ) {
+        let mut feature = Feature::default();
+        hull.fill_named(part, &mut feature);
+        self.take(&feature, pose, frame);
+    }
+
+    fn take(&mut self, feature: &Feature<N, D>, pose: Option<&Pose<N, D>>, frame: &Frame<N, D>) {
+        self.id = feature.id;
+        self.normal = feature.normal.map(|normal| pose.map_or(normal, |pose| pose.vector(&normal)));
+        self.take_corners(feature, pose, frame);
+        self.settle(&self.which.outward(frame), frame.tolerance);
     }
 
     /// Takes the corners of a feature to the frame of the first solid. Where a feature names fewer

@@ -75,23 +75,24 @@ pub(crate) fn build2<N: Real>(
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
     let limits = (request, request.max_points.min(2));
     if !stretch::build(pair, &frame, limits, out) {
-        build(pair, &frame, limits, out);
+        build((pair, [None; 2]), &frame, limits, out);
     }
 }
 
-/// Builds the manifold of two solids in space: at most `request.max_points` points.
+/// Builds the manifold of two solids in space: at most `request.max_points` points. Faces may be known that
+/// the solids likely show each other.
 ///
 /// As [`build2`].
 pub(crate) fn build3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
-    request: &ManifoldRequest<N>,
+    (request, likely): (&ManifoldRequest<N>, Option<[u32; 2]>),
     out: &mut RawManifold<N, 3>,
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
     let limits = (request, request.max_points);
-    if !faces::build(pair, &frame, limits, out) {
-        build(pair, &frame, limits, out);
+    if let Err(shown) = faces::build((pair, likely), &frame, limits, out) {
+        build((pair, shown), &frame, limits, out);
     }
 }
 
@@ -121,11 +122,10 @@ pub(crate) fn contacts3<N: Real>(
     if box_faces::build(pair, request, out) {
         return;
     }
-    let separation = match certificate {
-        Some(certificate) if hulls::treats(pair) => {
-            hulls::separation_again(pair, request.prediction, certificate)
-        }
-        _ => separation_in_space(pair, request.prediction),
+    let (separation, likely) = if hulls::treats(pair) {
+        hulls::separation_again(pair, request.prediction, certificate).unzip()
+    } else {
+        (separation_in_space(pair, request.prediction), None)
     };
     match separation {
         Some(separation) => match segments::crossing_parts(pair, &separation, request) {
@@ -133,7 +133,7 @@ pub(crate) fn contacts3<N: Real>(
                 out.normal = separation.normal;
                 names::settle_alone(&Candidate::alone(&separation, parts), out);
             }
-            None => build3(pair, &separation, request, out),
+            None => build3(pair, &separation, (request, likely), out),
         },
         None => out.points.clear(),
     }
@@ -158,8 +158,9 @@ pub(crate) fn contacts2<N: Real>(
     }
 }
 
+/// The manifold by facets. The parts that the solids show may be known.
 fn build<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
+    (pair, shown): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
     frame: &Frame<N, D>,
     (request, limit): (&ManifoldRequest<N>, usize),
     out: &mut RawManifold<N, D>,
@@ -177,7 +178,7 @@ fn build<N: Real, const D: usize>(
         return names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
     }
     let mut candidates = Candidates::new();
-    fill(pair, frame, &mut candidates);
+    fill((pair, shown), frame, &mut candidates);
     choose(&mut candidates, (distance, frame.tolerance), limit, out);
 }
 
@@ -221,14 +222,14 @@ fn choose_admitted<N: Real, const D: usize>(
 
 /// The corners of the common area, and the witness if it is none of them.
 fn fill<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
+    (pair, [shown1, shown2]): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
     frame: &Frame<N, D>,
     out: &mut Candidates<N, D>,
 ) {
     let mut first = Facet::boundary(Which::First);
     let mut second = Facet::boundary(Which::Second);
-    face(&mut first, pair.first, None, frame);
-    face(&mut second, pair.second, Some(&pair.pose12), frame);
+    known_face(&mut first, (pair.first, shown1), None, frame);
+    known_face(&mut second, (pair.second, shown2), Some(&pair.pose12), frame);
     if let Kind::Plane(_) = pair.second {
         half_space::candidates(pair.first, &first, frame, out);
     } else {
@@ -238,6 +239,20 @@ fn fill<N: Real, const D: usize>(
     if !out.iter().any(|candidate| candidate.distance <= limit) {
         let features = [at_witness(&first, frame), at_witness(&second, frame)];
         add_witness(frame, features, out);
+    }
+}
+
+/// [`face`], where the part that a hull shows may be known.
+#[inline]
+fn known_face<N: Real, const D: usize>(
+    facet: &mut Facet<N, D>,
+    (kind, shown): (Kind<'_, N, D>, Option<FeatureId>),
+    pose: Option<&Pose<N, D>>,
+    frame: &Frame<N, D>,
+) {
+    match (kind, shown) {
+        (Kind::Polytope(hull), Some(part)) => facet.part(hull, part, pose, frame),
+        _ => face(facet, kind, pose, frame),
     }
 }
 

@@ -49,13 +49,26 @@ pub(super) fn nearest_of_segments<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
 ) -> (Point<N, 3>, Point<N, 3>) {
+    let perpendicular = common_perpendicular(ends1, ends2);
+    if let Some(found) = &perpendicular
+        && found.is_well_inside
+    {
+        return found.points;
+    }
     let mut best = nearest_of_ends(ends1, ends2);
-    if let Some((point1, point2)) = common_perpendicular(ends1, ends2)
+    if let Some(Perpendicular { points: (point1, point2), .. }) = perpendicular
         && (point2 - point1).norm_squared() < (best.1 - best.0).norm_squared()
     {
         best = (point1, point2);
     }
     best
+}
+
+/// Where the common perpendicular of two lines meets both segments.
+struct Perpendicular<N: Real> {
+    points: (Point<N, 3>, Point<N, 3>),
+    /// So far from all ends that none of them is as near, whatever rounding does.
+    is_well_inside: bool,
 }
 
 /// The nearest points of two segments if at least one of them is an end, in any dimension.
@@ -86,7 +99,7 @@ pub(super) fn nearest_of_ends<N: Real, const D: usize>(
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
-) -> Option<(Point<N, 3>, Point<N, 3>)> {
+) -> Option<Perpendicular<N>> {
     let (along1, along2) = (ends1[1] - ends1[0], ends2[1] - ends2[0]);
     // Directions of length about 1, so that fourth powers stay numbers of the type.
     let (size1, size2) =
@@ -95,7 +108,8 @@ fn common_perpendicular<N: Real>(
     let across = cross(&toward1, &toward2);
     let squared = across.norm_squared();
     let tiny = N::lit(64.0) * N::EPSILON * N::EPSILON;
-    if squared <= tiny * toward1.norm_squared() * toward2.norm_squared() {
+    let (squared1, squared2) = (toward1.norm_squared(), toward2.norm_squared());
+    if squared <= tiny * squared1 * squared2 {
         return None;
     }
     let (mut s, mut t) = (N::ZERO, N::ZERO);
@@ -106,7 +120,20 @@ fn common_perpendicular<N: Real>(
         between = (ends2[0] + along2 * t) - (ends1[0] + along1 * s);
     }
     let inside = |u: N| u >= N::ZERO && u <= N::ONE;
-    (inside(s) && inside(t)).then(|| (ends1[0] + along1 * s, ends2[0] + along2 * t))
+    (inside(s) && inside(t)).then(|| {
+        // Away from the perpendicular the squared distance grows by the square of how far the point of one
+        // line moves times that of the sine between them, wherever that of the other is.
+        let far1 = min(s, N::ONE - s) * size1;
+        let far2 = min(t, N::ONE - t) * size2;
+        let growth = min(far1 * far1 / squared2, far2 * far2 / squared1) * squared;
+        let size = ends1
+            .iter()
+            .chain(ends2)
+            .fold(N::ZERO, |size, end| max(max_component(&end.coords), size));
+        let rounding = N::lit(1024.0) * N::EPSILON * size * size;
+        let is_well_inside = growth > rounding && rounding > N::MIN_POSITIVE;
+        Perpendicular { points: (ends1[0] + along1 * s, ends2[0] + along2 * t), is_well_inside }
+    })
 }
 
 /// How far apart two sets of points are along a unit vector from the first to the second.

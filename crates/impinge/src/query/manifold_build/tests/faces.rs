@@ -1,11 +1,11 @@
 //! Whole faces of boxes and hulls in one go against facets and their overlap, bit for bit.
 
 use super::super::along::frame;
-use super::super::{build, faces};
+use super::super::{build, build3, faces};
 use super::scene::Scene;
 use crate::math::noise::Noise;
 use crate::math::{Point, Space, Vector};
-use crate::query::separation::separation_in_space;
+use crate::query::separation::{hulls, separation_in_space};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::{ConvexHull, Cuboid, Shape};
 
@@ -54,11 +54,21 @@ fn compare<N: Scene<3> + Space<3>>(seed: u64) -> usize {
             }
             let frame = frame(&pair, &separation, &request);
             let limits = (&request, 4);
-            build(&pair, &frame, limits, &mut expected);
-            if faces::build(&pair, &frame, limits, &mut found) {
+            build((&pair, [None; 2]), &frame, limits, &mut expected);
+            let likely = if hulls::treats(&pair) {
+                hulls::separation_again(&pair, prediction, None).map(|(_, likely)| likely)
+            } else {
+                None
+            };
+            if faces::build((&pair, likely), &frame, limits, &mut found).is_ok() {
                 built += 1;
                 assert_eq!(format!("{found:?}"), format!("{expected:?}"), "round {round}");
             } else {
+                // What is known to be shown by now is what facets find anew.
+                let mut other = found.clone();
+                build3(&pair, &separation, (&request, likely), &mut other);
+                build3(&pair, &separation, (&request, None), &mut found);
+                assert_eq!(format!("{other:?}"), format!("{found:?}"), "round {round}");
                 found = expected.clone();
             }
         }

@@ -20,8 +20,8 @@ pub(crate) struct Certificate<N: Real, const D: usize> {
     shrink: N,
     reach: N,
     edges: [Few; 2],
-    /// For each solid the number of a face or a code, and of another one that may be better; where a face
-    /// parts the two, its solid and its number.
+    /// For each solid the number of a face or a code, and of another one that may be better, or that is the
+    /// best of those that are lower; where a face parts the two, its solid and its number.
     faces: [[u8; 2]; 2],
     stage: Stage,
     /// How often it served.
@@ -34,6 +34,9 @@ enum Stage {
     Nothing,
     /// Where the solids were.
     Pose,
+    /// The same, and that the edges known were too few for what was asked, and within what reach.
+    Crossing,
+    Nearest,
     Faces,
     /// Edges too, for what they are asked about.
     Edges(Aim),
@@ -79,7 +82,7 @@ impl<N: Real> Certificate<N, 3> {
         &mut self,
         solids: [&Flat<'_, N>; 2],
         pose12: &Pose<N, 3>,
-        ask: impl Fn(&mut Guide<N>) -> Verdict<N>,
+        ask: impl FnOnce(&mut Guide<N>) -> Verdict<N>,
     ) -> Verdict<N> {
         let reaches = solids.map(|solid| solid.reach);
         let Units { shrink, .. } = Units::of(reaches[0], reaches[1], &pose12.translation);
@@ -90,11 +93,12 @@ impl<N: Real> Certificate<N, 3> {
             self.uses = self.uses.saturating_add(1);
             if guide.has_missed {
                 self.set_pose(pose12, shrink);
+                self.expect(guide.asked);
             }
             return verdict;
         }
         let is_worth = moved <= room || self.is_made() && self.uses >= WORTH;
-        let mut guide = if is_worth { Guide::drafting() } else { Guide::default() };
+        let mut guide = if is_worth { Guide::drafting(self.expected()) } else { Guide::default() };
         let verdict = ask(&mut guide);
         self.set_pose(pose12, shrink);
         if is_worth {
@@ -105,7 +109,26 @@ impl<N: Real> Certificate<N, 3> {
 
     /// There is something to go by.
     pub(super) fn is_made(&self) -> bool {
-        !matches!(self.stage, Stage::Nothing | Stage::Pose)
+        matches!(self.stage, Stage::Faces | Stage::Edges(_) | Stage::Parting)
+    }
+
+    /// This was asked about edges in vain.
+    fn expect(&mut self, asked: Asked<N>) {
+        self.reach = asked.reach;
+        self.stage = match asked.aim {
+            Aim::Crossing => Stage::Crossing,
+            Aim::Nearest => Stage::Nearest,
+            Aim::Nothing | Aim::Both => Stage::Pose,
+        };
+    }
+
+    /// What is likely to be asked about edges again.
+    fn expected(&self) -> Asked<N> {
+        match self.stage {
+            Stage::Crossing => Asked::crossing(self.reach),
+            Stage::Nearest => Asked::nearest(self.reach),
+            _ => Asked::default(),
+        }
     }
 
     /// The edges that may decide are known too.
@@ -153,7 +176,7 @@ impl<N: Real> Certificate<N, 3> {
         }
         let known = self.faces.map(|faces| match faces {
             [ANY, _] => Known::Any,
-            [LOWER, _] => Known::Lower,
+            [LOWER, face] => Known::Lower(usize::from(face)),
             [face, ANY] => Known::Is(usize::from(face)),
             [face, other] => Known::Either(usize::from(face), usize::from(other)),
         });
@@ -178,7 +201,7 @@ impl<N: Real> Certificate<N, 3> {
             Verdict::Found(_) | Verdict::Undecided => {
                 self.faces = guide.faces().map(|known| match known {
                     Known::Any => [ANY; 2],
-                    Known::Lower => [LOWER; 2],
+                    Known::Lower(face) => [LOWER, code(face)],
                     Known::Is(face) => [code(face), ANY],
                     Known::Either(face, other) => [face, other].map(code),
                 });

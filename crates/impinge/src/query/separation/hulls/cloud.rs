@@ -4,8 +4,8 @@ use fearless_simd::{Simd, SimdMask};
 
 use super::solid::Flat;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::math::lanes::{by_axis, dot, load, spread};
-use crate::math::{Matrix, Real, Vector, Wide, max};
+use crate::math::lanes::{by_axis, dot, highest_lane, load, spread};
+use crate::math::{Matrix, Real, Vector, Wide};
 use crate::shape::Planes;
 
 /// The vertices of a solid in some frame, in units of the pair.
@@ -153,7 +153,8 @@ impl<N: Real> Cloud<N> {
 
     #[inline(always)]
     pub(super) fn at(&self, vertex: usize) -> Vector<N, 3> {
-        let (block, lane) = (&self.blocks[vertex / LANES], vertex % LANES);
+        // The remainder spares the compiler a check: there are no more vertices.
+        let (block, lane) = (&self.blocks[vertex / LANES % BLOCKS], vertex % LANES);
         Vector::<N, 3>::new(block[0][lane], block[1][lane], block[2][lane])
     }
 
@@ -246,15 +247,6 @@ impl<N: Real> Cloud<N> {
         }
         low
     }
-}
-
-/// The greatest of eight numbers.
-#[inline(always)]
-pub(super) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
-    let mut lanes = [N::ZERO; LANES];
-    numbers.store(&mut lanes);
-    let [a, b, c, d, e, f, g, h] = lanes;
-    max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
 }
 
 /// How far a point lies above the highest of some planes.

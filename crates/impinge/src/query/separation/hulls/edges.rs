@@ -3,11 +3,10 @@
 
 use fearless_simd::{Select, Simd, SimdMask};
 
-use super::cloud::highest_lane;
 use super::face::{Meeting, Side};
 use super::pool::Asked;
 use super::{Found, LANES, noise};
-use crate::math::lanes::{self, by_axis, dot, load, spread};
+use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
@@ -22,7 +21,7 @@ pub(super) struct Edge<N: Real> {
 
 /// Eight edges of the other solid, in the same frame.
 pub(super) struct Edges<N: Real> {
-    pub(super) indices: [usize; LANES],
+    pub(super) indices: [u8; LANES],
     pub(super) from: [[N; LANES]; 3],
     pub(super) along: [[N; LANES]; 3],
     pub(super) normals: [[[N; LANES]; 3]; 2],
@@ -32,6 +31,7 @@ pub(super) struct Edges<N: Real> {
 pub(super) const MOST_EDGES: usize = 90;
 
 /// The edges that may decide, ascending.
+#[derive(Clone, Copy)]
 pub(super) struct Chosen {
     indices: [u8; MOST_EDGES],
     len: usize,
@@ -40,35 +40,38 @@ pub(super) struct Chosen {
 impl Chosen {
     pub(super) const NONE: Self = Self { indices: [0; MOST_EDGES], len: 0 };
 
-    /// Those that end at one of some vertices, given as bits.
-    fn of(edges: &[PolytopeEdge], vertices: u32) -> Self {
-        let mut chosen = Self::NONE;
-        for (index, edge) in (0_u8..).zip(edges) {
-            // Written over by the next one if this one is not.
-            chosen.indices[chosen.len] = index;
-            chosen.len += usize::from(ends_at(edge, vertices));
+    /// Those that end at one of some vertices, given as bits; `edge_bits` are those of all vertices.
+    fn of(edge_bits: &[u128], mut vertices: u32) -> Self {
+        let mut bits = 0;
+        while vertices != 0 {
+            bits |= edge_bits[vertices.trailing_zeros() as usize];
+            vertices &= vertices - 1;
         }
-        chosen
+        Self::of_bits(bits)
     }
 
     /// The same of some edges.
-    fn among(edges: &[PolytopeEdge], some: &[u8], vertices: u32) -> Self {
-        let mut chosen = Self::NONE;
+    #[inline(always)]
+    fn set_among(&mut self, edges: &[PolytopeEdge], some: &[u8], vertices: u32) {
+        self.len = 0;
         for &index in some {
-            chosen.indices[chosen.len] = index;
-            chosen.len += usize::from(ends_at(&edges[usize::from(index)], vertices));
+            // Written over by the next one if this one is not.
+            self.indices[self.len] = index;
+            self.len += usize::from(ends_at(&edges[usize::from(index)], vertices));
         }
-        chosen
     }
 
     /// Those whose numbers are bits.
-    pub(super) fn of_bits(mut bits: u128) -> Self {
+    pub(super) fn of_bits(bits: u128) -> Self {
         let mut chosen = Self::NONE;
-        while bits != 0 {
-            let [index, ..] = bits.trailing_zeros().to_le_bytes();
-            chosen.indices[chosen.len] = index;
-            chosen.len += 1;
-            bits &= bits - 1;
+        let [low, high] = halves(bits);
+        for (mut rest, first) in [(low, 0), (high, 64)] {
+            while rest != 0 {
+                let [index, ..] = (rest.trailing_zeros() + first).to_le_bytes();
+                chosen.indices[chosen.len] = index;
+                chosen.len += 1;
+                rest &= rest - 1;
+            }
         }
         chosen
     }
@@ -80,6 +83,12 @@ impl Chosen {
     pub(super) fn indices(&self) -> &[u8] {
         &self.indices[..self.len]
     }
+}
+
+/// The lower and the upper half of some bits.
+#[expect(clippy::cast_possible_truncation, reason = "the halves are what is wanted")]
+const fn halves(bits: u128) -> [u64; 2] {
+    [bits as u64, (bits >> 64) as u64]
 }
 
 /// An edge ends at one of some vertices, given as bits.
@@ -100,20 +109,26 @@ impl<N: Real> Meeting<'_, '_, N> {
     /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
     /// other. Of those that are known to be all that decide, if this is what is known.
     #[inline(always)]
-    fn chosen<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, asked: Asked<N>) -> [Chosen; 2] {
+    fn choose<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        asked: Asked<N>,
+        [chosen1, chosen2]: &mut [Chosen; 2],
+    ) {
         self.asked.set(self.asked.get().and(asked));
         let pool = match &self.pool {
             Some(pool) if pool.serves(asked) => pool,
-            _ => return self.within_reach::<S, V>(simd, asked.reach),
+            _ => {
+                [*chosen1, *chosen2] = self.within_reach::<S, V>(simd, asked.reach);
+                return;
+            }
         };
         let [own, other] = self.near::<S, V>(simd, asked.reach);
-        [
-            Chosen::among(self.own.solid.edges, pool.own.indices(), own),
-            Chosen::among(self.other.solid.edges, pool.other.indices(), other),
-        ]
+        chosen1.set_among(self.own.solid.edges, pool.own.indices(), own);
+        chosen2.set_among(self.other.solid.edges, pool.other.indices(), other);
     }
 
-    /// [`Self::chosen`] of all edges.
+    /// [`Self::choose`] of all edges.
     #[inline(always)]
     pub(super) fn within_reach<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -121,7 +136,7 @@ impl<N: Real> Meeting<'_, '_, N> {
         reach: N,
     ) -> [Chosen; 2] {
         let [own, other] = self.near::<S, V>(simd, reach);
-        [Chosen::of(self.own.solid.edges, own), Chosen::of(self.other.solid.edges, other)]
+        [Chosen::of(self.own.solid.edge_bits, own), Chosen::of(self.other.solid.edge_bits, other)]
     }
 
     /// The vertices of each solid within reach, as bits.
@@ -156,16 +171,19 @@ impl<N: Real> Meeting<'_, '_, N> {
     ) -> Edges<N> {
         let zero = [[N::ZERO; LANES]; 3];
         let mut edges = Edges { indices: [0; LANES], from: zero, along: zero, normals: [zero; 2] };
-        let mut local = [zero; 2];
+        let (mut ends, mut local) = (zero, [zero; 2]);
         for (lane, &index) in chosen.iter().enumerate().take(LANES) {
             let edge = &self.other.solid.edges[usize::from(index)];
-            edges.indices[lane] = usize::from(index);
+            edges.indices[lane] = index;
             let [from, to] = edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize));
-            let [one, other] = edge.faces.map(|face| self.other.solid.normal(face as usize));
             for axis in 0..3 {
-                edges.from[axis][lane] = from[axis];
-                edges.along[axis][lane] = to[axis] - from[axis];
-                (local[0][axis][lane], local[1][axis][lane]) = (one[axis], other[axis]);
+                (edges.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
+            }
+            if with_normals {
+                let [one, other] = edge.faces.map(|face| self.other.solid.normal(face as usize));
+                for axis in 0..3 {
+                    (local[0][axis][lane], local[1][axis][lane]) = (one[axis], other[axis]);
+                }
             }
         }
         if with_normals {
@@ -176,11 +194,14 @@ impl<N: Real> Meeting<'_, '_, N> {
         } else {
             for lane in chosen.len()..LANES {
                 edges.indices[lane] = edges.indices[0];
-                for axis in 0..3 {
-                    edges.from[axis][lane] = edges.from[axis][0];
-                    edges.along[axis][lane] = edges.along[axis][0];
+                for (from, ends) in edges.from.iter_mut().zip(&mut ends) {
+                    (from[lane], ends[lane]) = (from[0], ends[0]);
                 }
             }
+        }
+        for (axis, ends) in ends.iter().enumerate() {
+            let along = V::load(simd, ends) - V::load(simd, &edges.from[axis]);
+            along.store(&mut edges.along[axis]);
         }
         edges
     }
@@ -193,7 +214,9 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Crossing<N>> {
-        let [chosen1, chosen2] = self.chosen::<S, V>(simd, Asked::crossing(reach));
+        let mut chosen = [Chosen::NONE; 2];
+        self.choose::<S, V>(simd, Asked::crossing(reach), &mut chosen);
+        let [chosen1, chosen2] = &chosen;
         let (mut best, mut least): (Option<Crossing<N>>, N) =
             (None, self.height() + N::TWO * noise());
         for eight in chosen2.indices().chunks(LANES) {
@@ -210,7 +233,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                 if highest > least || highest == least && best.as_ref().is_some_and(is_before) {
                     let is_highest = heights.simd_eq(V::all(simd, highest)).to_bitmask();
                     let lane = is_highest.trailing_zeros() as usize;
-                    let edges = [edge1.index, edges2.indices[lane]];
+                    let edges = [edge1.index, usize::from(edges2.indices[lane])];
                     (best, least) = (Some(Crossing { edges, height: highest }), highest);
                 }
             }
@@ -240,7 +263,9 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> Option<Found<N>> {
-        let [chosen1, chosen2] = self.chosen::<S, V>(simd, Asked::nearest(reach));
+        let mut chosen = [Chosen::NONE; 2];
+        self.choose::<S, V>(simd, Asked::nearest(reach), &mut chosen);
+        let [chosen1, chosen2] = &chosen;
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
         for eight in chosen2.indices().chunks(LANES) {
             let edges2 = self.edges::<S, V>(simd, eight, false);
@@ -252,7 +277,8 @@ impl<N: Real> Meeting<'_, '_, N> {
                 if lowest < least || lowest == least && nearest.is_some_and(is_before) {
                     let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
                     let lane = is_lowest.trailing_zeros() as usize;
-                    (nearest, least) = (Some([edge1.index, edges2.indices[lane]]), lowest);
+                    (nearest, least) =
+                        (Some([edge1.index, usize::from(edges2.indices[lane])]), lowest);
                 }
             }
         }

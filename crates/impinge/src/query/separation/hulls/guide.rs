@@ -4,20 +4,20 @@ use fearless_simd::Simd;
 
 use super::cloud::{Best, Cloud};
 use super::noise;
-use super::pool::{Pool, Pools};
+use super::pool::{Asked, Pool, Pools};
 use super::solid::Flat;
 use crate::math::{Real, Wide};
 
 /// How far the solids may move before what is noted of them means nothing, in units of the pair.
-pub(super) const ROOM: f64 = 1.0 / 128.0;
+pub(super) const ROOM: f64 = 1.0 / 256.0;
 
 /// What is known of the faces of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Known {
     /// Nothing.
     Any,
-    /// Some face of the other solid is higher than all of them.
-    Lower,
+    /// Some face of the other solid is higher than all of them, of which this one was the best.
+    Lower(usize),
     /// This one is the highest.
     Is(usize),
     /// One of these two is, the first of equals; they are ascending.
@@ -28,7 +28,7 @@ impl Known {
     /// The faces that may be the best, where they are known.
     pub(super) fn faces(self) -> impl Iterator<Item = usize> {
         let [one, other] = match self {
-            Self::Any | Self::Lower => [None, None],
+            Self::Any | Self::Lower(_) => [None, None],
             Self::Is(face) => [Some(face), None],
             Self::Either(face, other) => [Some(face), Some(other)],
         };
@@ -49,6 +49,8 @@ pub(super) struct Guide<N: Real> {
     noted: Option<Pools<N>>,
     /// What was known did not do.
     pub(super) has_missed: bool,
+    /// What was asked about edges then; where everything is to be noted, what is likely to be asked.
+    pub(super) asked: Asked<N>,
 }
 
 impl<N: Real> Default for Guide<N> {
@@ -62,14 +64,15 @@ impl<N: Real> Default for Guide<N> {
             is_drafting: false,
             noted: None,
             has_missed: false,
+            asked: Asked::default(),
         }
     }
 }
 
 impl<N: Real> Guide<N> {
     /// Nothing is known, and everything is to be noted.
-    pub(super) fn drafting() -> Self {
-        Self { is_drafting: true, ..Self::default() }
+    pub(super) fn drafting(asked: Asked<N>) -> Self {
+        Self { is_drafting: true, asked, ..Self::default() }
     }
 
     /// So much is known.
@@ -93,7 +96,7 @@ impl<N: Real> Guide<N> {
 
     /// No face of the solid can be the best.
     pub(super) fn is_lower(&self, which: usize) -> bool {
-        self.known[which] == Known::Lower
+        matches!(self.known[which], Known::Lower(_))
     }
 
     /// Finds the best face of the first or second solid over the vertices of the other one, and how high
@@ -113,13 +116,27 @@ impl<N: Real> Guide<N> {
                 let second = cloud.above::<S, V>(simd, (solid, other), shrink);
                 if second > height { Best::alone(other, second) } else { Best::alone(face, height) }
             }
-            Known::Any | Known::Lower => {
+            Known::Any | Known::Lower(_) => {
                 let planes = (solid.planes, solid.faces());
                 cloud.farthest_plane::<S, V>(simd, planes, shrink, self.is_drafting)
             }
         };
         self.best[which] = best;
         best.height
+    }
+
+    /// A face of each solid that it likely shows the other.
+    pub(super) fn likely(&self) -> [u32; 2] {
+        let mut likely = [0; 2];
+        for (which, face) in likely.iter_mut().enumerate() {
+            let index = match self.known[which] {
+                Known::Lower(index) => index,
+                _ => self.best[which].face,
+            };
+            // No solid that is treated here has more than 64 faces.
+            *face = u32::try_from(index).unwrap_or(0);
+        }
+        likely
     }
 
     /// The best face is one of the second solid.
@@ -141,7 +158,8 @@ impl<N: Real> Guide<N> {
             one if one.height - one.third > clear => Known::Either(one.next.0, one.face),
             _ => Known::Any,
         };
-        let rival = if best.height - other.height > clear { Known::Lower } else { is(other) };
+        let rival =
+            if best.height - other.height > clear { Known::Lower(other.face) } else { is(other) };
         if winner == 1 { [rival, is(best)] } else { [is(best), rival] }
     }
 

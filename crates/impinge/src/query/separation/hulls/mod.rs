@@ -52,17 +52,20 @@ const PLANE_BLOCKS: usize = 8;
 /// before edges; of equal pairs of edges that of the lower numbers counts. Cost: the product of the
 /// numbers of vertices and faces, by eights; larger hulls are left to the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    answered(pair, limit, None)
+    answered(pair, limit, (None, &mut [0; 2]))
 }
 
-/// [`separation`] of a pair that is asked again and again, to the bit: what is clear of it is kept, and
-/// need not be found anew while the solids have hardly moved.
+/// [`separation`], with a face of each solid that it likely shows the other. For a pair that is asked again
+/// and again, to the bit: what is clear of it is kept, and need not be found anew while the solids have
+/// hardly moved.
 pub(in crate::query) fn separation_again<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
-    certificate: &mut Certificate<N, 3>,
-) -> Option<Separation<N, 3>> {
-    answered(pair, limit, Some(certificate))
+    certificate: Option<&mut Certificate<N, 3>>,
+) -> Option<(Separation<N, 3>, [u32; 2])> {
+    let mut likely = [0; 2];
+    let separation = answered(pair, limit, (certificate, &mut likely))?;
+    Some((separation, likely))
 }
 
 /// Whether [`separation_again`] is for these kinds.
@@ -73,16 +76,16 @@ pub(in crate::query) const fn treats<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
 fn answered<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
-    certificate: Option<&mut Certificate<N, 3>>,
+    known: (Option<&mut Certificate<N, 3>>, &mut [u32; 2]),
 ) -> Option<Separation<N, 3>> {
     let Kind::Polytope(second) = pair.second else { wrong_kinds(pair) };
     let question = (&pair.pose12, limit);
     let found = match (pair.first, Flat::of_polytope(second)) {
         (_, None) => Verdict::Undecided,
         (Kind::Polytope(first), Some(second)) => Flat::of_polytope(first)
-            .map_or(Verdict::Undecided, |first| between([&first, &second], question, certificate)),
+            .map_or(Verdict::Undecided, |first| between([&first, &second], question, known)),
         (Kind::Cuboid(first), Some(second)) if has_volume(first, second.reach) => {
-            between([&BoxParts::new(first).flat(), &second], question, certificate)
+            between([&BoxParts::new(first).flat(), &second], question, known)
         }
         (Kind::Cuboid(_), _) => Verdict::Undecided,
         _ => wrong_kinds(pair),
@@ -125,13 +128,17 @@ pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
 fn between<N: Real>(
     solids: [&Flat<'_, N>; 2],
     (pose12, limit): (&Pose<N, 3>, N),
-    certificate: Option<&mut Certificate<N, 3>>,
+    (certificate, likely): (Option<&mut Certificate<N, 3>>, &mut [u32; 2]),
 ) -> Verdict<N> {
     if !pose12.is_finite() {
         return Verdict::Beyond;
     }
     let level = Level::new();
-    let ask = |guide: &mut Guide<N>| at(level, solids, (pose12, limit), guide);
+    let mut ask = |guide: &mut Guide<N>| {
+        let verdict = at(level, solids, (pose12, limit), guide);
+        *likely = guide.likely();
+        verdict
+    };
     match certificate {
         None => ask(&mut Guide::default()),
         Some(certificate) => certificate.asked(solids, pose12, ask),
@@ -193,8 +200,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         view.meeting::<S, V>(simd, is_second, guide.best[usize::from(is_second)].face);
     meeting.pool = guide.pool.map(|pool| pool.seen_from(is_second));
     let found = meeting.resolve::<S, V>(simd);
-    guide.has_missed |= meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get()));
+    if meeting.pool.is_some_and(|pool| !pool.serves(meeting.asked.get())) {
+        (guide.has_missed, guide.asked) = (true, meeting.asked.get());
+    }
     if guide.is_drafting() && guide.has_known_faces() {
+        meeting.expect(guide.asked);
         let pool = view.pool::<S, V>(simd, (&meeting, is_second), found.as_ref(), guide);
         guide.note_edges(pool, is_second);
     }

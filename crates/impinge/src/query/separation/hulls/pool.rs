@@ -143,6 +143,14 @@ impl Reached {
 }
 
 impl<N: Real> Meeting<'_, '_, N> {
+    /// Counts what is likely to be asked soon as asked, if it does not differ from what was.
+    pub(super) fn expect(&self, expected: Asked<N>) {
+        let both = self.asked.get().and(expected);
+        if expected.aim != Aim::Nothing && both.aim == expected.aim {
+            self.asked.set(both);
+        }
+    }
+
     /// What will be asked: the reach may grow by thrice the room.
     fn asked_by_then(&self) -> Asked<N> {
         let Asked { aim, reach } = self.asked.get();
@@ -206,7 +214,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                 let mut found = if is_crossing {
                     let normals1 = self.own.solid.edges[edge1.index].faces;
                     let normals1 = normals1.map(|face| self.own.solid.normal(face as usize));
-                    may_cross::<S, N, V>(simd, (&edge1, &normals1), &edges2, slack)
+                    may_cross::<S, N, V>(simd, (&edge1, &normals1), (&edges2, valid), slack)
                 } else {
                     let squares = squares::<S, N, V>(simd, &edge1, &edges2);
                     !squares.simd_gt(V::all(simd, slack.squared)).to_bitmask() & ALL
@@ -232,7 +240,7 @@ const ALL: u64 = (1 << LANES) - 1;
 fn may_cross<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     (edge1, normals1): (&Edge<N>, &[Vector<N, 3>; 2]),
-    edges2: &Edges<N>,
+    (edges2, valid): (&Edges<N>, u64),
     slack: &Slack<N>,
 ) -> u64 {
     let (along1, along2): ([V; 3], [V; 3]) =
@@ -257,7 +265,7 @@ fn may_cross<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         | left1.is_like(right2)
         | left1.is_unlike(left2)
         | right1.is_unlike(right2);
-    if is_none & ALL == ALL {
+    if !is_none & valid == 0 {
         return 0;
     }
     let across = lanes::cross(&along1, &along2);

@@ -15,6 +15,8 @@ pub(super) struct Flat<'a, N: Real> {
     /// The planes of the faces, eight at a time; the last one fills the rest.
     pub(super) planes: &'a [Planes<N, 3>],
     pub(super) edges: &'a [PolytopeEdge],
+    /// Those at each vertex, as bits.
+    pub(super) edge_bits: &'a [u128],
     rings: Rings<'a, N>,
     pub(super) reach: N,
 }
@@ -37,6 +39,7 @@ impl<'a, N: Real> Flat<'a, N> {
             vertices: polytope.vertices().len(),
             planes,
             edges: polytope.edges(),
+            edge_bits: polytope.edge_bits(),
             rings: Rings::OfPolytope(polytope),
             reach: polytope.reach(),
         })
@@ -105,6 +108,7 @@ impl<N: Real> BoxParts<N> {
             vertices: 8,
             planes: &self.planes,
             edges: &BOX_EDGES,
+            edge_bits: &BOX_EDGE_BITS,
             rings: Rings::OfBox,
             reach: self.reach,
         }
@@ -129,6 +133,19 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
         number += 1;
     }
     edges
+};
+
+/// The edges at the vertices of a box.
+const BOX_EDGE_BITS: [u128; 8] = {
+    let mut bits = [0; 8];
+    let mut number = 0;
+    while number < 12 {
+        let [from, to] = BOX_EDGES[number].vertices;
+        bits[from as usize] |= 1 << number;
+        bits[to as usize] |= 1 << number;
+        number += 1;
+    }
+    bits
 };
 
 /// The vertices around the faces of a box by their numbers; see [`Cuboid`].

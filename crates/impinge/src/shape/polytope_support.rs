@@ -1,0 +1,56 @@
+//! Support points of polytopes of more than a few vertices, by vectors.
+
+use fearless_simd::{Level, Select, Simd, SimdMask};
+
+use super::polytope::LANES;
+use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
+use crate::math::{Real, Vector, Wide};
+
+/// [`vertex_in_lanes`] with the vectors of an instruction set; the answer does not depend on it.
+pub(super) fn vertex<N: Real, const D: usize>(
+    level: Level,
+    blocks: &[[[N; LANES]; D]],
+    direction: &Vector<N, D>,
+) -> usize {
+    with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction), else 0)
+}
+
+/// The index of a vertex farthest along a direction: the first of equals.
+#[inline(always)]
+fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    blocks: &[[[N; LANES]; D]],
+    direction: &Vector<N, D>,
+) -> usize {
+    let along: [V; D] = spread(simd, direction);
+    let mut highest = dot(&load::<_, _, V, D, LANES>(simd, &blocks[0]), &along);
+    // Numbers of blocks are few, so that they are exact as numbers of the type.
+    let (mut places, mut place) = (V::all(simd, N::ZERO), N::ZERO);
+    for block in &blocks[1..] {
+        place += N::ONE;
+        let heights = dot(&load::<_, _, V, D, LANES>(simd, block), &along);
+        let is_higher = heights.simd_gt(highest);
+        places = is_higher.select(V::all(simd, place), places);
+        highest = is_higher.select(heights, highest);
+    }
+    let all = V::all(simd, highest_lane(highest));
+    let (mut ties, mut numbers) = (highest.simd_eq(all).to_bitmask(), [N::ZERO; LANES]);
+    places.store(&mut numbers);
+    let mut first = usize::MAX;
+    while ties != 0 {
+        let lane = ties.trailing_zeros() as usize;
+        ties &= ties - 1;
+        let index = block_number(numbers[lane]) * LANES + lane;
+        first = if index < first { index } else { first };
+    }
+    if first == usize::MAX { 0 } else { first }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "it was counted up from zero"
+)]
+fn block_number<N: Real>(number: N) -> usize {
+    number.as_f64() as usize
+}
