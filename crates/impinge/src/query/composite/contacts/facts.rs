@@ -48,12 +48,12 @@ pub(super) struct Finding<N: Real, const D: usize> {
 pub(super) struct Notes<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: Points<N, D>,
-    raw: RawManifold<N, D>,
+    pub(super) raw: RawManifold<N, D>,
 }
 
 impl<N: Real, const D: usize> Notes<N, D> {
     /// An empty manifold to be made.
-    fn blank(&mut self) -> &mut RawManifold<N, D> {
+    pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
         &mut self.raw
     }
@@ -221,7 +221,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             standing
         }
     };
-    if overlooks(raw, &found, tolerance) {
+    if overlooks(raw, found.distance, tolerance) {
         standing = Standing::Left;
         raw.points.clear();
     }
@@ -276,12 +276,12 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
 /// cut to where the other part is above it, may end beside the overlap.
-fn overlooks<N: Real, const D: usize>(
+pub(super) fn overlooks<N: Real, const D: usize>(
     raw: &RawManifold<N, D>,
-    found: &Separation<N, D>,
+    distance: N,
     tolerance: N,
 ) -> bool {
-    let highest = if found.distance <= N::ZERO { tolerance } else { N::INFINITY };
+    let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
     !raw.points.iter().any(|point| point.distance <= highest)
 }
 

@@ -1,0 +1,335 @@
+//! The contacts of a box or hull and a surface of triangles in space: the general way, which defines them,
+//! with what all triangles have in common worked out once, and no more made of each than is asked of it.
+
+use core::cell::Cell;
+
+use smallvec::SmallVec;
+
+use super::super::between::Between;
+use super::candidates::{depth_in, search_box};
+use super::facts::{self, Finding, Notes, Standing, overlooks};
+use super::judge::{Case, Verdict, faces, judge};
+use super::near::Probe;
+use super::scene::{Scene, lying_of};
+use super::{
+    CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, min};
+use crate::query::manifold_build::{Piece, build_on_face, merge};
+use crate::query::separation::{Flat, FlatQuestion, Told, Touched};
+use crate::query::tiles::{LANES, Tiles};
+use crate::query::{ManifoldRequest, OnFace, Pair, on_face3, witness_feature3};
+use crate::shape::{CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
+
+/// Lengths below this many rounding units of all sizes are rounding errors.
+const ROUNDING: f64 = 16.0;
+
+/// Brings the contacts of a box or hull and a surface up to date; answers false where that is left to the
+/// general way, as of all other solids.
+pub(super) fn update_flat<N: Real>(
+    contacts: &mut CompositeContacts<N, 3>,
+    between: &Between<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+) -> bool {
+    let Some(mut resting) = Resting::new(between, request) else { return false };
+    let (mut findings, mut notes) = (Findings::new(), Notes::default());
+    let Some(()) = resting.find(contacts, (&mut findings, &mut notes)) else { return false };
+    let (reference, center) = (Some(resting.from), Some(resting.center));
+    if !is_settled(&findings) {
+        let around = Some(&contacts.around);
+        let query = Query { between, around, reference: &reference, request: &resting.request };
+        query.settle(&Scene::new(between, around), &mut findings, &mut notes);
+    }
+    contacts.conclude((request, merge), [reference, center], (&findings, N::ZERO), &notes);
+    true
+}
+
+/// A solid with flat faces and the surface that it may touch.
+struct Resting<'b, 'a, N: Real> {
+    between: &'b Between<'a, N, 3>,
+    /// What is asked of a triangle.
+    request: ManifoldRequest<N>,
+    parts: &'a dyn CompositeShape<N, 3>,
+    surface: &'a dyn Surface<N, 3>,
+    question: FlatQuestion<'a, N>,
+    /// The surface's frame in that of the solid, put through its origin.
+    turn: Pose<N, 3>,
+    /// The same as the frame of the triangles.
+    frame: Pose<N, 3>,
+    /// How far the solid reaches from its origin, and how far that is from where triangles are seen from.
+    lengths: [N; 2],
+    /// The middle of the solid, and where it comes from, in the surface's frame.
+    center: Point<N, 3>,
+    from: Point<N, 3>,
+}
+
+/// Triangles near the solid, side by side.
+struct Near<N> {
+    tiles: Tiles<N, 3>,
+    parts: [u32; LANES],
+    count: usize,
+}
+
+/// One of the triangles.
+struct Seen<N: Real> {
+    part: u32,
+    triangle: Triangle<N, 3>,
+    tolerance: N,
+}
+
+/// What is found, and the points of it.
+type Found<'f, N> = (&'f mut Findings<N, 3>, &'f mut Notes<N, 3>);
+
+impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
+    /// `None` of other solids, and of what is no surface.
+    fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
+        let solid = Flat::new(between.pair.first)?;
+        let [_, parts] = between.composites();
+        let (parts, request) = (parts?, of_parts(between, request));
+        let surface = parts.surface()?;
+        let center = middle_of_first(between)?;
+        let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
+        let (frame, pose12) = lying_of(turn);
+        let origin = between.pose21.translation;
+        let question = FlatQuestion { solid, pose12, limit: request.prediction, origin };
+        let lengths = [solid.reach(), pose12.translation.norm()];
+        let from = center;
+        pose12.is_finite().then_some(Self {
+            between,
+            request,
+            parts,
+            surface,
+            question,
+            turn,
+            frame,
+            lengths,
+            center,
+            from,
+        })
+    }
+
+    /// Finds what is to be said of all triangles; `None` where that is left to the general way.
+    fn find(
+        &mut self,
+        contacts: &mut CompositeContacts<N, 3>,
+        (findings, notes): Found<'_, N>,
+    ) -> Option<()> {
+        let (reach, reference) = (self.request.prediction, contacts.reference);
+        let aabb = search_box(self.between, reach);
+        let around = &mut contacts.around;
+        if !(around.reaches(self.parts, &aabb) && around.has_triangles_alone()) {
+            return None;
+        }
+        let probe = Probe::new(self.between, reach)?;
+        let (sight, mut clearance) = (probe.sight(around, &aabb), depth_in(&aabb, probe.center()));
+        let mut eights: SmallVec<[u8; LANES]> = SmallVec::new();
+        let count = around.parts().len();
+        for (block, tiles) in around.tiles().iter().enumerate() {
+            let bounds = sight.bounds(tiles)?;
+            clearance = min(clearance, bounds.from_middle);
+            eights.push(bounds.near & (u8::MAX >> (LANES - (count - block * LANES).min(LANES))));
+        }
+        self.from = advanced(self.between, &Way { old: reference, clearance }, self.center);
+        let around = &contacts.around;
+        let mut near = Near { tiles: Tiles::blank(), parts: [0; LANES], count: 0 };
+        for (block, tiles) in around.tiles().iter().enumerate() {
+            let mut left = eights[block];
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                near.push(around.parts()[block * LANES + lane], tiles, lane);
+                if near.count == LANES {
+                    self.ask(&near, (&mut *findings, &mut *notes))?;
+                    near.count = 0;
+                }
+            }
+        }
+        self.ask(&near, (findings, notes))
+    }
+
+    /// Adds what is to be said of some triangles.
+    fn ask(&self, near: &Near<N>, (findings, notes): Found<'_, N>) -> Option<()> {
+        if near.count == 0 {
+            return Some(());
+        }
+        let eight = self.question.eight(&near.tiles)?;
+        if !eight.is_sound() {
+            return None;
+        }
+        let within = |lane: &usize| !eight.is_beyond(*lane);
+        for lane in (0..near.count).filter(within) {
+            self.surface.expect(near.parts[lane]);
+        }
+        for lane in (0..near.count).filter(within) {
+            let seen = self.seen(near, lane)?;
+            let told = eight.told(lane, &seen.triangle, seen.tolerance);
+            let Some(told) = told else { continue };
+            let exact = || match &told.touched {
+                Touched::Unclear(found) => Some(*found),
+                _ => eight.separation(lane, &seen.triangle),
+            };
+            let found = self.plainly(&seen, &told, (&exact, &mut *notes));
+            findings.extend(found.unwrap_or_else(|| self.in_general(&seen, exact()?, notes)));
+        }
+        Some(())
+    }
+
+    /// One of the triangles; `None` where the numbers end.
+    fn seen(&self, near: &Near<N>, lane: usize) -> Option<Seen<N>> {
+        let [a, b, c] = near.tiles.corners(lane).map(|corner| corner - self.question.origin);
+        let triangle = Triangle::try_new(a, b, c).ok()?;
+        let [reach, away] = self.lengths;
+        let tolerance = N::lit(ROUNDING) * N::EPSILON * (triangle.reach() + reach + away);
+        Some(Seen { part: near.parts[lane], triangle, tolerance })
+    }
+
+    /// What is to be said of a triangle, by the general way.
+    fn in_general(
+        &self,
+        seen: &Seen<N>,
+        found: Separation<N, 3>,
+        notes: &mut Notes<N, 3>,
+    ) -> Option<Finding<N, 3>> {
+        let scene = Scene::new(self.between, None);
+        let parts = [0, seen.part];
+        let asked = (&Some(self.from), &self.request);
+        facts::finding((&scene, &scene.pair(parts)), parts, asked, Some(found), notes)
+    }
+
+    /// The triangle and the solid.
+    fn pair<'s>(&'s self, seen: &'s Seen<N>) -> Pair<'s, N, 3> {
+        let (first, second) = (Kind::Triangle(&seen.triangle), self.question.solid.kind());
+        Pair { first, second, pose12: self.question.pose12 }
+    }
+
+    /// What is to be said of a triangle of which it is told how it meets the solid; `None` where that is not
+    /// enough.
+    #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
+    fn plainly(
+        &self,
+        seen: &Seen<N>,
+        told: &Told<N>,
+        (exact, notes): (&dyn Fn() -> Option<Separation<N, 3>>, &mut Notes<N, 3>),
+    ) -> Option<Option<Finding<N, 3>>> {
+        let Told { distance, .. } = *told;
+        if !distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
+            return Some(None);
+        }
+        let normal = -self.frame.vector(&told.normal);
+        let verdict = self.verdict(seen, told, &normal)?;
+        let seen_by_first = |face: &Vector<N, 3>| -self.turn.vector(face);
+        let inward = |normal: &Vector<N, 3>| -self.frame.inverse_vector(normal);
+        let (tolerance, pair) = (seen.tolerance, self.pair(seen));
+        let raw = notes.blank();
+        let mut standing = match &verdict {
+            Verdict::Nothing => return Some(None),
+            Verdict::Refused => Standing::Left,
+            Verdict::Admitted => {
+                let exact = exact().filter(|exact| exact.distance == distance)?;
+                let witness = Separation { normal: inward(&normal), ..exact };
+                build_on_face(&pair, (&witness, tolerance), &self.request, raw);
+                Standing::Own
+            }
+            Verdict::Face(face) => {
+                let asked = self.asked(inward(&seen_by_first(face)), (Some(distance), tolerance));
+                if !on_face3(&pair, &asked, raw) {
+                    return None;
+                }
+                Standing::Own
+            }
+            Verdict::Snapped(face) | Verdict::Beyond(face) => {
+                let mut asked = self.asked(inward(&seen_by_first(face)), (None, tolerance));
+                asked.least = if distance > N::ZERO { distance } else { -N::INFINITY };
+                if !on_face3(&pair, &asked, raw) {
+                    return None;
+                }
+                let is_beyond = matches!(verdict, Verdict::Beyond(_));
+                if is_beyond { Standing::Beyond } else { Standing::Snapped }
+            }
+        };
+        if overlooks(raw, distance, tolerance) {
+            standing = Standing::Left;
+            raw.points.clear();
+        }
+        let (piece, lowest) = self.noted(seen, notes);
+        let face = verdict.face().filter(|_| standing != Standing::Left);
+        Some(Some(Finding { distance, normal, piece, lowest, standing, face, tolerance }))
+    }
+
+    /// What contacts along the normal of a face are asked for.
+    fn asked(&self, normal: Vector<N, 3>, (nearest, tolerance): (Option<N>, N)) -> OnFace<N, 3> {
+        let (least, prediction) = (-N::INFINITY, self.request.prediction);
+        OnFace { normal, least, nearest, prediction, tolerance }
+    }
+
+    /// What the surface says of the way from the solid to a triangle; `None` where it asks for what is not
+    /// told.
+    fn verdict(
+        &self,
+        seen: &Seen<N>,
+        told: &Told<N>,
+        normal: &Vector<N, 3>,
+    ) -> Option<Verdict<N, 3>> {
+        let is_missed = Cell::new(false);
+        let feature = || match &told.touched {
+            Touched::Seam(feature) => *feature,
+            Touched::Unclear(found) => {
+                witness_feature3(&self.pair(seen), (found, seen.tolerance), false)
+            }
+            Touched::Face => {
+                is_missed.set(true);
+                FeatureId::Face(0)
+            }
+        };
+        let middle = seen.triangle.center() + self.question.origin;
+        let case = Case {
+            part: seen.part,
+            feature: &feature,
+            is_beside: false,
+            outward: -self.turn.inverse_vector(normal),
+            toward: self.from - middle,
+        };
+        let verdict = judge(Some(self.surface), &case);
+        let is_told = match &verdict {
+            Verdict::Face(_) | Verdict::Nothing => true,
+            _ => !matches!(told.touched, Touched::Face),
+        };
+        (is_told && !is_missed.get()).then_some(verdict)
+    }
+
+    /// The manifold in the notes as a piece, whose points are appended to those before, and its least
+    /// distance; as [`PartPair::piece`](super::scene::PartPair::piece).
+    fn noted(&self, seen: &Seen<N>, notes: &mut Notes<N, 3>) -> (Piece<N, 3>, N) {
+        let (start, parts) = (notes.points.len(), [0, seen.part]);
+        let mut lowest = N::INFINITY;
+        let Notes { points, raw } = notes;
+        for point in &raw.points {
+            lowest = min(lowest, point.distance);
+            let mut placed = *point;
+            let foot = self.frame.point(&(point.point1 + raw.normal * point.distance));
+            placed.point1 = Point::origin() + foot.coords;
+            (placed.feature1, placed.feature2) = (point.feature2, point.feature1);
+            points.push(placed);
+        }
+        let normal = -self.frame.vector(&raw.normal);
+        (Piece { normal, parts, points: start..points.len() }, lowest)
+    }
+}
+
+impl<N: Real> Near<N> {
+    /// Adds one of eight triangles; with the first the rest become copies of it.
+    fn push(&mut self, part: u32, tiles: &Tiles<N, 3>, lane: usize) {
+        for (rows, given) in self.tiles.corners.iter_mut().zip(&tiles.corners) {
+            for (row, given) in rows.iter_mut().zip(given) {
+                if self.count == 0 {
+                    *row = [given[lane]; LANES];
+                } else {
+                    row[self.count] = given[lane];
+                }
+            }
+        }
+        self.parts[self.count] = part;
+        self.count += 1;
+    }
+}
