@@ -1,4 +1,4 @@
-//! Boxes and hulls that show each other whole faces of few corners: the corners of their common area in one
+//! Boxes, hulls and triangles that show each other whole faces of few corners: the corners of their common area in one
 //! go.
 //!
 //! Such are most contacts of flat solids. Both faces are laid out in lanes, and how far inside of all sides
@@ -54,6 +54,7 @@ fn shown<N: Real>(kind: &Kind<'_, N, 3>, direction: &Vector<N, 3>) -> Option<Fac
     match kind {
         Kind::Cuboid(cuboid) => cuboid.face_ring(direction),
         Kind::Polytope(hull) => hull.face_ring(direction),
+        Kind::Triangle(triangle) => triangle.face_ring(direction),
         _ => None,
     }
 }

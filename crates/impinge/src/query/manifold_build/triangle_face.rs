@@ -62,7 +62,8 @@ pub(crate) fn on_face3<N: Real>(
     let Some(face) = &face else { return false };
     let Some(fences) = &Fences::new(&ground.base, face) else { return false };
     let lean = pose.vector(&face.normal);
-    let (top, tolerance) = (Top { face, fences }, asked.tolerance);
+    let all = u8::MAX >> (FaceRing::<N>::MOST - face.count);
+    let (top, tolerance) = (Top { face, fences, all }, asked.tolerance);
     let kept = Kept::new(asked);
     let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, kept };
     out.points.clear();
@@ -153,6 +154,8 @@ fn inward<N: Real>(side: &Vector<N, 2>) -> Vector<N, 2> {
 struct Top<'a, N: Real> {
     face: &'a FaceRing<N>,
     fences: &'a Fences<N>,
+    /// A bit for each corner or side.
+    all: u8,
 }
 
 impl<N: Real> Top<'_, N> {
@@ -170,14 +173,9 @@ impl<N: Real> Top<'_, N> {
         if at + 1 < self.face.count { at + 1 } else { 0 }
     }
 
-    /// A bit for each corner or side.
-    const fn all(&self) -> u8 {
-        u8::MAX >> (FaceRing::<N>::MOST - self.face.count)
-    }
-
     /// The same for the next of each corner.
     const fn of_next(&self, bits: u8) -> u8 {
-        (bits & self.all()) >> 1 | (bits & 1) << (self.face.count - 1)
+        (bits & self.all) >> 1 | (bits & 1) << (self.face.count - 1)
     }
 }
 
@@ -224,10 +222,10 @@ impl<N: Real> Meeting<'_, N> {
         let (ground, top, normal) = (self.ground, self.top, self.asked.normal);
         let slope = normal.dot(&self.lean);
         for (at, signs) in top.fences.top_signs.iter().enumerate() {
-            if signs.outside & top.all() != 0 {
+            if signs.outside & top.all != 0 {
                 continue;
             }
-            let touched = !signs.inside & top.all();
+            let touched = !signs.inside & top.all;
             let on = if touched == 0 { top.face.id } else { self.on_top(at, touched) };
             let point = ground.points[at];
             let height = (top.point(0) - point).dot(&self.lean) / slope;
@@ -236,7 +234,7 @@ impl<N: Real> Meeting<'_, N> {
         let [first, second, third] = &top.fences.base_signs;
         let outside = first.outside | second.outside | third.outside;
         let inside = first.inside & second.inside & third.inside;
-        let mut within = !outside & top.all();
+        let mut within = !outside & top.all;
         while within != 0 {
             let at = within.trailing_zeros() as usize;
             within &= within - 1;
@@ -282,7 +280,7 @@ impl<N: Real> Meeting<'_, N> {
             let own = fences.base_signs[side1];
             let crossed =
                 own.inside & top.of_next(own.outside) | own.outside & top.of_next(own.inside);
-            let mut both = parted & crossed & top.all();
+            let mut both = parted & crossed & top.all;
             while both != 0 {
                 let side2 = both.trailing_zeros() as usize;
                 both &= both - 1;

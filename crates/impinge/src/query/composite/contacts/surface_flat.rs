@@ -6,17 +6,19 @@ use core::cell::Cell;
 use smallvec::SmallVec;
 
 use super::super::between::Between;
+use super::super::bounds::enclosing;
+use super::around::Around;
 use super::candidates::{depth_in, search_box};
 use super::facts::{self, Finding, Notes, Standing, overlooks};
 use super::judge::{Case, Verdict, faces, judge};
-use super::near::Probe;
 use super::scene::{Scene, lying_of};
 use super::{
     CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
+use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, min};
-use crate::query::manifold_build::{Piece, build_on_face, merge};
+use crate::query::manifold_build::{Piece, build3, merge};
 use crate::query::separation::{Flat, FlatQuestion, Told, Touched};
 use crate::query::tiles::{LANES, Tiles};
 use crate::query::{ManifoldRequest, OnFace, Pair, on_face3, witness_feature3};
@@ -115,20 +117,19 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
         contacts: &mut CompositeContacts<N, 3>,
         (findings, notes): Found<'_, N>,
     ) -> Option<()> {
-        let (reach, reference) = (self.request.prediction, contacts.reference);
-        let aabb = search_box(self.between, reach);
+        let reference = contacts.reference;
         let around = &mut contacts.around;
+        let aabb = self.box_within(around);
         if !(around.reaches(self.parts, &aabb) && around.has_triangles_alone()) {
             return None;
         }
-        let probe = Probe::new(self.between, reach)?;
-        let (sight, mut clearance) = (probe.sight(around, &aabb), depth_in(&aabb, probe.center()));
-        let mut eights: SmallVec<[u8; LANES]> = SmallVec::new();
+        let (mut clearance, mut eights) =
+            (depth_in(&aabb, &self.center), SmallVec::<[u8; LANES]>::new());
         let count = around.parts().len();
         for (block, tiles) in around.tiles().iter().enumerate() {
-            let bounds = sight.bounds(tiles)?;
-            clearance = min(clearance, bounds.from_middle);
-            eights.push(bounds.near & (u8::MAX >> (LANES - (count - block * LANES).min(LANES))));
+            let sifted = self.question.sifted(tiles)?;
+            clearance = min(clearance, sifted.from_middle);
+            eights.push(sifted.near & (u8::MAX >> (LANES - (count - block * LANES).min(LANES))));
         }
         self.from = advanced(self.between, &Way { old: reference, clearance }, self.center);
         let around = &contacts.around;
@@ -146,6 +147,21 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
             }
         }
         self.ask(&near, (findings, notes))
+    }
+
+    /// A box around all that is within reach of the solid: around the box about its middle that holds it.
+    fn box_within(&self, around: &mut Around<N, 3>) -> Aabb<N, 3> {
+        let Flat::Polytope(hull) = self.question.solid else {
+            return search_box(self.between, self.request.prediction);
+        };
+        let (half, turn) = (around.half(hull), &self.between.pose21.rotation);
+        let mut extents = Vector::<N, 3>::repeat(hull.rounding() + self.request.prediction);
+        for row in 0..3 {
+            for axis in 0..3 {
+                extents[row] += turn[(row, axis)].abs() * half[axis];
+            }
+        }
+        enclosing(&Aabb::around(self.center, extents), &self.between.pose21)
     }
 
     /// Adds what is to be said of some triangles.
@@ -169,8 +185,12 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
                 Touched::Unclear(found) => Some(*found),
                 _ => eight.separation(lane, &seen.triangle),
             };
-            let found = self.plainly(&seen, &told, (&exact, &mut *notes));
-            findings.extend(found.unwrap_or_else(|| self.in_general(&seen, exact()?, notes)));
+            let found = self
+                .plainly(&seen, &told, (&exact, &mut *notes))
+                .unwrap_or_else(|| self.in_general(&seen, exact()?, notes));
+            if let Some(found) = found {
+                findings.push(found);
+            }
         }
         Some(())
     }
@@ -228,7 +248,10 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
             Verdict::Admitted => {
                 let exact = exact().filter(|exact| exact.distance == distance)?;
                 let witness = Separation { normal: inward(&normal), ..exact };
-                build_on_face(&pair, (&witness, tolerance), &self.request, raw);
+                let asked = self.asked(witness.normal, (Some(distance), tolerance));
+                if !on_face3(&pair, &asked, raw) {
+                    build3(&pair, &witness, &self.request, raw);
+                }
                 Standing::Own
             }
             Verdict::Face(face) => {
@@ -318,18 +341,16 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
 }
 
 impl<N: Real> Near<N> {
-    /// Adds one of eight triangles; with the first the rest become copies of it.
+    /// Adds one of eight triangles.
+    #[inline]
     fn push(&mut self, part: u32, tiles: &Tiles<N, 3>, lane: usize) {
+        let at = self.count & (LANES - 1);
         for (rows, given) in self.tiles.corners.iter_mut().zip(&tiles.corners) {
             for (row, given) in rows.iter_mut().zip(given) {
-                if self.count == 0 {
-                    *row = [given[lane]; LANES];
-                } else {
-                    row[self.count] = given[lane];
-                }
+                row[at] = given[lane];
             }
         }
-        self.parts[self.count] = part;
+        self.parts[at] = part;
         self.count += 1;
     }
 }

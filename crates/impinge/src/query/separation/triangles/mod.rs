@@ -8,6 +8,7 @@ mod ball;
 mod cuboid;
 mod meeting;
 mod polytope;
+mod sift;
 
 pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
 pub(crate) use self::meeting::{Flat, FlatQuestion, Told, Touched};
