@@ -12,7 +12,7 @@ use super::fences::{Base, Fences};
 use super::{Pair, RawManifold, tangents3};
 use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
 use crate::query::RawPoint;
-use crate::shape::{FaceRing, FeatureId, Kind, Triangle};
+use crate::shape::{Cuboid, FaceRing, FeatureId, Kind, Triangle};
 
 /// The least ratio of a triangle's height to its longest side.
 const LEAST_HEIGHT: f64 = 1.0 / 32.0;
@@ -47,19 +47,23 @@ pub(crate) fn on_face3<N: Real>(
     asked: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
+    on_shown_face(pair, asked, &mut None, out)
+}
+
+/// [`on_face3`] of one of many triangles: the face that the solid shows is kept, since it is that of most.
+pub(crate) fn on_shown_face<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    asked: &OnFace<N, 3>,
+    kept: &mut Option<FaceRing<N>>,
+    out: &mut RawManifold<N, 3>,
+) -> bool {
     let Pair { first, second, pose12: pose } = pair;
     let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
         return capsule_face::on_triangle(pair, asked, out);
     };
     let normal = asked.normal;
     let Some(ground) = Ground::new(triangle, pose, (normal, asked.tolerance)) else { return false };
-    let toward = pose.inverse_vector(&-normal);
-    let face = match second {
-        Kind::Cuboid(cuboid) => cuboid.face_ring(&toward),
-        Kind::Polytope(hull) => hull.face_ring(&toward),
-        _ => None,
-    };
-    let Some(face) = &face else { return false };
+    let Some(face) = shown(second, &pose.inverse_vector(&-normal), kept) else { return false };
     let Some(fences) = &Fences::new(&ground.base, face) else { return false };
     let lean = pose.vector(&face.normal);
     let all = u8::MAX >> (FaceRing::<N>::MOST - face.count);
@@ -71,6 +75,27 @@ pub(crate) fn on_face3<N: Real>(
     meeting.corners(out);
     meeting.crossings(out);
     meeting.kept.settle(out)
+}
+
+/// The face of few corners that a box or hull shows to a direction, from what is kept of it if it is the same.
+fn shown<'k, N: Real>(
+    solid: &Kind<'_, N, 3>,
+    toward: &Vector<N, 3>,
+    kept: &'k mut Option<FaceRing<N>>,
+) -> Option<&'k FaceRing<N>> {
+    let face = match solid {
+        Kind::Cuboid(_) => Cuboid::facing_face(toward)?,
+        Kind::Polytope(hull) => hull.facing_face(toward)?,
+        _ => return None,
+    };
+    if kept.as_ref().is_none_or(|ring| ring.id != FeatureId::Face(face)) {
+        *kept = match solid {
+            Kind::Cuboid(cuboid) => cuboid.face_ring_at(face),
+            Kind::Polytope(hull) => hull.face_ring_at(face),
+            _ => None,
+        };
+    }
+    kept.as_ref()
 }
 
 /// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.

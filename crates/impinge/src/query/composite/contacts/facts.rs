@@ -48,10 +48,20 @@ pub(super) struct Finding<N: Real, const D: usize> {
 pub(super) struct Notes<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: Points<N, D>,
-    pub(super) raw: RawManifold<N, D>,
+    raw: RawManifold<N, D>,
 }
 
 impl<N: Real, const D: usize> Notes<N, D> {
+    /// The points of all pieces, and the manifold that is made.
+    pub(super) const fn parted(&mut self) -> (&mut Points<N, D>, &RawManifold<N, D>) {
+        (&mut self.points, &self.raw)
+    }
+
+    /// The manifold that is made.
+    pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
+        &mut self.raw
+    }
+
     /// An empty manifold to be made.
     pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();

@@ -18,11 +18,11 @@ use super::{
 use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, min};
-use crate::query::manifold_build::{Piece, build3, merge};
+use crate::query::manifold_build::{Piece, build3, merge, on_shown_face};
 use crate::query::separation::{Flat, FlatQuestion, Told, Touched};
 use crate::query::tiles::{LANES, Tiles};
-use crate::query::{ManifoldRequest, OnFace, Pair, on_face3, witness_feature3};
-use crate::shape::{CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
+use crate::query::{ManifoldRequest, OnFace, Pair, witness_feature3};
+use crate::shape::{CompositeShape, FaceRing, FeatureId, Kind, SupportMap, Surface, Triangle};
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
@@ -35,15 +35,16 @@ pub(super) fn update_flat<N: Real>(
     request: &ManifoldRequest<N>,
 ) -> bool {
     let Some(mut resting) = Resting::new(between, request) else { return false };
-    let (mut findings, mut notes) = (Findings::new(), Notes::default());
-    let Some(()) = resting.find(contacts, (&mut findings, &mut notes)) else { return false };
+    let mut account = Account { findings: Findings::new(), notes: Notes::default(), ring: None };
+    let Some(()) = resting.find(contacts, &mut account) else { return false };
+    let Account { findings, notes, .. } = &mut account;
     let (reference, center) = (Some(resting.from), Some(resting.center));
-    if !is_settled(&findings) {
+    if !is_settled(findings) {
         let around = Some(&contacts.around);
         let query = Query { between, around, reference: &reference, request: &resting.request };
-        query.settle(&Scene::new(between, around), &mut findings, &mut notes);
+        query.settle(&Scene::new(between, around), findings, notes);
     }
-    contacts.conclude((request, merge), [reference, center], (&findings, N::ZERO), &notes);
+    contacts.conclude((request, merge), [reference, center], (findings, N::ZERO), notes);
     true
 }
 
@@ -80,8 +81,15 @@ struct Seen<N: Real> {
     tolerance: N,
 }
 
-/// What is found, and the points of it.
-type Found<'f, N> = (&'f mut Findings<N, 3>, &'f mut Notes<N, 3>);
+/// What is found, the points of it, and the face that the solid last showed.
+struct Account<N: Real> {
+    findings: Findings<N, 3>,
+    notes: Notes<N, 3>,
+    ring: Option<FaceRing<N>>,
+}
+
+/// Finds the separation of a triangle.
+type Exact<'f, N> = &'f dyn Fn() -> Option<Separation<N, 3>>;
 
 impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
     /// `None` of other solids, and of what is no surface.
@@ -115,7 +123,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,
-        (findings, notes): Found<'_, N>,
+        account: &mut Account<N>,
     ) -> Option<()> {
         let reference = contacts.reference;
         let around = &mut contacts.around;
@@ -141,12 +149,12 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
                 left &= left - 1;
                 near.push(around.parts()[block * LANES + lane], tiles, lane);
                 if near.count == LANES {
-                    self.ask(&near, (&mut *findings, &mut *notes))?;
+                    self.ask(&near, account)?;
                     near.count = 0;
                 }
             }
         }
-        self.ask(&near, (findings, notes))
+        self.ask(&near, account)
     }
 
     /// A box around all that is within reach of the solid: around the box about its middle that holds it.
@@ -165,7 +173,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
     }
 
     /// Adds what is to be said of some triangles.
-    fn ask(&self, near: &Near<N>, (findings, notes): Found<'_, N>) -> Option<()> {
+    fn ask(&self, near: &Near<N>, account: &mut Account<N>) -> Option<()> {
         if near.count == 0 {
             return Some(());
         }
@@ -186,10 +194,10 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
                 _ => eight.separation(lane, &seen.triangle),
             };
             let found = self
-                .plainly(&seen, &told, (&exact, &mut *notes))
-                .unwrap_or_else(|| self.in_general(&seen, exact()?, notes));
+                .plainly(&seen, &told, (&exact, &mut *account))
+                .unwrap_or_else(|| self.in_general(&seen, exact()?, &mut account.notes));
             if let Some(found) = found {
-                findings.push(found);
+                account.findings.push(found);
             }
         }
         Some(())
@@ -230,60 +238,64 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
         &self,
         seen: &Seen<N>,
         told: &Told<N>,
-        (exact, notes): (&dyn Fn() -> Option<Separation<N, 3>>, &mut Notes<N, 3>),
+        (exact, account): (Exact<'_, N>, &mut Account<N>),
     ) -> Option<Option<Finding<N, 3>>> {
-        let Told { distance, .. } = *told;
+        let (distance, tolerance) = (told.distance, seen.tolerance);
         if !distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
             return Some(None);
         }
         let normal = -self.frame.vector(&told.normal);
         let verdict = self.verdict(seen, told, &normal)?;
-        let seen_by_first = |face: &Vector<N, 3>| -self.turn.vector(face);
-        let inward = |normal: &Vector<N, 3>| -self.frame.inverse_vector(normal);
-        let (tolerance, pair) = (seen.tolerance, self.pair(seen));
-        let raw = notes.blank();
         let mut standing = match &verdict {
             Verdict::Nothing => return Some(None),
             Verdict::Refused => Standing::Left,
-            Verdict::Admitted => {
-                let exact = exact().filter(|exact| exact.distance == distance)?;
-                let witness = Separation { normal: inward(&normal), ..exact };
-                let asked = self.asked(witness.normal, (Some(distance), tolerance));
-                if !on_face3(&pair, &asked, raw) {
-                    build3(&pair, &witness, &self.request, raw);
-                }
-                Standing::Own
-            }
-            Verdict::Face(face) => {
-                let asked = self.asked(inward(&seen_by_first(face)), (Some(distance), tolerance));
-                if !on_face3(&pair, &asked, raw) {
-                    return None;
-                }
-                Standing::Own
-            }
-            Verdict::Snapped(face) | Verdict::Beyond(face) => {
-                let mut asked = self.asked(inward(&seen_by_first(face)), (None, tolerance));
-                asked.least = if distance > N::ZERO { distance } else { -N::INFINITY };
-                if !on_face3(&pair, &asked, raw) {
-                    return None;
-                }
-                let is_beyond = matches!(verdict, Verdict::Beyond(_));
-                if is_beyond { Standing::Beyond } else { Standing::Snapped }
-            }
+            Verdict::Admitted | Verdict::Face(_) => Standing::Own,
+            Verdict::Snapped(_) => Standing::Snapped,
+            Verdict::Beyond(_) => Standing::Beyond,
         };
+        account.notes.blank();
+        if standing != Standing::Left {
+            self.build(seen, (&verdict, &normal, distance), (exact, &mut *account))?;
+        }
+        let raw = account.notes.raw_mut();
         if overlooks(raw, distance, tolerance) {
             standing = Standing::Left;
             raw.points.clear();
         }
-        let (piece, lowest) = self.noted(seen, notes);
+        let (piece, lowest) = self.noted(seen, &mut account.notes);
         let face = verdict.face().filter(|_| standing != Standing::Left);
         Some(Some(Finding { distance, normal, piece, lowest, standing, face, tolerance }))
     }
 
-    /// What contacts along the normal of a face are asked for.
-    fn asked(&self, normal: Vector<N, 3>, (nearest, tolerance): (Option<N>, N)) -> OnFace<N, 3> {
-        let (least, prediction) = (-N::INFINITY, self.request.prediction);
-        OnFace { normal, least, nearest, prediction, tolerance }
+    /// Builds the manifold that a verdict asks for; `None` where that is left to the general way.
+    fn build(
+        &self,
+        seen: &Seen<N>,
+        (verdict, normal, distance): (&Verdict<N, 3>, &Vector<N, 3>, N),
+        (exact, account): (Exact<'_, N>, &mut Account<N>),
+    ) -> Option<()> {
+        let along = verdict.face().map_or(*normal, |face| -self.turn.vector(&face));
+        let inward = -self.frame.inverse_vector(&along);
+        let is_forced = matches!(verdict, Verdict::Snapped(_) | Verdict::Beyond(_));
+        let asked = OnFace {
+            normal: inward,
+            least: if is_forced && distance > N::ZERO { distance } else { -N::INFINITY },
+            nearest: if is_forced { None } else { Some(distance) },
+            prediction: self.request.prediction,
+            tolerance: seen.tolerance,
+        };
+        let (pair, Account { notes, ring, .. }) = (self.pair(seen), account);
+        let witness = match verdict {
+            Verdict::Admitted => Some(exact().filter(|exact| exact.distance == distance)?),
+            _ => None,
+        };
+        let raw = notes.raw_mut();
+        if on_shown_face(&pair, &asked, ring, raw) {
+            return Some(());
+        }
+        let witness = Separation { normal: inward, ..witness? };
+        build3(&pair, &witness, &self.request, raw);
+        Some(())
     }
 
     /// What the surface says of the way from the solid to a triangle; `None` where it asks for what is not
@@ -326,7 +338,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
     fn noted(&self, seen: &Seen<N>, notes: &mut Notes<N, 3>) -> (Piece<N, 3>, N) {
         let (start, parts) = (notes.points.len(), [0, seen.part]);
         let mut lowest = N::INFINITY;
-        let Notes { points, raw } = notes;
+        let (points, raw) = notes.parted();
         for point in &raw.points {
             lowest = min(lowest, point.distance);
             let mut placed = *point;

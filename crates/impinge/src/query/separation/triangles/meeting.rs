@@ -172,7 +172,7 @@ impl<N: Real> Eight<'_, '_, N> {
         let touched = match axis.kind {
             AxisKind::Triangle => Some(Touched::Face),
             AxisKind::Edges(edge, side) => {
-                let is_plain = is_crossing(&fin, solid, (edge, side), tolerance)
+                let is_plain = is_crossing(&fin, solid, (edge, side, &axis), tolerance)
                     && solid.is_sound(&fin, &axis);
                 let side = u32::try_from(side).expect("there are three sides");
                 is_plain.then_some(Touched::Seam(FeatureId::Edge(side)))
@@ -211,13 +211,13 @@ impl<N: Real> Meets<N> for Polytope<N, 3> {
     }
 }
 
-/// A side of the triangle, which is not thin, and an edge of the solid cross, seen along the direction across
-/// both, well inside of both.
+/// A side of the triangle, which is not thin, and an edge of the solid are as far apart as an axis across both
+/// says, and cross well inside of both as seen along it.
 #[inline]
 fn is_crossing<N: Real>(
     fin: &Fin<'_, N>,
     solid: &impl Faces<N>,
-    (edge, side): (u32, usize),
+    (edge, side, axis): (u32, usize, &Axis<N>),
     tolerance: N,
 ) -> bool {
     let [from, to] = solid.edge(FeatureId::Edge(edge)).map(|(_, end)| end.coords * fin.shrink);
@@ -225,6 +225,10 @@ fn is_crossing<N: Real>(
     let way = fin.corners[if side == 2 { 0 } else { side + 1 }] - start;
     let third = fin.corners[if side == 0 { 2 } else { side - 1 }] - start;
     let (along, arm) = (to - from, start - from);
+    // Another corner may be farther along the axis than the side: then the gap is not that of the two.
+    if (axis.normal.dot(&arm) + axis.gap).abs() > noise() {
+        return false;
+    }
     // The parameters of the nearest points of two lines, times the determinant.
     let (own, other, both) = (way.norm_squared(), along.norm_squared(), way.dot(&along));
     let (on_way, on_along) = (way.dot(&arm), along.dot(&arm));
