@@ -17,7 +17,11 @@ pub fn max<N: Real>(a: N, b: N) -> N {
 /// The largest magnitude among the components; 0 where all are zero or NaN.
 #[inline]
 pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
-    v.iter().fold(N::ZERO, |largest, &x| max(x.abs(), largest))
+    let mut largest = N::ZERO;
+    for axis in 0..D {
+        largest = max(v[axis].abs(), largest);
+    }
+    largest
 }
 
 /// The unit vector along `v` and the length of `v`; `None` for a zero or non-finite vector.

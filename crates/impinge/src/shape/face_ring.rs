@@ -57,15 +57,20 @@ impl<N: Real> FaceRing<N> {
 impl<N: Real> Cuboid<N, 3> {
     /// What [`core_feature`](super::SupportMap::core_feature) answers, if it is a face with an area.
     pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        match self.part_shown(direction) {
-            FeatureId::Face(index) => self.face_ring_at(index),
+        self.face_ring_at(Self::facing_face(direction)?)
+    }
+
+    /// The number of that face.
+    pub(crate) fn facing_face(direction: &Vector<N, 3>) -> Option<u32> {
+        match Self::part_shown(direction) {
+            FeatureId::Face(index) => Some(index),
             FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
         }
     }
 
     /// The name of what [`core_feature`](super::SupportMap::core_feature) answers of a box with a volume.
     #[inline]
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
+    pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
         Part::<3>::facing(direction, Tilt::usual()).name()
     }
 
@@ -93,7 +98,7 @@ impl<N: Real> Cuboid<N, 3> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ConvexHull, Feature, Kind, Shape, SupportMap};
+    use super::super::{ConvexHull, Feature, Kind, Shape, SupportMap, Triangle};
     use super::*;
 
     /// What a solid shows of itself in a ring and as a feature.
@@ -132,6 +137,10 @@ mod tests {
             }
             hull.core_feature(&way, &mut feature);
             faces += usize::from(same(hull.face_ring(&way), &feature, "a hull"));
+            let [a, b, c] = [corners[at % 8], corners[at / 8 % 8], corners[at / 64 % 8]];
+            let triangle = Triangle::new(a, b, c);
+            triangle.core_feature(&way, &mut feature);
+            faces += usize::from(same(triangle.face_ring(&way), &feature, "a triangle"));
         }
         assert!(faces > 500, "{faces} faces");
     }

@@ -240,8 +240,15 @@ impl<N: Real> Polytope<N, 2> {
 impl<N: Real> Polytope<N, 3> {
     /// What [`SupportMap::core_feature`] answers, if it is a face of few corners.
     pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        let Part::Face(index) = self.part_toward(direction, Tilt::usual()) else { return None };
-        self.face_ring_at(index)
+        self.face_ring_at(self.facing_face(direction)?)
+    }
+
+    /// The number of that face.
+    pub(crate) fn facing_face(&self, direction: &Vector<N, 3>) -> Option<u32> {
+        match self.part_toward(direction, Tilt::usual()) {
+            Part::Face(index) => Some(index),
+            Part::Side(_) | Part::Vertex(_) => None,
+        }
     }
 
     /// The name of what [`SupportMap::core_feature`] answers. A face may be known that it likely is, which is

@@ -60,7 +60,13 @@ impl<N: Real, const D: usize> Segment<N, D> {
 }
 
 /// The length of a vector, however short or long: its square need not be a number of the type.
+#[inline]
 pub(super) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+    // As `unit` has it, without the direction.
+    let squared = v.norm_squared();
+    if squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt() {
+        return squared.sqrt();
+    }
     unit(v).map_or(N::ZERO, |(_, length)| length)
 }
 

@@ -2,7 +2,7 @@
 
 use super::segment::length_of;
 use super::tilt::Tilt;
-use super::{ConvexPolyhedron, Feature, FeatureId, SupportMap, Triangle};
+use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, Triangle};
 use crate::math::{Matrix, Point, Real, Vector, cross, unit, unit_or};
 
 /// The plane (in two dimensions: the space) that a triangle spans.
@@ -264,6 +264,25 @@ fn side_id<const D: usize>(index: usize) -> FeatureId {
 /// The side between two corners next to each other, in either order.
 fn side_between(from: usize, to: usize) -> usize {
     if (from + 1) % 3 == to { from } else { to }
+}
+
+impl<N: Real> Triangle<N, 3> {
+    /// What [`SupportMap::core_feature`] answers, if it is the face.
+    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
+        let span = Span::of(self.corners())?;
+        if !span.lean_squared(direction).is_some_and(|lean| Tilt::usual().admits(lean)) {
+            return None;
+        }
+        let ring = self.ring(direction);
+        let id = FeatureId::Face(u32::from(ring[1] == 2));
+        let mut face = FaceRing::blank();
+        (face.id, face.normal) = (id, span.normal_toward(direction)?);
+        for at in 0..3 {
+            let (name, point) = self.point(ring[at]);
+            face.push(&point, [name, side_id::<3>(side_between(ring[at], ring[(at + 1) % 3]))]);
+        }
+        Some(face)
+    }
 }
 
 impl<N: Real> ConvexPolyhedron<N, 2> for Triangle<N, 2> {

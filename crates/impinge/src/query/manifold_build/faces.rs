@@ -1,4 +1,4 @@
-//! Boxes and hulls that show each other whole faces of few corners: the corners of their common area in one
+//! Boxes, hulls and triangles that show each other whole faces of few corners: the corners of their common area in one
 //! go.
 //!
 //! Such are most contacts of flat solids. Both faces are laid out in lanes, and how far inside of all sides
@@ -15,7 +15,7 @@ use super::triangle_face::along_side;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
 use crate::math::lanes::{dot, load, minus, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, max_component};
-use crate::shape::{FaceRing, FeatureId, Kind};
+use crate::shape::{Cuboid, FaceRing, FeatureId, Kind};
 
 /// How many corners or sides are side by side.
 const LANES: usize = FaceRing::<f32>::MOST;
@@ -34,13 +34,14 @@ pub(super) fn build<N: Real>(
     }
     let toward = pair.pose12.inverse_vector(&-normal);
     let [likely1, likely2] = [likely.map(|[first, _]| first), likely.map(|[_, second]| second)];
-    let Some(part1) = part(&pair.first, &normal, likely1) else { return Err([None; 2]) };
-    let parts = [Some(part1), part(&pair.second, &toward, likely2)];
     let [mut first, mut second] = [FaceRing::blank(), FaceRing::blank()];
-    let is_whole = |kind: &Kind<'_, N, 3>, part: Option<FeatureId>, ring: &mut FaceRing<N>| matches!(part, Some(FeatureId::Face(face)) if fill(kind, face, ring));
-    if !is_whole(&pair.first, parts[0], &mut first)
-        || !is_whole(&pair.second, parts[1], &mut second)
-    {
+    let part1 = match shown(&pair.first, (&normal, likely1), &mut first) {
+        Err(None) => return Err([None; 2]),
+        other => other,
+    };
+    let part2 = shown(&pair.second, (&toward, likely2), &mut second);
+    let parts = [part1, part2].map(|part| part.unwrap_or_else(|part| part));
+    if part1.is_err() || part2.is_err() {
         return Err(parts);
     }
     let (first, second) = (&first, &second);
@@ -61,26 +62,28 @@ pub(super) fn build<N: Real>(
     Ok(())
 }
 
-/// The part that a box or a hull shows to a direction.
-fn part<N: Real>(
+/// Makes a blank ring the face that a solid shows to a direction, if that has few corners and an area.
+/// Either way gives the name of what it shows, where that is known of a box or a hull.
+fn shown<N: Real>(
     kind: &Kind<'_, N, 3>,
-    direction: &Vector<N, 3>,
-    likely: Option<u32>,
-) -> Option<FeatureId> {
-    match kind {
-        Kind::Cuboid(cuboid) => Some(cuboid.part_shown(direction)),
-        Kind::Polytope(hull) => Some(hull.part_shown(direction, likely)),
-        _ => None,
-    }
-}
-
-/// Makes a blank ring a face of a box or a hull, if that has few corners and an area.
-fn fill<N: Real>(kind: &Kind<'_, N, 3>, face: u32, ring: &mut FaceRing<N>) -> bool {
-    match kind {
-        Kind::Cuboid(cuboid) => cuboid.fill_ring(face, ring),
-        Kind::Polytope(hull) => hull.fill_ring(face, ring),
+    (direction, likely): (&Vector<N, 3>, Option<u32>),
+    ring: &mut FaceRing<N>,
+) -> Result<Option<FeatureId>, Option<FeatureId>> {
+    let part = match kind {
+        Kind::Cuboid(_) => Cuboid::part_shown(direction),
+        Kind::Polytope(hull) => hull.part_shown(direction, likely),
+        Kind::Triangle(triangle) => {
+            *ring = triangle.face_ring(direction).ok_or(None)?;
+            return Ok(None);
+        }
+        _ => return Err(None),
+    };
+    let is_face = match (kind, part) {
+        (Kind::Cuboid(cuboid), FeatureId::Face(face)) => cuboid.fill_ring(face, ring),
+        (Kind::Polytope(hull), FeatureId::Face(face)) => hull.fill_ring(face, ring),
         _ => false,
-    }
+    };
+    if is_face { Ok(Some(part)) } else { Err(Some(part)) }
 }
 
 /// A face as seen along the normal of the manifold. What is beyond the corners that there are means

@@ -75,13 +75,29 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
         }
         _ => (),
     }
-    let kept = merging.kept(patches);
-    patches.clear();
-    let (layout, mut members) = (Layout::of(merging), Members::new());
+    let (kept, mut members, mut made) = (merging.kept(patches), Members::new(), 0);
     let choosing = Choosing { merging, kept: &kept };
-    for group in &layout.groups {
-        patches.push(choosing.patch(group, &layout.order, &mut members, ids));
+    if have_own_normals(merging.pieces) {
+        // Each piece is a patch of its own; they come in the order of their parts.
+        for (lead, piece) in merging.pieces.iter().enumerate() {
+            let Some(deepest) = merging.deepest_of(piece) else { continue };
+            if merging.points[deepest].distance <= merging.request.prediction {
+                let out = (blank(patches, made, piece.normal), &mut *ids);
+                choosing.fill((lead, deepest), core::iter::once(lead), &mut members, out);
+                made += 1;
+            }
+        }
+    } else {
+        let layout = Layout::of(merging);
+        for group in &layout.groups {
+            let own = layout.order.iter().filter(|(_, lead)| *lead == group.lead);
+            let out = (blank(patches, made, merging.pieces[group.lead].normal), &mut *ids);
+            let pieces = own.map(|(piece, _)| *piece);
+            choosing.fill((group.lead, group.deepest), pieces, &mut members, out);
+            made += 1;
+        }
     }
+    patches.truncate(made);
 }
 
 /// Writes the only point of all as a patch, if it is near enough; answers how many patches there are.
@@ -166,16 +182,16 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
 }
 
 /// The pieces of one patch.
-pub(super) struct Group {
+struct Group {
     /// The piece whose point is the deepest, and that point.
-    pub(super) lead: usize,
-    pub(super) deepest: usize,
+    lead: usize,
+    deepest: usize,
     /// The first of the parts.
     first: [u32; 2],
 }
 
 /// Pieces and the leads of their groups.
-pub(super) type Order = SmallVec<[(usize, usize); 16]>;
+type Order = SmallVec<[(usize, usize); 16]>;
 
 /// Which pieces make which patches.
 struct Layout {
@@ -189,9 +205,6 @@ impl Layout {
     fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
         let pieces = merging.pieces;
         let mut order = Order::new();
-        if have_own_normals(pieces) {
-            return Self::apart(merging);
-        }
         for (index, piece) in pieces.iter().enumerate() {
             if let Some(deepest) = merging.deepest_of(piece) {
                 order.push((index, deepest));
@@ -222,21 +235,6 @@ impl Layout {
         }
         groups.retain(|group| merging.points[group.deepest].distance <= merging.request.prediction);
         groups.sort_by_key(|group| group.first);
-        Self { groups, order }
-    }
-}
-
-impl Layout {
-    /// Each piece is a patch of its own; they come in the order of their parts.
-    fn apart<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
-        let (mut groups, mut order) = (SmallVec::new(), Order::new());
-        for (lead, piece) in merging.pieces.iter().enumerate() {
-            let Some(deepest) = merging.deepest_of(piece) else { continue };
-            if merging.points[deepest].distance <= merging.request.prediction {
-                order.push((lead, lead));
-                groups.push(Group { lead, deepest, first: piece.parts });
-            }
-        }
         Self { groups, order }
     }
 }

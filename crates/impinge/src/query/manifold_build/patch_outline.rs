@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use super::super::{PairIds, RawPoint};
 use super::frame::Candidate;
-use super::patch::{Group, Kept, Merging, Order, Patch, PatchPoint, ordering};
+use super::patch::{Kept, Merging, PatchPoint, ordering};
 use super::reduce;
 use crate::math::{Real, Space, Vector, cross2};
 
@@ -33,35 +33,36 @@ pub(super) struct Choosing<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// A patch of at most as many points as are asked for: the deepest and, of the outline, those that
-    /// span most. The list of members is used again and again.
-    pub(super) fn patch(
+    /// Fills a patch, given the piece with the deepest point, that point and all pieces, with at most as many
+    /// points as are asked for: the deepest and, of the outline, those that span most. The list of members is
+    /// used again and again.
+    pub(super) fn fill(
         &self,
-        group: &Group,
-        order: &Order,
+        (lead, deepest): (usize, usize),
+        pieces: impl Iterator<Item = usize> + Clone,
         members: &mut Members<N>,
-        ids: &mut PairIds,
-    ) -> Patch<N, D> {
-        let lead = &self.merging.pieces[group.lead];
-        let normal = lead.normal;
-        let is_alone = lead.points.len() == 1
-            && order.iter().filter(|(_, lead)| *lead == group.lead).count() == 1;
-        if is_alone {
-            let id = self.kept[group.deepest].unwrap_or_else(|| ids.next());
-            let raw = RawPoint { id, code: 0, ..self.merging.points[group.deepest] };
-            let mut points = SmallVec::new();
-            points.push(PatchPoint { raw, parts: lead.parts });
-            return Patch { normal, points };
+        (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
+    ) {
+        let piece = &self.merging.pieces[lead];
+        if piece.points.len() == 1 && pieces.clone().count() == 1 {
+            let id = self.kept[deepest].unwrap_or_else(|| ids.next());
+            let raw = RawPoint { id, code: 0, ..self.merging.points[deepest] };
+            return out.push(PatchPoint { raw, parts: piece.parts });
         }
-        let tangents = (N::tables().tangents)(&normal);
-        self.gather(group, order, &tangents, members);
+        let tangents = (N::tables().tangents)(&piece.normal);
+        self.gather((lead, deepest), pieces, &tangents, members);
         let count = self.drop_copies(members);
         let members = &members[..count];
         // In the plane two points delimit all there is.
         let is_line = tangents[1] == Vector::<N, D>::zeros();
         let most = self.merging.request.max_points.max(1);
         let limit = if is_line { most.min(2) } else { most };
-        let lowest = self.merging.points[group.deepest].distance;
+        let lowest = self.merging.points[deepest].distance;
+        let level = lowest + self.merging.tolerance;
+        // Two points are their own outline.
+        if count <= 2 && members.iter().any(|member| self.distance(member) <= level) {
+            return self.points(members, &[0, 1][..count], (lowest, limit), (out, ids));
+        }
         let (mut few, mut many) = ([0; 2 * FEW + 2], Vec::new());
         let space: &mut [u32] = if count <= FEW {
             &mut few
@@ -69,45 +70,46 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             many.resize(2 * count + 2, 0);
             &mut many
         };
-        let length = self.outline(members, lowest + self.merging.tolerance, space);
-        let points = self.points(members, &space[..length], (lowest, limit), ids);
-        Patch { normal, points }
+        let length = self.outline(members, level, space);
+        self.points(members, &space[..length], (lowest, limit), (out, ids));
     }
 
-    /// The points chosen of an outline, in the order of their numbers; one of them has the distance of
+    /// Appends the points chosen of an outline, in the order of their numbers; one of them has the distance of
     /// the deepest.
     fn points(
         &self,
         members: &[Member<N>],
         outline: &[u32],
         (lowest, limit): (N, usize),
-        ids: &mut PairIds,
-    ) -> SmallVec<[PatchPoint<N, D>; 4]> {
+        (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
+    ) {
         let member = |index: usize| &members[outline[index] as usize];
         let level = lowest + self.merging.tolerance;
         let deepest = super::deepest_of(outline.len(), level, |index| {
-            (self.kept[member(index).point].is_some(), self.distance(member(index)))
+            let member = member(index);
+            (self.kept[member.point].is_some(), self.distance(member))
         });
-        let mut named: SmallVec<[(u32, usize); 8]> = SmallVec::new();
-        let mut name = |index: usize| {
-            named.push((self.kept[member(index).point].unwrap_or_else(|| ids.next()), index));
-        };
-        if outline.len() <= limit {
-            (0..outline.len()).for_each(&mut name);
-        } else {
-            self.chosen(members, outline, (deepest, limit)).into_iter().for_each(&mut name);
-        }
-        named.sort_unstable();
-        let mut points: SmallVec<[PatchPoint<N, D>; 4]> = SmallVec::new();
-        for &(id, index) in &named {
+        let mut put = |index: usize| {
             let Member { piece, point, .. } = *member(index);
+            let id = self.kept[point].unwrap_or_else(|| ids.next());
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
             if index == deepest {
                 raw.distance = lowest;
             }
-            points.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+            let mut at = out.len();
+            out.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+            while at > 0 && out[at - 1].raw.id > id {
+                out.swap(at - 1, at);
+                at -= 1;
+            }
+        };
+        if outline.len() <= limit {
+            (0..outline.len()).for_each(put);
+        } else {
+            for index in self.chosen(members, outline, (deepest, limit)) {
+                put(index);
+            }
         }
-        points
     }
 
     fn distance(&self, member: &Member<N>) -> N {
@@ -118,27 +120,26 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// where its coordinates are no numbers.
     fn gather(
         &self,
-        group: &Group,
-        order: &Order,
+        (lead, deepest): (usize, usize),
+        pieces: impl Iterator<Item = usize>,
         tangents: &[Vector<N, D>; 2],
         members: &mut Members<N>,
     ) {
-        let Merging { request, pieces, points, .. } = *self.merging;
-        let origin = points[group.deepest].point1;
+        let Merging { request, points, .. } = *self.merging;
+        let origin = points[deepest].point1;
         members.clear();
-        members.push(Member {
-            flat: Vector::<N, 2>::zeros(),
-            piece: group.lead,
-            point: group.deepest,
-        });
-        for (piece, _) in order.iter().filter(|(_, lead)| *lead == group.lead) {
-            for point in pieces[*piece].points.clone().filter(|point| *point != group.deepest) {
+        members.push(Member { flat: Vector::<N, 2>::zeros(), piece: lead, point: deepest });
+        for piece in pieces {
+            for point in self.merging.pieces[piece].points.clone() {
+                if point == deepest {
+                    continue;
+                }
                 let arm = points[point].point1 - origin;
                 let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
                 let is_turning = request.sine > N::ZERO;
                 let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
                 if points[point].distance <= request.prediction + reach {
-                    members.push(Member { flat, piece: *piece, point });
+                    members.push(Member { flat, piece, point });
                 }
             }
         }
@@ -167,7 +168,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// parts. Answers how many stay, which are the first.
     fn drop_copies(&self, members: &mut [Member<N>]) -> usize {
         let near = N::lit(4.0) * self.merging.tolerance;
-        members.sort_by(by_place);
+        sort(members);
         // The first ones are those kept.
         let (mut count, mut is_exchanged) = (0, false);
         for next in 0..members.len() {
@@ -189,7 +190,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
         if is_exchanged {
             // An exchange may have taken a point past its neighbours.
-            members[..count].sort_by(by_place);
+            sort(&mut members[..count]);
         }
         count
     }
@@ -221,6 +222,22 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
+/// Sorts points along the first tangent, then along the second; equal ones stay as they are.
+#[inline]
+fn sort<N: Real>(members: &mut [Member<N>]) {
+    if members.len() > FEW {
+        return members.sort_by(by_place);
+    }
+    for next in 1..members.len() {
+        let mut at = next;
+        while at > 0 && by_place(&members[at], &members[at - 1]).is_lt() {
+            members.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}
+
+#[inline]
 fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);
     ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))

@@ -12,7 +12,7 @@ use super::fences::{Base, Fences};
 use super::{Pair, RawManifold, tangents3};
 use crate::math::{Point, Pose, Real, Vector, cross2, max, min};
 use crate::query::RawPoint;
-use crate::shape::{FaceRing, FeatureId, Kind, Triangle};
+use crate::shape::{Cuboid, FaceRing, FeatureId, Kind, Triangle};
 
 /// The least ratio of a triangle's height to its longest side.
 const LEAST_HEIGHT: f64 = 1.0 / 32.0;
@@ -47,22 +47,27 @@ pub(crate) fn on_face3<N: Real>(
     asked: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
+    on_shown_face(pair, asked, &mut None, out)
+}
+
+/// [`on_face3`] of one of many triangles: the face that the solid shows is kept, since it is that of most.
+pub(crate) fn on_shown_face<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    asked: &OnFace<N, 3>,
+    kept: &mut Option<FaceRing<N>>,
+    out: &mut RawManifold<N, 3>,
+) -> bool {
     let Pair { first, second, pose12: pose } = pair;
     let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
         return capsule_face::on_triangle(pair, asked, out);
     };
     let normal = asked.normal;
     let Some(ground) = Ground::new(triangle, pose, (normal, asked.tolerance)) else { return false };
-    let toward = pose.inverse_vector(&-normal);
-    let face = match second {
-        Kind::Cuboid(cuboid) => cuboid.face_ring(&toward),
-        Kind::Polytope(hull) => hull.face_ring(&toward),
-        _ => None,
-    };
-    let Some(face) = &face else { return false };
+    let Some(face) = shown(second, &pose.inverse_vector(&-normal), kept) else { return false };
     let Some(fences) = &Fences::new(&ground.base, face) else { return false };
     let lean = pose.vector(&face.normal);
-    let (top, tolerance) = (Top { face, fences }, asked.tolerance);
+    let all = u8::MAX >> (FaceRing::<N>::MOST - face.count);
+    let (top, tolerance) = (Top { face, fences, all }, asked.tolerance);
     let kept = Kept::new(asked);
     let mut meeting = Meeting { asked, ground: &ground, top, lean, tolerance, kept };
     out.points.clear();
@@ -70,6 +75,27 @@ pub(crate) fn on_face3<N: Real>(
     meeting.corners(out);
     meeting.crossings(out);
     meeting.kept.settle(out)
+}
+
+/// The face of few corners that a box or hull shows to a direction, from what is kept of it if it is the same.
+fn shown<'k, N: Real>(
+    solid: &Kind<'_, N, 3>,
+    toward: &Vector<N, 3>,
+    kept: &'k mut Option<FaceRing<N>>,
+) -> Option<&'k FaceRing<N>> {
+    let face = match solid {
+        Kind::Cuboid(_) => Cuboid::facing_face(toward)?,
+        Kind::Polytope(hull) => hull.facing_face(toward)?,
+        _ => return None,
+    };
+    if kept.as_ref().is_none_or(|ring| ring.id != FeatureId::Face(face)) {
+        *kept = match solid {
+            Kind::Cuboid(cuboid) => cuboid.face_ring_at(face),
+            Kind::Polytope(hull) => hull.face_ring_at(face),
+            _ => None,
+        };
+    }
+    kept.as_ref()
 }
 
 /// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.
@@ -153,6 +179,8 @@ fn inward<N: Real>(side: &Vector<N, 2>) -> Vector<N, 2> {
 struct Top<'a, N: Real> {
     face: &'a FaceRing<N>,
     fences: &'a Fences<N>,
+    /// A bit for each corner or side.
+    all: u8,
 }
 
 impl<N: Real> Top<'_, N> {
@@ -170,14 +198,9 @@ impl<N: Real> Top<'_, N> {
         if at + 1 < self.face.count { at + 1 } else { 0 }
     }
 
-    /// A bit for each corner or side.
-    const fn all(&self) -> u8 {
-        u8::MAX >> (FaceRing::<N>::MOST - self.face.count)
-    }
-
     /// The same for the next of each corner.
     const fn of_next(&self, bits: u8) -> u8 {
-        (bits & self.all()) >> 1 | (bits & 1) << (self.face.count - 1)
+        (bits & self.all) >> 1 | (bits & 1) << (self.face.count - 1)
     }
 }
 
@@ -224,10 +247,10 @@ impl<N: Real> Meeting<'_, N> {
         let (ground, top, normal) = (self.ground, self.top, self.asked.normal);
         let slope = normal.dot(&self.lean);
         for (at, signs) in top.fences.top_signs.iter().enumerate() {
-            if signs.outside & top.all() != 0 {
+            if signs.outside & top.all != 0 {
                 continue;
             }
-            let touched = !signs.inside & top.all();
+            let touched = !signs.inside & top.all;
             let on = if touched == 0 { top.face.id } else { self.on_top(at, touched) };
             let point = ground.points[at];
             let height = (top.point(0) - point).dot(&self.lean) / slope;
@@ -236,7 +259,7 @@ impl<N: Real> Meeting<'_, N> {
         let [first, second, third] = &top.fences.base_signs;
         let outside = first.outside | second.outside | third.outside;
         let inside = first.inside & second.inside & third.inside;
-        let mut within = !outside & top.all();
+        let mut within = !outside & top.all;
         while within != 0 {
             let at = within.trailing_zeros() as usize;
             within &= within - 1;
@@ -282,7 +305,7 @@ impl<N: Real> Meeting<'_, N> {
             let own = fences.base_signs[side1];
             let crossed =
                 own.inside & top.of_next(own.outside) | own.outside & top.of_next(own.inside);
-            let mut both = parted & crossed & top.all();
+            let mut both = parted & crossed & top.all;
             while both != 0 {
                 let side2 = both.trailing_zeros() as usize;
                 both &= both - 1;

@@ -63,7 +63,8 @@ pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
 pub(crate) use triangles::{
-    BallQuestion, Separations, Sighted, separations2, separations3, sighted,
+    BallQuestion, Flat, FlatQuestion, Separations, Sighted, Told, Touched, separations2,
+    separations3, sighted,
 };
 pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
 

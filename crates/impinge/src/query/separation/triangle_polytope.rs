@@ -207,7 +207,7 @@ fn best_edges<N: Real>(
 }
 
 /// The gap along an axis is there, held against the farthest points of both.
-fn is_sound<N: Real>(fin: &Fin<'_, N>, hull: &Polytope<N, 3>, axis: &Axis<N>) -> bool {
+pub(super) fn is_sound<N: Real>(fin: &Fin<'_, N>, hull: &Polytope<N, 3>, axis: &Axis<N>) -> bool {
     let top = -axis.normal.dot(&hull.core_support(&-axis.normal).coords) * fin.shrink;
     let (_, high) = fin.range(&axis.normal);
     -high - top >= axis.gap - N::lit(4.0) * noise::<N>()

@@ -2,14 +2,17 @@
 //! in either: a plane that parts two solids bounds their distance from below, and two of their points
 //! from above.
 
-use super::{Separations, general, separation, separations3, triangle_cuboid, triangle_polytope};
+use super::{
+    Flat, FlatQuestion, Separations, Touched, general, separation, separations3, triangle_cuboid,
+    triangle_polytope,
+};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::noise::Noise;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
+use crate::shape::{Ball, ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
 
 impl Noise {
     fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
@@ -233,7 +236,63 @@ fn check_together<N: Real>(
         };
         assert_eq!(*found, alone, "round {round}");
     }
+    if let Some(flat) = Flat::new(solid) {
+        let origin = Vector::<N, 3>::zeros();
+        let question = FlatQuestion { solid: flat, pose12: *pose12, limit, origin };
+        for (block, tiles) in tiles.iter().enumerate() {
+            let some = |at: usize| at.min(count);
+            let range = some(block * LANES)..some((block + 1) * LANES);
+            check_told(&question, tiles, (&triangles[range.clone()], &found[range]), round);
+        }
+    }
     found.iter().filter(|found| found.is_some()).count()
+}
+
+/// What a box or hull is told of eight triangles is true of the separation of each.
+fn check_told<N: Real>(
+    question: &FlatQuestion<'_, N>,
+    tiles: &Tiles<N, 3>,
+    (triangles, found): (&[Triangle<N, 3>], &[Option<Separation<N, 3>>]),
+    round: usize,
+) {
+    let sifted = question.sifted(tiles).expect("there are vectors");
+    let eight = question.eight(tiles).expect("there are vectors");
+    let (pose12, reach) = (question.pose12, question.solid.reach());
+    let center = match question.solid {
+        Flat::Cuboid(cuboid) => cuboid.center(),
+        Flat::Polytope(hull) => hull.center(),
+    };
+    let middle = (Ball::new(N::ZERO), Pose::from_translation(pose12.point(&center).coords));
+    for (lane, (triangle, found)) in triangles.iter().zip(found).enumerate() {
+        assert!(found.is_none() || sifted.near >> lane & 1 == 1, "round {round}: sifted out");
+        let pose = middle.1.inverse();
+        let pair =
+            Pair { first: Kind::Ball(&middle.0), second: Kind::Triangle(triangle), pose12: pose };
+        // Of what is so large that squares have no end nothing is known.
+        let away = separation(&pair, N::INFINITY).map_or(N::INFINITY, |found| found.distance);
+        assert!(sifted.from_middle <= away, "round {round}: {} {away}", sifted.from_middle);
+        if !eight.is_sound() || eight.is_beyond(lane) {
+            continue;
+        }
+        let sizes = triangle.reach() + reach + pose12.translation.norm();
+        let tolerance = N::lit(16.0) * N::EPSILON * sizes;
+        let Some(told) = eight.told(lane, triangle, tolerance) else {
+            assert_eq!(*found, None, "round {round}");
+            continue;
+        };
+        match told.touched {
+            // Where the points lie is not known then.
+            Touched::Face => {}
+            Touched::Unclear(separation) => assert_eq!(*found, Some(separation), "round {round}"),
+            Touched::Seam(feature) => {
+                let found = found.expect("it is told of");
+                assert_eq!((found.distance, found.normal), (told.distance, told.normal));
+                let part = triangle.part_at(&found.point1, &found.normal, tolerance);
+                assert_eq!(part, Some(feature), "round {round}");
+            }
+        }
+        assert_eq!(eight.separation(lane, triangle), *found, "round {round}");
+    }
 }
 
 #[test]

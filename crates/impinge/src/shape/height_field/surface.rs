@@ -38,10 +38,11 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     }
 
     fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
-        let corners = self.corners(part);
-        let [row, column] = corners[0];
-        let is_behind =
-            || self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO;
+        let is_behind = || {
+            let corners = self.corners(part);
+            let [row, column] = corners[0];
+            self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO
+        };
         !(self.is_one_sided && is_behind())
     }
 }
@@ -100,7 +101,8 @@ impl<N: Real> Fold<N> {
 
 impl<N: Real> HeightField<N, 3> {
     fn points_of(&self, corners: &[GridPoint; 3]) -> [Point<N, 3>; 3] {
-        corners.map(|[row, column]| self.grid.point(row, column))
+        let point = |[row, column]: GridPoint| self.grid.point(row, column);
+        [point(corners[0]), point(corners[1]), point(corners[2])]
     }
 
     /// The unit normal on the front of a triangle; zero without area.
@@ -143,8 +145,11 @@ impl<N: Real> HeightField<N, 3> {
         // That of a side along a row or column lies in the cell before or after, that of a diagonal in
         // the cell itself.
         let before = [row + usize::from(a[0] != b[0]), column + usize::from(a[1] != b[1])];
-        let cells = [before, [row + 1, column + 1]];
-        self.in_cells(cells.into_iter())
+        let after = [row + 1, column + 1];
+        let [first, second, third] = own;
+        let least = |at: usize| first[at].min(second[at]).min(third[at]) + 1;
+        let beyond = if before == [least(0), least(1)] { after } else { before };
+        self.in_cells([beyond].into_iter())
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 

@@ -146,6 +146,9 @@ fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
 /// Below this height over its longest side a triangle has no area: the difference of coordinates,
 /// or the rounding of the coordinates themselves, may be all there is.
 pub(super) fn noise<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
-    let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
+    let mut farthest = N::ZERO;
+    for corner in corners {
+        farthest = max(farthest, max_component(&corner.coords));
+    }
     N::EPSILON * max(N::lit(16.0) * longest, N::TWO * farthest)
 }

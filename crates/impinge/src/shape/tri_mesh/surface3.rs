@@ -11,15 +11,14 @@ use crate::shape::FeatureId;
 /// The unit normal on the side that sees the corners counter-clockwise; zero without area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
     let [a, b, c] = corners;
-    let lengths = [b - a, c - b, a - c].map(|side| length_of(&side));
+    let lengths = [length_of(&(b - a)), length_of(&(c - b)), length_of(&(a - c))];
     let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
     let longest = longer(longer(0, 1), 2);
     // The two shorter sides lose least when multiplied.
     let tip = corners[(longest + 2) % 3];
     let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
     let scale = lengths[longest].power_of_two_below();
-    let [first, second] = sides.map(|side| side / scale);
-    let found = unit(&cross(&first, &second));
+    let found = unit(&cross(&(sides[0] / scale), &(sides[1] / scale)));
     let height = |area: N| area * scale / (lengths[longest] / scale);
     let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
     found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)

@@ -52,8 +52,18 @@ pub(super) struct Notes<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Notes<N, D> {
+    /// The points of all pieces, and the manifold that is made.
+    pub(super) const fn parted(&mut self) -> (&mut Points<N, D>, &RawManifold<N, D>) {
+        (&mut self.points, &self.raw)
+    }
+
+    /// The manifold that is made.
+    pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
+        &mut self.raw
+    }
+
     /// An empty manifold to be made.
-    fn blank(&mut self) -> &mut RawManifold<N, D> {
+    pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
         &mut self.raw
     }
@@ -221,7 +231,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             standing
         }
     };
-    if overlooks(raw, &found, tolerance) {
+    if overlooks(raw, found.distance, tolerance) {
         standing = Standing::Left;
         raw.points.clear();
     }
@@ -276,12 +286,12 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
 /// cut to where the other part is above it, may end beside the overlap.
-fn overlooks<N: Real, const D: usize>(
+pub(super) fn overlooks<N: Real, const D: usize>(
     raw: &RawManifold<N, D>,
-    found: &Separation<N, D>,
+    distance: N,
     tolerance: N,
 ) -> bool {
-    let highest = if found.distance <= N::ZERO { tolerance } else { N::INFINITY };
+    let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
     !raw.points.iter().any(|point| point.distance <= highest)
 }
 

@@ -24,6 +24,7 @@ mod resolve;
 mod scene;
 mod sight;
 mod surface_ball;
+mod surface_flat;
 #[cfg(test)]
 mod surface_tests;
 mod view;

@@ -104,11 +104,17 @@ fn is_explained<N: Space<D>, const D: usize>(
     };
     // The plane that is known to part the two best may do so well enough once they are moved.
     let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
-    let (mut asked, room) = (ways.iter().filter(is_asked), -finding.tolerance);
-    asked.clone().any(|way| rest(way) > room) || {
+    let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -finding.tolerance);
+    for way in ways.iter().filter(is_asked) {
+        if rest(way) > room {
+            return true;
+        }
+        asked.push(way);
+    }
+    !asked.is_empty() && {
         let points = &notes.points[finding.piece.points.clone()];
         let mut placed = None;
-        asked.any(|way| {
+        asked.into_iter().any(|way| {
             let shift = way.normal * way.depth;
             // A point of the part that is still well within the solid says that they are not parted.
             let is_held = points.iter().any(|point| {

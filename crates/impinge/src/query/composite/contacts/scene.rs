@@ -295,6 +295,15 @@ impl<N: Space<D>, const D: usize> Lying<N, D> {
     }
 }
 
+/// How a convex first shape and a triangle of a surface lie, which comes first by its kind: the frame of
+/// the triangle in that of the shape put through its origin, and the pose of the shape in it; given the
+/// rotation of the surface's frame in that of the shape.
+pub(super) fn lying_of<N: Space<D>, const D: usize>(turn: Pose<N, D>) -> (Pose<N, D>, Pose<N, D>) {
+    let own = Pose::identity();
+    let Lying { frame, pose12, .. } = Lying::new([&own, &own], turn, true);
+    (frame, pose12)
+}
+
 impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
     fn new(bodies: [Body<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
         let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();

@@ -8,6 +8,7 @@ use super::facts::{self, Finding, Notes, Standing, is_beside, is_certain, of_bal
 use super::judge::{Case, Verdict, faces, judge};
 use super::over::over3;
 use super::scene::Scene;
+use super::surface_flat::update_flat;
 use super::{
     CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
@@ -25,14 +26,16 @@ const ROUNDING: f64 = 16.0;
 /// Most of these cost no more than a look at whether their box meets the ball's.
 const MOST_ROOMY: usize = 5 * LANES;
 
-/// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general
-/// way, as of all other solids.
+/// Brings the contacts of a ball and a surface up to date, or of a box or hull; answers false where that is left
+/// to the general way, as of all other solids.
 pub(crate) fn update_on_surface<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
     between: &Between<'_, N, 3>,
     request: &ManifoldRequest<N>,
 ) -> bool {
-    let Some(mut rolling) = Rolling::new(between, request) else { return false };
+    let Some(mut rolling) = Rolling::new(between, request) else {
+        return update_flat(contacts, between, request);
+    };
     let (mut findings, mut notes) = (Findings::new(), Notes::default());
     let Some(rounding) = rolling.find(contacts, &mut findings, &mut notes) else { return false };
     let (reference, center) = (Some(rolling.from), Some(rolling.center));

@@ -1,4 +1,5 @@
-//! Contacts of balls on surfaces against the general way, which defines them: the same, step after step.
+//! Contacts of balls, boxes and hulls on surfaces against the general way, which defines them: the same, step
+//! after step.
 
 use super::CompositeContacts;
 use super::chain_tests::assert_same;
@@ -8,9 +9,10 @@ use crate::query::ManifoldRequest;
 use crate::query::composite::Between;
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::hulls::tests::Random;
-use crate::shape::{Ball, HeightField, Shape, TriMesh};
+use crate::shape::{Ball, ConvexHull, Cuboid, HeightField, Shape, TriMesh};
 
 const STEPS: usize = 6;
+const ROUNDS: usize = 400;
 /// Points along each side of a ground.
 const POINTS: u32 = 9;
 
@@ -78,19 +80,55 @@ fn ground_of<N: Space<3>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
     Box::new(if is_one_sided { field.one_sided() } else { field })
 }
 
-/// What two ways say of one ball that moves; how many updates the quick one did, and what it found.
-fn follow<N: Space<3>>(random: &mut Random, round: usize) -> (usize, usize) {
+/// A solid, and how far its middle is from the ground that it lies on.
+type Solid<N> = (Box<dyn Shape<N, 3>>, N);
+
+fn ball_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     let ball = Ball::new(N::lit([0.0, 0.05, 0.3, 0.6, 2.0][random.pick(5)]));
+    (Box::new(ball), ball.radius())
+}
+
+/// A box, perhaps a flat one, or a hull of the corners of one and some others.
+fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
+    let mut half = random.vector::<N>().map(|more| N::ONE + more * N::lit(0.1));
+    half.iter_mut().for_each(|half| {
+        *half *= N::lit([0.02, 0.2, 0.3, 0.45, 0.7, 0.9][random.pick(6)]);
+    });
+    let height = half.y;
+    if random.pick(2) == 0 {
+        if random.pick(6) == 0 {
+            half[random.pick(3)] = N::ZERO;
+        }
+        return (Box::new(Cuboid::new(half)), height);
+    }
+    let corner = |at: usize| {
+        let sign = |axis: usize| if at >> axis & 1 == 0 { -half[axis] } else { half[axis] };
+        Point::<N, 3>::new(sign(0), sign(1), sign(2))
+    };
+    let mut corners: Vec<_> = (0..8).map(corner).collect();
+    for _ in 0..random.pick(9) {
+        corners.push(Point::from(random.vector::<N>().component_mul(&half) * N::lit(1.3)));
+    }
+    (Box::new(ConvexHull::from_points(&corners)), height)
+}
+
+/// What two ways say of one solid that moves; how many updates the quick one did, and what it found.
+fn follow<N: Space<3>>(
+    (solid, height): Solid<N>,
+    random: &mut Random,
+    round: usize,
+) -> (usize, usize) {
     let ground = ground_of::<N>(random, round);
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = Pose { translation: Vector::<N, 3>::repeat(far), ..random.turn::<N>() };
     let mut place = random.vector::<N>() * N::lit(1.8);
-    place.y = ball.radius() * N::lit([1.0, 0.9, -1.0][random.pick(3)])
-        + random.vector::<N>().y * N::lit(0.2);
+    place.y =
+        height * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
         // Over a corner or an edge of the grid.
         place.x = N::HALF;
     }
+    let mut lean = [Pose::identity(), random.turn::<N>()][random.pick(2)];
     let request = ManifoldRequest::new(
         N::lit([0.002, 0.3][random.pick(2)]),
         N::lit([0.0, 0.2][random.pick(2)]),
@@ -99,8 +137,8 @@ fn follow<N: Space<3>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (mut quick, mut slow) = (CompositeContacts::default(), CompositeContacts::default());
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
-        let pose = under.compose(&Pose::from_translation(place));
-        let placed1 = Placed { pose, shape: ball.geometry() };
+        let pose = under.compose(&Pose { translation: place, ..lean });
+        let placed1 = Placed { pose, shape: solid.geometry() };
         let placed2 = Placed { pose: under, shape: ground.geometry() };
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
         let is_done = update_on_surface(&mut quick, &between, &request);
@@ -108,27 +146,36 @@ fn follow<N: Space<3>>(random: &mut Random, round: usize) -> (usize, usize) {
             quick.update_in_general(&between, false, &request);
         }
         slow.update_in_general(&between, false, &request);
-        let what = || format!("{ball:?} on {ground:?} at {pose:?}, step {step}");
+        let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
         assert_same(&quick, &slow, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
         place += random.vector::<N>() * N::lit(0.04);
+        if random.pick(8) == 0 {
+            lean = random.turn::<N>();
+        }
     }
     (done, points)
 }
 
-fn compare<N: Space<3>>(seed: u64) {
+fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>) {
     let random = &mut Random(seed);
     let (mut done, mut points) = (0, 0);
-    for round in 0..600 {
-        let (of_one, found) = follow::<N>(random, round);
+    for round in 0..ROUNDS {
+        let (of_one, found) = follow::<N>(solid_of(random), random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(done * 2 > 600 * STEPS, "{done} updates by the quick way");
-    assert!(points > 600 * STEPS / 2, "{points} points");
+    assert!(done * 2 > ROUNDS * STEPS, "{done} updates by the quick way");
+    assert!(points > ROUNDS * STEPS / 2, "{points} points");
 }
 
 #[test]
 fn balls_have_the_contacts_of_the_general_way() {
-    compare::<f32>(11);
-    compare::<f64>(12);
+    compare::<f32>(11, ball_of);
+    compare::<f64>(12, ball_of);
+}
+
+#[test]
+fn boxes_and_hulls_have_the_contacts_of_the_general_way() {
+    compare::<f32>(13, flat_of);
+    compare::<f64>(14, flat_of);
 }

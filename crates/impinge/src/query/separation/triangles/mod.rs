@@ -6,9 +6,12 @@
 
 mod ball;
 mod cuboid;
+mod meeting;
 mod polytope;
+mod sift;
 
 pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
+pub(crate) use self::meeting::{Flat, FlatQuestion, Told, Touched};
 use fearless_simd::{Level, Select, Simd};
 use smallvec::SmallVec;
 
@@ -148,10 +151,14 @@ impl<N: Real> Axes<N> {
             return Some(None);
         }
         let triangle = Triangle::of_finite(tiles.corners(lane).map(|at| at - question.origin));
-        let [a, b, c] = &self.corners;
-        let corners = [of_lane(a, lane), of_lane(b, lane), of_lane(c, lane)];
-        let fin = Fin::placed(&triangle, question.pose12, corners, units);
+        let fin = Fin::placed(&triangle, question.pose12, self.corners_of(lane), units);
         Some(solid.answer(&fin, self.axis(lane, solid), question.limit))
+    }
+
+    /// The corners of one of the triangles in the frame of the solid, in units of the pair.
+    fn corners_of(&self, lane: usize) -> [Vector<N, 3>; 3] {
+        let [a, b, c] = &self.corners;
+        [of_lane(a, lane), of_lane(b, lane), of_lane(c, lane)]
     }
 
     fn axis<T: Faceted<N>>(&self, lane: usize, _: &T) -> Axis<N> {

@@ -46,7 +46,7 @@ impl<N: Real> Faceted<N> for Polytope<N, 3> {
         let heights = heights(simd, self, &front, eight.shrink);
         let best = best_face(simd, &eight.corners, (&front, has_front), heights, &best);
         let beyond = beyond | eight.is_beyond(best.gap);
-        let edging = Edging { sides, front, has_front };
+        let edging = Edging { sides, front, has_front, asked: !beyond };
         let best = best_edges(simd, &eight, (self, &climbs), &edging, best);
         eight.stored(&best, beyond.to_bitmask())
     }
@@ -107,6 +107,8 @@ struct Edging<V, M> {
     sides: [[V; 3]; 3],
     front: [V; 3],
     has_front: M,
+    /// Those of which something is asked.
+    asked: M,
 }
 
 /// Edges of the hull and sides of the triangles, where they leave larger gaps than the faces; their index
@@ -135,7 +137,7 @@ fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         for side in 0..3 {
             index += one;
             let outer = (is_forward & first[side]) | (is_backward & !first[side]);
-            let is_asked = (first[side] ^ second[side]) & outer;
+            let is_asked = (first[side] ^ second[side]) & outer & edging.asked;
             if is_asked.to_bitmask() == 0 {
                 continue;
             }
