@@ -7,6 +7,7 @@ use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{CHUNK, Group, Rows};
 use super::lanes::{Lane, Location};
+use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
@@ -59,15 +60,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
+        let reuse = Reuse { table, tolerance: self.tolerance };
         // Of the hundreds of groups most are empty.
         for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
-                update_convex(rows, table, changes, solids.as_ref());
+                update_convex(rows, reuse, changes, solids.as_ref());
             });
         }
         update_group(&mut self.lanes.composites, changes, |rows, changes| {
-            update_each(rows, table, changes, update_contact);
+            update_each(rows, table, changes, |rows, _, place, changes| {
+                update_contact(rows, reuse, place, changes);
+            });
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
             update_group(group, changes, |rows, changes| {
@@ -154,15 +158,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked: &[Location],
         changes: &mut Changes,
     ) {
+        let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].lane {
             Lane::Contacts(group) => {
                 let rows = self.lanes.contacts[usize::from(group)].rows();
-                update_picked_convex(rows, table, picked, changes);
+                update_picked_convex(rows, reuse, picked, changes);
             }
             Lane::Composites => {
                 let rows = &mut self.lanes.composites.rows();
                 update_places(rows, picked, |rows, place| {
-                    update_contact(rows, table, place, changes);
+                    update_contact(rows, reuse, place, changes);
                 });
             }
             Lane::Proximity(group) => {
@@ -190,8 +195,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
 /// Says whether a pair touches, and lists it if that is new.
 #[inline]
-pub(super) fn note_touching<S, V>(
-    rows: &mut Rows<'_, S, V>,
+pub(super) fn note_touching<S, V, R>(
+    rows: &mut Rows<'_, S, V, R>,
     index: usize,
     is_touching: bool,
     changes: &mut Changes,
@@ -203,19 +208,22 @@ pub(super) fn note_touching<S, V>(
 
 /// Brings the contacts of some pairs of convex solids up to date, several at a time where that can be
 /// done for their kinds. `solids` are those of one of them: all have copies if one has.
+///
+/// Where a closed form answers for several pairs at a time, that is as quick as to move old contacts along.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
+    reuse: Reuse<'_, N, D>,
     changes: &mut Changes,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
+    let table = reuse.table;
     let due = rows.take_all_due(table);
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
         let mut places = Places::new();
         for place in due.indices() {
             places.push(place);
         }
-        return update_boxes_at(&mut rows, table, &places, changes);
+        return update_boxes(&mut rows, reuse, &mut places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
@@ -223,11 +231,27 @@ fn update_convex<N: Space<D>, const D: usize>(
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
+        due.indices().for_each(|place| update_contact(&mut rows, reuse, place, changes));
     }
 }
 
-/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date, several at a time.
+/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date.
+#[inline]
+fn update_boxes<N: Space<D>, const D: usize>(
+    rows: &mut ContactRows<'_, N, D>,
+    reuse: Reuse<'_, N, D>,
+    places: &mut Places,
+    changes: &mut Changes,
+) {
+    if rows.references.is_empty() {
+        return update_boxes_at(rows, reuse.table, places, changes);
+    }
+    places.retain(|place| !reuse.keeps(rows, *place));
+    update_boxes_at(rows, reuse.table, places, changes);
+    places.iter().for_each(|&place| reuse.note(rows, place));
+}
+
+/// Computes the contacts of the pairs of boxes at the given places, ascending, several at a time.
 fn update_boxes_at<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -258,7 +282,7 @@ fn update_boxes_at<N: Space<D>, const D: usize>(
 /// Brings the contacts of the picked pairs of convex solids up to date.
 fn update_picked_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
+    reuse: Reuse<'_, N, D>,
     picked: &[Location],
     changes: &mut Changes,
 ) {
@@ -266,24 +290,24 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     let are_boxes =
         matches!(rows.states[first].state.solids(), Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
     for picked in picked.chunks(CHUNK) {
-        let places: Places = picked.iter().map(|at| at.place as usize).collect();
+        let mut places: Places = picked.iter().map(|at| at.place as usize).collect();
         for &place in &places {
             rows.take_mark(place);
         }
         if are_boxes {
-            update_boxes_at(&mut rows, table, &places, changes);
+            update_boxes(&mut rows, reuse, &mut places, changes);
         } else {
-            let mut update = |&place: &usize| update_contact(&mut rows, table, place, changes);
+            let mut update = |&place: &usize| update_contact(&mut rows, reuse, place, changes);
             places.iter().for_each(&mut update);
         }
     }
 }
 
 /// Updates the picked pairs of some other kind.
-fn update_places<S, V>(
-    rows: &mut Rows<'_, S, V>,
+fn update_places<S, V, R>(
+    rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
-    mut update: impl FnMut(&mut Rows<'_, S, V>, usize),
+    mut update: impl FnMut(&mut Rows<'_, S, V, R>, usize),
 ) {
     for at in picked {
         rows.take_mark(at.place as usize);
@@ -293,14 +317,18 @@ fn update_places<S, V>(
 
 /// Brings the contacts of one pair up to date.
 fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
-    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>>,
-    table: &ObjectTable<N, D>,
+    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
+    reuse: Reuse<'_, N, D>,
     place: usize,
     changes: &mut Changes,
 ) {
+    if reuse.keeps(rows, place) {
+        return;
+    }
     let (key, entry, view) = rows.row(place);
-    let is_touching = entry.update(view, &posed(table, key));
+    let is_touching = entry.update(view, &posed(reuse.table, key));
     note_touching(rows, place, is_touching, changes);
+    reuse.note(rows, place);
 }
 
 /// Brings the proximity of one pair up to date.
@@ -317,10 +345,10 @@ fn update_status<N: Space<D>, const D: usize>(
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
 /// changed comes in the order of the group either way.
-fn update_group<S: Send + Sync, V: Default + Send + Sync>(
-    group: &mut Group<S, V>,
+fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sync>(
+    group: &mut Group<S, V, R>,
     changes: &mut Changes,
-    update: impl Fn(Rows<'_, S, V>, &mut Changes) + Sync,
+    update: impl Fn(Rows<'_, S, V, R>, &mut Changes) + Sync,
 ) {
     let rows = group.rows();
     #[cfg(feature = "parallel")]
@@ -342,11 +370,11 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
 }
 
 /// Updates the pairs of a chunk that need it, one by one.
-fn update_each<N: Space<D>, S, V, const D: usize>(
-    mut rows: Rows<'_, S, V>,
+fn update_each<N: Space<D>, S, V, R, const D: usize>(
+    mut rows: Rows<'_, S, V, R>,
     table: &ObjectTable<N, D>,
     changes: &mut Changes,
-    update: impl Fn(&mut Rows<'_, S, V>, &ObjectTable<N, D>, usize, &mut Changes),
+    update: impl Fn(&mut Rows<'_, S, V, R>, &ObjectTable<N, D>, usize, &mut Changes),
 ) {
     for place in 0..rows.len() {
         if rows.take_due(place, table) {
