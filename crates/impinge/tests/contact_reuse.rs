@@ -9,7 +9,7 @@ use impinge::math::{Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{
     CollisionObjectHandle, ContactEvent, DefaultNarrowPhase, GeometricQueryType,
 };
-use impinge::shape::{Ball, ConvexHull, Cuboid, Cylinder, ShapeHandle, TriMesh};
+use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Scene, SceneQuery, mixed_shapes, pile};
 use scene_stage::{Digest, Play, Player, assert_views_agree, digest_state};
@@ -247,6 +247,50 @@ fn another_shape_or_question_is_answered_anew() {
     stage.world.remove(&[stage.ground]);
     stage.world.update();
     assert!(stage.depths().is_empty(), "without a floor there is nothing to stand on");
+}
+
+/// Capsules that lie on capsules, and how many contacts they have and of what depths: the upper ones lean,
+/// less and less until both of their ends are near; all of them at once move, or one.
+fn capsules(narrow_phase: DefaultNarrowPhase<f64, 3>) -> Vec<Vec<f64>> {
+    let capsule = ShapeHandle::<f64, 3>::new(Capsule::new(0.5, 0.3));
+    let (mut world, groups) = (World::<f64>::new(0.05), CollisionGroups::new());
+    world.set_narrow_phase(Box::new(narrow_phase));
+    let query = GeometricQueryType::Contacts(PREDICTION / 2.0, 0.0);
+    let place = |n: u32, height: f64, lean: f64| {
+        let turn =
+            UnitQuaternion::from_scaled_axis(v(0.0, 0.0, std::f64::consts::FRAC_PI_2 + lean));
+        Isometry3::from_parts(Translation3::new(3.0 * f64::from(n), height, 0.0), turn)
+    };
+    let over = |n: u32, lean: f64| place(n, 0.602 + 0.5 * lean.sin(), lean);
+    let mut pair = |n: u32| {
+        world.add(place(n, 0.0, 0.0), capsule.clone(), groups, query, ());
+        (n, world.add(over(n, 0.0205), capsule.clone(), groups, query, ()))
+    };
+    let upper: Vec<_> = (0..40).map(&mut pair).collect();
+    let mut depths = Vec::new();
+    for step in 0..30 {
+        let moved = if step % 3 == 0 { &upper[..] } else { &upper[7..8] };
+        for &(n, handle) in moved {
+            world.set_position(handle, over(n, 0.0205 - 0.000_2 * f64::from(step)));
+        }
+        world.update();
+        let contacts = world.contact_views().flat_map(|(_, _, view)| view.contacts());
+        depths.push(contacts.map(|point| point.contact.depth).collect());
+    }
+    depths
+}
+
+#[test]
+fn it_is_of_no_account_whether_few_or_all_are_updated() {
+    let expected = capsules(DefaultNarrowPhase::new());
+    let found = capsules(DefaultNarrowPhase::new().reusing(TOLERANCE));
+    assert_eq!([expected[0].len(), expected[29].len()], [40, 80], "on one end, then on two");
+    for (expected, found) in expected.iter().zip(&found) {
+        let deepest = |depths: &[f64]| depths.iter().copied().fold(f64::MIN, f64::max);
+        let off = (deepest(expected) - deepest(found)).abs();
+        assert!(off <= 2.0 * TOLERANCE, "{off} off");
+        assert!(expected.len().abs_diff(found.len()) <= 1, "only the one was kept as it was");
+    }
 }
 
 #[test]

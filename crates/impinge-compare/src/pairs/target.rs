@@ -11,7 +11,7 @@ const PARRY_THERE: f64 = 41.0;
 pub const PART: &str = "impinge narrow phase";
 
 /// The same where pairs that have hardly moved keep their contacts.
-pub const REUSING_PART: &str = "impinge reusing, narrow";
+pub const REUSING_PART: &str = "impinge reusing narrow phase";
 
 /// A case by its beginning, a question, and the most nanoseconds per pair of the world's update.
 const TARGETS: &[(&str, Question, f64)] = &[
