@@ -216,6 +216,14 @@ impl Chosen {
         self.0[index / WORD] >> (index % WORD) & 1 != 0
     }
 
+    /// Leaves out those that are not to stay.
+    pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
+        for index in self.indices() {
+            let (word, bit) = flag(index);
+            self.0[word] ^= if stays(index) { 0 } else { bit };
+        }
+    }
+
     /// Their indices, ascending.
     pub(super) fn indices(mut self) -> impl Iterator<Item = usize> {
         let mut word = 0;

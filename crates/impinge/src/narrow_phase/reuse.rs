@@ -48,7 +48,8 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// The pose of the solid in whose frame contacts are kept in that of the other.
     pose21: Pose<N, D>,
-    /// How far the points of that solid are from its origin at most; infinite if nothing can be kept.
+    /// How far the points that matter are from the origin of that solid at most; infinite if nothing can be
+    /// kept.
     reach: N,
     /// Of the contacts, in their order.
     distances: SmallVec<[N; 4]>,
@@ -147,9 +148,12 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         let (key, state) = (rows.keys[place], &mut rows.states[place].state);
         let Some(reference) = rows.references.get_mut(place) else { return };
         let is_swapped = state.is_swapped();
-        let home = if is_swapped { key.1 } else { key.0 };
         reference.pose21 = self.pose21(key, is_swapped);
-        reference.reach = self.table.bounds(home).reach();
+        // Solids meet where both of them are: of one without end, or larger, only what is near the other
+        // counts.
+        let (home, other) = if is_swapped { (key.1, key.0) } else { key };
+        let [own, others] = [home, other].map(|object| self.table.bounds(object).reach());
+        reference.reach = min(own, reference.pose21.translation.norm() + others);
         reference.distances.clear();
         state.each_point(|_, distance, _| reference.distances.push(*distance));
     }

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
-use super::group::{CHUNK, Group, Rows};
+use super::group::{CHUNK, Chosen, Group, Rows};
 use super::lanes::{Lane, Location};
 use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
@@ -208,22 +208,38 @@ pub(super) fn note_touching<S, V, R>(
 
 /// Brings the contacts of some pairs of convex solids up to date, several at a time where that can be
 /// done for their kinds. `solids` are those of one of them: all have copies if one has.
-///
-/// Where a closed form answers for several pairs at a time, that is as quick as to move old contacts along.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
     changes: &mut Changes,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
-    let table = reuse.table;
-    let due = rows.take_all_due(table);
+    let mut due = rows.take_all_due(reuse.table);
+    // The closed forms of balls are as quick as moving contacts along.
+    let has_ball =
+        solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))));
+    if has_ball || rows.references.is_empty() {
+        return compute_convex(&mut rows, reuse.table, due, (solids, changes));
+    }
+    due.retain(|place| !reuse.keeps(&mut rows, place));
+    compute_convex(&mut rows, reuse.table, due, (solids, changes));
+    due.indices().for_each(|place| reuse.note(&mut rows, place));
+}
+
+/// Computes the contacts of those pairs of a chunk that are due.
+#[inline]
+fn compute_convex<N: Space<D>, const D: usize>(
+    rows: &mut ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    due: Chosen,
+    (solids, changes): (Option<&[Solid<N, D>; 2]>, &mut Changes),
+) {
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
         let mut places = Places::new();
         for place in due.indices() {
             places.push(place);
         }
-        return update_boxes(&mut rows, reuse, &mut places, changes);
+        return update_boxes_at(rows, table, &places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
@@ -231,24 +247,8 @@ fn update_convex<N: Space<D>, const D: usize>(
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        due.indices().for_each(|place| update_contact(&mut rows, reuse, place, changes));
+        due.indices().for_each(|place| compute_contact(rows, table, place, changes));
     }
-}
-
-/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date.
-#[inline]
-fn update_boxes<N: Space<D>, const D: usize>(
-    rows: &mut ContactRows<'_, N, D>,
-    reuse: Reuse<'_, N, D>,
-    places: &mut Places,
-    changes: &mut Changes,
-) {
-    if rows.references.is_empty() {
-        return update_boxes_at(rows, reuse.table, places, changes);
-    }
-    places.retain(|place| !reuse.keeps(rows, *place));
-    update_boxes_at(rows, reuse.table, places, changes);
-    places.iter().for_each(|&place| reuse.note(rows, place));
 }
 
 /// Computes the contacts of the pairs of boxes at the given places, ascending, several at a time.
@@ -294,12 +294,15 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
         for &place in &places {
             rows.take_mark(place);
         }
+        places.retain(|place| !reuse.keeps(&mut rows, *place));
         if are_boxes {
-            update_boxes(&mut rows, reuse, &mut places, changes);
+            update_boxes_at(&mut rows, reuse.table, &places, changes);
         } else {
-            let mut update = |&place: &usize| update_contact(&mut rows, reuse, place, changes);
-            places.iter().for_each(&mut update);
+            let table = reuse.table;
+            let mut compute = |&place: &usize| compute_contact(&mut rows, table, place, changes);
+            places.iter().for_each(&mut compute);
         }
+        places.iter().for_each(|&place| reuse.note(&mut rows, place));
     }
 }
 
@@ -322,13 +325,22 @@ fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     place: usize,
     changes: &mut Changes,
 ) {
-    if reuse.keeps(rows, place) {
-        return;
+    if !reuse.keeps(rows, place) {
+        compute_contact(rows, reuse.table, place, changes);
+        reuse.note(rows, place);
     }
+}
+
+/// Computes the contacts of one pair.
+fn compute_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
+    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
+    table: &ObjectTable<N, D>,
+    place: usize,
+    changes: &mut Changes,
+) {
     let (key, entry, view) = rows.row(place);
-    let is_touching = entry.update(view, &posed(reuse.table, key));
+    let is_touching = entry.update(view, &posed(table, key));
     note_touching(rows, place, is_touching, changes);
-    reuse.note(rows, place);
 }
 
 /// Brings the proximity of one pair up to date.
