@@ -3,7 +3,7 @@
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
-use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
 use impinge::shape::{
     Ball, Capsule, ConvexHull, Cuboid, Cylinder, HeightField, Polyline, ShapeHandle, TriMesh,
 };
@@ -75,8 +75,9 @@ struct Grid<N: Stage<D>, const D: usize> {
 }
 
 impl<N: Stage<D>, const D: usize> Grid<N, D> {
-    fn new() -> Self {
+    fn new(narrow_phase: DefaultNarrowPhase<N, D>) -> Self {
         let mut world = CollisionWorld::new(N::lit(0.02));
+        world.set_narrow_phase(Box::new(narrow_phase));
         let shapes = shapes::<N, D>();
         let add = |index: usize| {
             let limit = N::lit(0.01);
@@ -108,8 +109,8 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
     }
 }
 
-fn takes_nothing<N: Stage<D>, const D: usize>() {
-    let mut grid = Grid::<N, D>::new();
+fn takes_nothing<N: Stage<D>, const D: usize>(narrow_phase: DefaultNarrowPhase<N, D>) {
+    let mut grid = Grid::<N, D>::new(narrow_phase);
     for _ in 0..4 {
         grid.play();
     }
@@ -122,10 +123,16 @@ fn takes_nothing<N: Stage<D>, const D: usize>() {
 
 #[test]
 fn a_lively_step_takes_no_memory() {
-    takes_nothing::<f32, 2>();
-    takes_nothing::<f64, 2>();
-    takes_nothing::<f32, 3>();
-    takes_nothing::<f64, 3>();
+    takes_nothing::<f32, 2>(DefaultNarrowPhase::new());
+    takes_nothing::<f64, 2>(DefaultNarrowPhase::new());
+    takes_nothing::<f32, 3>(DefaultNarrowPhase::new());
+    takes_nothing::<f64, 3>(DefaultNarrowPhase::new());
+}
+
+#[test]
+fn nor_where_contacts_are_kept() {
+    takes_nothing::<f32, 2>(DefaultNarrowPhase::new().reusing(0.05));
+    takes_nothing::<f64, 3>(DefaultNarrowPhase::new().reusing(0.05));
 }
 
 /// A solid slides to and fro over hilly ground.

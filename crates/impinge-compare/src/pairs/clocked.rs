@@ -37,8 +37,8 @@ impl<const D: usize> Clocked<D>
 where
     f32: Space<D>,
 {
-    pub fn new(time: Clock) -> Self {
-        Self { inner: DefaultNarrowPhase::new(), time }
+    pub fn new(inner: DefaultNarrowPhase<f32, D>, time: Clock) -> Self {
+        Self { inner, time }
     }
 }
 

@@ -31,7 +31,9 @@
 //! the time is a 256th of that. It includes the broad phase, whose boxes are so loose that
 //! all pairs stay pairs in all regimes; it does not include reading the manifolds, which are as the
 //! narrow phase keeps them until they are read. "impinge narrow phase" is the part of the same updates that
-//! the narrow phase takes.
+//! the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
+//! moved by less than a twentieth of the prediction (warm solids alone are asked), as parry's do within
+//! a degree and a thousandth; all else computes everything anew.
 //!
 //! Manifolds are *cold* if nothing that was kept is of use: alone, each call begins with a new generator
 //! (or an empty list of manifolds); in a world, all second solids jump between two sets of placements
@@ -141,6 +143,7 @@ fn contest_in_plane(pair: &Pair<2>, regime: Regime) -> Option<Vec<Box<dyn Conten
     let mut contenders: Vec<Box<dyn Contender>> = vec![
         Box::new(ours::Alone::<Turn, 2>::new(pair, &poses)),
         Box::new(ours::World::<Turn, 2>::new(pair, &poses)),
+        Box::new(ours::World::<Turn, 2>::reusing(pair, &poses)),
     ];
     contenders.extend(boxed(parry::plane::Parry::new(pair, &poses)));
     contenders.extend(boxed(ncollide::plane::Ncollide::new(pair, &poses)));
@@ -153,6 +156,7 @@ fn contest_in_space(pair: &Pair<3>, regime: Regime) -> Option<Vec<Box<dyn Conten
     let mut contenders: Vec<Box<dyn Contender>> = vec![
         Box::new(ours::Alone::<Turn, 3>::new(pair, &poses)),
         Box::new(ours::World::<Turn, 3>::new(pair, &poses)),
+        Box::new(ours::World::<Turn, 3>::reusing(pair, &poses)),
     ];
     contenders.extend(boxed(parry::space::Parry::new(pair, &poses)));
     contenders.extend(boxed(ncollide::space::Ncollide::new(pair, &poses)));

@@ -4,7 +4,7 @@ use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaterni
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{
     CollisionObjectHandle, ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher,
-    GeometricQueryType, IdAllocator, PairManifoldGenerator,
+    DefaultNarrowPhase, GeometricQueryType, IdAllocator, PairManifoldGenerator,
 };
 use impinge::query::{ImpactOptions, Moving, Proximity, contact, distance, impact, proximity};
 use impinge::shape::{
@@ -18,11 +18,14 @@ use super::form::{Form, up};
 use super::placement::Placement;
 use super::question::{Answer, Contender, LONGEST_TIME, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
-use super::target::PART;
+use super::target::{PART, REUSING_PART};
 use crate::measure::Times;
 
 /// How far boxes are loosened: all pairs stay pairs, whatever their regime.
 const MARGIN: f32 = 2.5;
+
+/// How far solids may move, beside one another, and keep their contacts, where that is allowed.
+const TOLERANCE: f32 = PREDICTION / 20.0;
 
 /// What is particular to a dimension.
 pub trait Dimension<const D: usize>: AbstractRotation<f32, D> + Copy + 'static {
@@ -273,6 +276,7 @@ where
     data: Data<R, D>,
     world: CollisionWorld<f32, D, usize>,
     second: Vec<CollisionObjectHandle>,
+    is_reusing: bool,
     round: usize,
     /// Tells what the narrow phase takes, and what it took in each round.
     clock: Clock,
@@ -286,8 +290,14 @@ where
     pub fn new(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         let data = Data::new(pair, poses);
         let clock = Clock::default();
-        let (world, second) = filled(&data, &clock);
-        Self { data, world, second, round: 0, clock, narrow: Times::default() }
+        let (world, second) = filled(&data, &clock, DefaultNarrowPhase::new());
+        let narrow = Times::default();
+        Self { data, world, second, is_reusing: false, round: 0, clock, narrow }
+    }
+
+    /// The same, where pairs that have hardly moved keep their contacts.
+    pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
+        Self { is_reusing: true, ..Self::new(pair, poses) }
     }
 }
 
@@ -295,12 +305,13 @@ where
 fn filled<R: Dimension<D>, const D: usize>(
     data: &Data<R, D>,
     clock: &Clock,
+    narrow_phase: DefaultNarrowPhase<f32, D>,
 ) -> (CollisionWorld<f32, D, usize>, Vec<CollisionObjectHandle>)
 where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
 {
     let mut world = CollisionWorld::new(MARGIN);
-    world.set_narrow_phase(Box::new(Clocked::new(clock.clone())));
+    world.set_narrow_phase(Box::new(Clocked::new(narrow_phase, clock.clone())));
     let query = GeometricQueryType::Contacts(PREDICTION / 2.0, 0.0);
     let groups = |own: usize| {
         let mut groups = CollisionGroups::new();
@@ -325,15 +336,19 @@ where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
 {
     fn name(&self) -> &'static str {
-        "impinge world"
+        if self.is_reusing { "impinge reusing" } else { "impinge world" }
     }
 
     fn treats(&self, question: Question) -> bool {
-        question.is_manifold()
+        question.is_manifold() && (!self.is_reusing || question == Question::ManifoldWarm)
     }
 
     fn reset(&mut self, _: Question) {
-        (self.world, self.second) = filled(&self.data, &self.clock);
+        let mut narrow_phase = DefaultNarrowPhase::new();
+        if self.is_reusing {
+            narrow_phase = narrow_phase.reusing(TOLERANCE);
+        }
+        (self.world, self.second) = filled(&self.data, &self.clock, narrow_phase);
         self.round = 0;
         self.narrow = Times::default();
     }
@@ -351,7 +366,8 @@ where
     }
 
     fn part(&self) -> Option<(&'static str, Times)> {
-        Some((PART, self.narrow.clone()))
+        let part = if self.is_reusing { REUSING_PART } else { PART };
+        Some((part, self.narrow.clone()))
     }
 
     fn answers(&self, _: Question) -> Vec<Answer> {

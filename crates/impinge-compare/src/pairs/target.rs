@@ -10,6 +10,9 @@ const PARRY_THERE: f64 = 41.0;
 /// What the narrow phase takes of an update; its rivals have no such part.
 pub const PART: &str = "impinge narrow phase";
 
+/// The same where pairs that have hardly moved keep their contacts.
+pub const REUSING_PART: &str = "impinge reusing narrow phase";
+
 /// A case by its beginning, a question, and the most nanoseconds per pair of the world's update.
 const TARGETS: &[(&str, Question, f64)] = &[
     ("3D ball, ball,", Question::ManifoldWarm, 8.0),
@@ -63,7 +66,8 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 impl Verdicts {
     /// Looks at the rows of one case.
     pub fn add(&mut self, rows: &[Row]) {
-        let is_whole = |row: &&Row| is_ours(row) && row.contender != PART;
+        let is_whole =
+            |row: &&Row| is_ours(row) && ![PART, REUSING_PART].contains(&&*row.contender);
         let ours = least(rows.iter().filter(is_whole));
         let is_rival = |row: &&Row| !is_ours(row) && row.contender != "target";
         let rival = least(rows.iter().filter(is_rival));

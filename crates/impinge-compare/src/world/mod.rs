@@ -9,7 +9,11 @@
 //! In the plane and in space: a pile in which all boxes overlap their neighbours and move, ten times as
 //! many boxes drifting apart, boxes of which one in a hundred moves, all kinds of shapes above a plane,
 //! and solids on a ground of 100 triangles (in the plane 10 segments) each, given as a mesh and as a
-//! height field. Their size follows `--objects`.
+//! height field. Their size follows `--objects`. The pile and the mesh come a second time, trembling: all
+//! move, by a hundredth of that.
+//!
+//! Everything is computed anew in "impinge". In "impinge reusing" pairs keep their contacts until they have
+//! moved by half of the prediction.
 //!
 //! # Rivals
 //! rapier's `CollisionPipeline`, made for the same purpose as our world, runs everywhere.
@@ -48,7 +52,8 @@ use impinge_compare_c::Recycling;
 
 use contender::{Contender, Entrant, KINDS, race};
 use impinge_scenes::{
-    Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift, terrain_field, terrain_mesh,
+    Motion, Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift, terrain_field,
+    terrain_mesh,
 };
 
 use crate::Arguments;
@@ -69,6 +74,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("world", "ms");
     let plane: &[(&str, Maker<2>)] = &[
         ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
+        ("impinge reusing", |scene| Some(Box::new(ours::plane(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::plane::Rapier::new(scene)))),
         #[cfg(feature = "box2d")]
         ("box2d", |scene| engines::box2d(scene, Recycling::Off)),
@@ -77,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     ];
     let space: &[(&str, Maker<3>)] = &[
         ("impinge", |scene| Some(Box::new(ours::space(scene)))),
+        ("impinge reusing", |scene| Some(Box::new(ours::space(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::space::Rapier::new(scene)))),
         #[cfg(feature = "box3d")]
         ("box3d", |scene| engines::box3d(scene, Recycling::Off)),
@@ -93,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
 }
 
 /// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
-fn stages<const D: usize>() -> [Stage<D>; 6] {
+fn stages<const D: usize>() -> [Stage<D>; 8] {
     [
         ("pile", pile, 1),
         ("sparse drift", sparse_drift, 10),
@@ -101,7 +108,17 @@ fn stages<const D: usize>() -> [Stage<D>; 6] {
         ("mixed shapes", mixed_shapes, 1),
         ("terrain mesh", terrain_mesh, 1),
         ("terrain field", terrain_field, 1),
+        ("trembling pile", |count| trembling(pile(count)), 1),
+        ("trembling terrain", |count| trembling(terrain_mesh(count)), 1),
     ]
+}
+
+/// The same scene a hundred times as slow, about as things move that come to rest.
+fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
+    for Motion { place, tangent, .. } in scene.objects.iter_mut().map(|object| &mut object.motion) {
+        place.iter_mut().chain([tangent]).for_each(|wave| wave.speed /= 100.0);
+    }
+    scene
 }
 
 fn run_stages<const D: usize>(

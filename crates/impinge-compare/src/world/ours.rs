@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
-use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
 use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, HeightField, Plane, Polyline,
     Segment, ShapeHandle, TriMesh, Triangle,
@@ -12,6 +12,7 @@ use impinge::shape::{
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
+use super::PREDICTION;
 use super::contender::{Contender, Reading};
 
 type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
@@ -100,6 +101,13 @@ where
         });
         let handles = handles.collect();
         Self { world, isometry, handles, moved: Vec::new() }
+    }
+
+    /// The same, where pairs keep their contacts until they have moved by half of the prediction.
+    pub fn reusing(mut self) -> Self {
+        let narrow_phase = DefaultNarrowPhase::new().reusing(PREDICTION / 2.0);
+        self.world.set_narrow_phase(Box::new(narrow_phase));
+        self
     }
 }
 

@@ -8,6 +8,7 @@
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
 use super::group::{Chosen, Rows};
+use super::reuse::Reference;
 use super::state::CompositeState;
 use crate::math::{Real, Space, max};
 use crate::query::ContactManifold;
@@ -17,8 +18,12 @@ use crate::shape::{Geometry, Kind};
 const PAIRS: usize = 8;
 
 /// The contacts of some pairs with composites.
-pub(super) type CompositeRows<'a, N, const D: usize> =
-    Rows<'a, ContactEntry<N, CompositeState<N, D>>, ContactView<Vec<ContactManifold<N, D>>>>;
+pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
+    'a,
+    ContactEntry<N, CompositeState<N, D>>,
+    ContactView<Vec<ContactManifold<N, D>>>,
+    Reference<N, D>,
+>;
 
 /// Updates the pairs of a chunk that are due, one by one, a few of which are always known to be next.
 pub(super) fn update_due<N: Space<D>, const D: usize>(

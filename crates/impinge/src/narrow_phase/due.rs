@@ -3,6 +3,7 @@
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
 use super::group::{Chosen, Rows};
+use super::reuse::Reference;
 use super::state::ContactState;
 use super::update::{Changes, note_touching};
 use crate::math::Space;
@@ -11,8 +12,12 @@ use crate::query::{
 };
 
 /// The contacts of some pairs of convex solids.
-pub(super) type ContactRows<'a, N, const D: usize> =
-    Rows<'a, ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+pub(super) type ContactRows<'a, N, const D: usize> = Rows<
+    'a,
+    ContactEntry<N, ContactState<N, D>>,
+    ContactView<ContactManifold<N, D>>,
+    Reference<N, D>,
+>;
 
 /// Pairs with copies of their solids, of which some may be due; what changes is noted.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
@@ -49,6 +54,10 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> 
     fn begin(&mut self, index: usize) -> Option<PairQuestion<'_, N, D>> {
         if !self.due.contains(index) {
             return None;
+        }
+        // What is computed here is not noted, so that nothing may be held against what was before.
+        if let Some(reference) = self.rows.references.get_mut(index) {
+            *reference = Reference::default();
         }
         let (key, entry, view) = self.rows.row(index);
         ContactView::expire_any(view);

@@ -24,8 +24,10 @@ pub(super) struct Chosen([u64; CHUNK / WORD]);
 /// from the states, so that who passes over a pair does not wait for its memory.
 /// To each state belongs a view: what readers make of it. The views come into being, all together,
 /// when the first is asked for: who never asks pays nothing for them.
+/// Where pairs may keep contacts while they hardly move ([`Reuse`](super::reuse::Reuse)), a reference
+/// belongs to each state too.
 #[derive(Debug)]
-pub(crate) struct Group<S, V = ()> {
+pub(crate) struct Group<S, V = (), R = ()> {
     keys: Vec<(u32, u32)>,
     /// By pair: to be updated even if both objects stand still.
     due: Vec<bool>,
@@ -34,16 +36,20 @@ pub(crate) struct Group<S, V = ()> {
     states: Vec<S>,
     /// One for each state, or none at all.
     views: OnceLock<Vec<V>>,
+    /// One for each state, if there are any.
+    references: Option<Vec<R>>,
 }
 
 /// The pairs of a group to work on, side by side.
-pub(crate) struct Rows<'a, S, V> {
+pub(crate) struct Rows<'a, S, V, R = ()> {
     pub(crate) keys: &'a [(u32, u32)],
     due: &'a mut [bool],
     touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
     /// As many as states, or none.
     pub(crate) views: &'a mut [V],
+    /// As many as states, or none.
+    pub(crate) references: &'a mut [R],
 }
 
 /// A pair that was taken out of a group.
@@ -55,10 +61,11 @@ pub(crate) struct Taken<S> {
     pub(crate) moved: Option<(u32, u32)>,
 }
 
-impl<S, V> Default for Group<S, V> {
+impl<S, V, R> Default for Group<S, V, R> {
     fn default() -> Self {
         let (keys, due, touching) = (Vec::new(), Vec::new(), Vec::new());
-        Self { keys, due, touching, states: Vec::new(), views: OnceLock::new() }
+        let (views, references) = (OnceLock::new(), None);
+        Self { keys, due, touching, states: Vec::new(), views, references }
     }
 }
 
@@ -76,7 +83,12 @@ fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
     is_new
 }
 
-impl<S, V: Default> Group<S, V> {
+impl<S, V: Default, R: Default> Group<S, V, R> {
+    /// A group without pairs that has references.
+    pub(crate) fn with_references() -> Self {
+        Self { references: Some(Vec::new()), ..Self::default() }
+    }
+
     /// Adds a pair, which is due, and answers its place.
     pub(crate) fn push(&mut self, key: (u32, u32), state: S, is_touching: bool) -> u32 {
         let place = self.keys.len();
@@ -87,6 +99,9 @@ impl<S, V: Default> Group<S, V> {
         self.states.push(state);
         if let Some(views) = self.views.get_mut() {
             views.push(V::default());
+        }
+        if let Some(references) = &mut self.references {
+            references.push(R::default());
         }
         u32::try_from(place).expect("fewer than 2^32 pairs fit in memory")
     }
@@ -105,6 +120,9 @@ impl<S, V: Default> Group<S, V> {
         if let Some(views) = self.views.get_mut() {
             views.swap_remove(place);
         }
+        if let Some(references) = &mut self.references {
+            references.swap_remove(place);
+        }
         let (state, moved) = (self.states.swap_remove(place), self.keys.get(place).copied());
         Taken { state, is_touching, moved }
     }
@@ -114,6 +132,9 @@ impl<S, V: Default> Group<S, V> {
         look.fit(&mut self.keys);
         look.fit(&mut self.due);
         look.fit(&mut self.states);
+        if let Some(references) = &mut self.references {
+            look.fit(references);
+        }
     }
 
     /// The pair at a place has contact points.
@@ -122,9 +143,13 @@ impl<S, V: Default> Group<S, V> {
         self.touching[word] & bit != 0
     }
 
-    /// Asks for a pair to be updated even if both objects stand still.
+    /// Asks for a pair to be updated even if both objects stand still; what it could be held against is
+    /// forgotten.
     pub(crate) fn make_due(&mut self, place: u32) {
         self.due[place as usize] = true;
+        if let Some(references) = &mut self.references {
+            references[place as usize] = R::default();
+        }
     }
 
     /// The state of the pair at a place.
@@ -176,10 +201,11 @@ impl<S, V: Default> Group<S, V> {
     }
 
     /// All pairs, their states and their views.
-    pub(crate) fn rows(&mut self) -> Rows<'_, S, V> {
+    pub(crate) fn rows(&mut self) -> Rows<'_, S, V, R> {
         let views = self.views.get_mut().map_or(&mut [][..], Vec::as_mut_slice);
-        let Self { keys, due, touching, states, .. } = self;
-        Rows { keys, due, touching, states, views }
+        let Self { keys, due, touching, states, references, .. } = self;
+        let references = references.as_deref_mut().unwrap_or_default();
+        Rows { keys, due, touching, states, views, references }
     }
 }
 
@@ -188,6 +214,14 @@ impl Chosen {
     #[inline]
     pub(super) const fn contains(&self, index: usize) -> bool {
         self.0[index / WORD] >> (index % WORD) & 1 != 0
+    }
+
+    /// Leaves out those that are not to stay.
+    pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
+        for index in self.indices() {
+            let (word, bit) = flag(index);
+            self.0[word] ^= if stays(index) { 0 } else { bit };
+        }
     }
 
     /// Their indices, ascending.
@@ -204,22 +238,23 @@ impl Chosen {
     }
 }
 
-impl<'a, S, V> Rows<'a, S, V> {
+impl<'a, S, V, R> Rows<'a, S, V, R> {
     /// How many pairs there are.
     pub(crate) const fn len(&self) -> usize {
         self.keys.len()
     }
 
     /// The same rows, to be used once more afterwards.
-    pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V> {
-        let Rows { keys, due, touching, states, views } = self;
-        Rows { keys, due, touching, states, views }
+    pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V, R> {
+        let Rows { keys, due, touching, states, views, references } = self;
+        Rows { keys, due, touching, states, views, references }
     }
 
     /// The rows in pieces of [`CHUNK`], the last one perhaps shorter.
-    pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V>> {
+    pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V, R>> {
         let (mut views, mut due) = (self.views.chunks_mut(CHUNK), self.due.chunks_mut(CHUNK));
         let mut touching = self.touching.chunks_mut(CHUNK / WORD);
+        let mut references = self.references.chunks_mut(CHUNK);
         let pairs = self.keys.chunks(CHUNK).zip(self.states.chunks_mut(CHUNK));
         pairs.map(move |(keys, states)| Rows {
             keys,
@@ -227,6 +262,7 @@ impl<'a, S, V> Rows<'a, S, V> {
             touching: touching.next().unwrap_or_default(),
             states,
             views: views.next().unwrap_or_default(),
+            references: references.next().unwrap_or_default(),
         })
     }
 

@@ -5,6 +5,7 @@ use super::entry::{
     Status,
 };
 use super::group::{Group, Taken};
+use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
 use crate::memory::Look;
@@ -75,11 +76,14 @@ impl Carried {
 
 /// The contacts of pairs of convex solids.
 pub(crate) type ContactGroup<N, const D: usize> =
-    Group<ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>>;
+    Group<ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>, Reference<N, D>>;
 
 /// The contacts of pairs with composites.
-pub(crate) type CompositeGroup<N, const D: usize> =
-    Group<ContactEntry<N, CompositeState<N, D>>, ContactView<Vec<ContactManifold<N, D>>>>;
+pub(crate) type CompositeGroup<N, const D: usize> = Group<
+    ContactEntry<N, CompositeState<N, D>>,
+    ContactView<Vec<ContactManifold<N, D>>>,
+    Reference<N, D>,
+>;
 
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
@@ -126,6 +130,12 @@ pub(crate) fn contact_lane<N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> Lanes<N, D> {
+    /// Without pairs, for contacts that may be kept while pairs hardly move.
+    pub(crate) fn with_references() -> Self {
+        let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();
+        Self { contacts, composites: Group::with_references(), ..Self::default() }
+    }
+
     /// Takes a pair's state out; also answers which pair now has its place.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<(u32, u32)>) {
         let place = location.place;

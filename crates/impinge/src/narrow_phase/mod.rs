@@ -20,6 +20,7 @@ mod lanes;
 mod likeness;
 mod objects;
 mod query_type;
+mod reuse;
 mod state;
 mod traits;
 mod update;
@@ -36,6 +37,7 @@ pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;
 pub use query_type::GeometricQueryType;
 pub(crate) use query_type::{PackedQuery, PairQuery};
+pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,

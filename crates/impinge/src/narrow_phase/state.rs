@@ -1,6 +1,6 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
-use crate::math::{Pose, Real, Space};
+use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::composite::Between;
 use crate::query::far::{Apart, Bounds};
 use crate::query::pair::is_swapped;
@@ -36,6 +36,16 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     /// The pair in the order in which every query computes it.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
+    }
+
+    /// The pair in the order in which its contacts are kept.
+    fn in_order(&self, is_swapped: bool) -> Pair<'a, N, D> {
+        let solids = [(self.pose1, self.shape1), (self.pose2, self.shape2)];
+        let [(first, shape1), (second, shape2)] =
+            [solids[usize::from(is_swapped)], solids[usize::from(!is_swapped)]];
+        let [first_kind, second_kind] = [shape1, shape2].map(|shape| shape.geometry().0);
+        let pose12 = Pose::relative(first, second);
+        Pair { first: first_kind, second: second_kind, pose12 }
     }
 
     /// The two solids, each for itself.
@@ -98,6 +108,12 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
 
     /// How many contact points there are.
     fn len(&self) -> usize;
+
+    /// Contacts are kept in the frame of the pair's second solid.
+    fn is_swapped(&self) -> bool;
+
+    /// Calls with the normal, the distance and the first point of each contact, as they are kept.
+    fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
 
     /// Computes the contacts for new poses; points whose features stay keep their numbers.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
@@ -179,6 +195,16 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         self.kept.contacts.points.len()
     }
 
+    fn is_swapped(&self) -> bool {
+        self.kept.swapped
+    }
+
+    #[inline]
+    fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
+        let RawManifold { normal, points, .. } = &mut self.kept.contacts;
+        points.iter_mut().for_each(|point| each(normal, &mut point.distance, &point.point1));
+    }
+
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         if posed.are_beyond(request.prediction) {
             return self.clear();
@@ -213,8 +239,8 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         if raw.points.is_empty() {
             return ContactManifold::default();
         }
-        let (pair, is_swapped) = posed.canonical();
-        let placement = Placement::new(posed.poses(), pair_number, is_swapped);
+        let pair = posed.in_order(self.kept.swapped);
+        let placement = Placement::new(posed.poses(), pair_number, self.kept.swapped);
         materialise(&pair, raw, &placement, old)
     }
 }
@@ -344,6 +370,14 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
         self.contacts.len()
     }
 
+    fn is_swapped(&self) -> bool {
+        self.swapped
+    }
+
+    fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
+        self.contacts.each_point(each);
+    }
+
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
         self.turn(swapped, CompositeContacts::flip_names);
@@ -359,8 +393,8 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
         pair_number: u64,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> {
-        let (pair, is_swapped) = posed.canonical();
-        let placement = Placement::new(posed.poses(), pair_number, is_swapped);
+        let pair = posed.in_order(self.swapped);
+        let placement = Placement::new(posed.poses(), pair_number, self.swapped);
         self.contacts.manifolds(&pair, &placement, old)
     }
 }

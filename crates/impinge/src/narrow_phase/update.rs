@@ -6,8 +6,9 @@ use super::ahead::update_due;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
-use super::group::{CHUNK, Group, Rows};
+use super::group::{CHUNK, Chosen, Group, Rows};
 use super::lanes::{Lane, Location};
+use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
@@ -60,16 +61,23 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
+        let reuse = Reuse { table, tolerance: self.tolerance };
         // Of the hundreds of groups most are empty.
         for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
-                update_convex(rows, table, changes, solids.as_ref());
+                update_convex(rows, reuse, changes, solids.as_ref());
             });
         }
         update_group(&mut self.lanes.composites, changes, |mut rows, changes| {
-            let due = (table, rows.take_all_due(table));
-            update_due(&mut rows, due, |rows, at| update_contact(rows, table, at, changes));
+            let mut due = rows.take_all_due(table);
+            if !rows.references.is_empty() {
+                due.retain(|place| !reuse.keeps(&mut rows, place));
+            }
+            update_due(&mut rows, (table, due), |rows, place| {
+                compute_contact(rows, table, place, changes);
+                reuse.note(rows, place);
+            });
         });
         for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
             update_group(group, changes, |rows, changes| {
@@ -156,15 +164,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked: &[Location],
         changes: &mut Changes,
     ) {
+        let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].lane {
             Lane::Contacts(group) => {
                 let rows = self.lanes.contacts[usize::from(group)].rows();
-                update_picked_convex(rows, table, picked, changes);
+                update_picked_convex(rows, reuse, picked, changes);
             }
             Lane::Composites => {
                 let rows = &mut self.lanes.composites.rows();
                 update_places(rows, picked, |rows, place| {
-                    update_contact(rows, table, place, changes);
+                    update_contact(rows, reuse, place, changes);
                 });
             }
             Lane::Proximity(group) => {
@@ -192,8 +201,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
 /// Says whether a pair touches, and lists it if that is new.
 #[inline]
-pub(super) fn note_touching<S, V>(
-    rows: &mut Rows<'_, S, V>,
+pub(super) fn note_touching<S, V, R>(
+    rows: &mut Rows<'_, S, V, R>,
     index: usize,
     is_touching: bool,
     changes: &mut Changes,
@@ -207,17 +216,36 @@ pub(super) fn note_touching<S, V>(
 /// done for their kinds. `solids` are those of one of them: all have copies if one has.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
+    reuse: Reuse<'_, N, D>,
     changes: &mut Changes,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
-    let due = rows.take_all_due(table);
+    let mut due = rows.take_all_due(reuse.table);
+    // The closed forms of balls are as quick as moving contacts along.
+    let has_ball =
+        solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))));
+    if has_ball || rows.references.is_empty() {
+        return compute_convex(&mut rows, reuse.table, due, (solids, changes));
+    }
+    due.retain(|place| !reuse.keeps(&mut rows, place));
+    compute_convex(&mut rows, reuse.table, due, (solids, changes));
+    due.indices().for_each(|place| reuse.note(&mut rows, place));
+}
+
+/// Computes the contacts of those pairs of a chunk that are due.
+#[inline]
+fn compute_convex<N: Space<D>, const D: usize>(
+    rows: &mut ContactRows<'_, N, D>,
+    table: &ObjectTable<N, D>,
+    due: Chosen,
+    (solids, changes): (Option<&[Solid<N, D>; 2]>, &mut Changes),
+) {
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
         let mut places = Places::new();
         for place in due.indices() {
             places.push(place);
         }
-        return update_boxes_at(&mut rows, table, &places, changes);
+        return update_boxes_at(rows, table, &places, changes);
     }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
@@ -225,11 +253,11 @@ fn update_convex<N: Space<D>, const D: usize>(
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        due.indices().for_each(|place| update_contact(&mut rows, table, place, changes));
+        due.indices().for_each(|place| compute_contact(rows, table, place, changes));
     }
 }
 
-/// Brings the contacts of the pairs of boxes at the given places, ascending, up to date, several at a time.
+/// Computes the contacts of the pairs of boxes at the given places, ascending, several at a time.
 fn update_boxes_at<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -260,7 +288,7 @@ fn update_boxes_at<N: Space<D>, const D: usize>(
 /// Brings the contacts of the picked pairs of convex solids up to date.
 fn update_picked_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
+    reuse: Reuse<'_, N, D>,
     picked: &[Location],
     changes: &mut Changes,
 ) {
@@ -268,24 +296,27 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     let are_boxes =
         matches!(rows.states[first].state.solids(), Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
     for picked in picked.chunks(CHUNK) {
-        let places: Places = picked.iter().map(|at| at.place as usize).collect();
+        let mut places: Places = picked.iter().map(|at| at.place as usize).collect();
         for &place in &places {
             rows.take_mark(place);
         }
+        places.retain(|place| !reuse.keeps(&mut rows, *place));
         if are_boxes {
-            update_boxes_at(&mut rows, table, &places, changes);
+            update_boxes_at(&mut rows, reuse.table, &places, changes);
         } else {
-            let mut update = |&place: &usize| update_contact(&mut rows, table, place, changes);
-            places.iter().for_each(&mut update);
+            let table = reuse.table;
+            let mut compute = |&place: &usize| compute_contact(&mut rows, table, place, changes);
+            places.iter().for_each(&mut compute);
         }
+        places.iter().for_each(|&place| reuse.note(&mut rows, place));
     }
 }
 
 /// Updates the picked pairs of some other kind.
-fn update_places<S, V>(
-    rows: &mut Rows<'_, S, V>,
+fn update_places<S, V, R>(
+    rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
-    mut update: impl FnMut(&mut Rows<'_, S, V>, usize),
+    mut update: impl FnMut(&mut Rows<'_, S, V, R>, usize),
 ) {
     for at in picked {
         rows.take_mark(at.place as usize);
@@ -295,7 +326,20 @@ fn update_places<S, V>(
 
 /// Brings the contacts of one pair up to date.
 fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
-    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>>,
+    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
+    reuse: Reuse<'_, N, D>,
+    place: usize,
+    changes: &mut Changes,
+) {
+    if !reuse.keeps(rows, place) {
+        compute_contact(rows, reuse.table, place, changes);
+        reuse.note(rows, place);
+    }
+}
+
+/// Computes the contacts of one pair.
+fn compute_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
+    rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     table: &ObjectTable<N, D>,
     place: usize,
     changes: &mut Changes,
@@ -319,10 +363,10 @@ fn update_status<N: Space<D>, const D: usize>(
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
 /// changed comes in the order of the group either way.
-fn update_group<S: Send + Sync, V: Default + Send + Sync>(
-    group: &mut Group<S, V>,
+fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sync>(
+    group: &mut Group<S, V, R>,
     changes: &mut Changes,
-    update: impl Fn(Rows<'_, S, V>, &mut Changes) + Sync,
+    update: impl Fn(Rows<'_, S, V, R>, &mut Changes) + Sync,
 ) {
     let rows = group.rows();
     #[cfg(feature = "parallel")]
@@ -344,11 +388,11 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync>(
 }
 
 /// Updates the pairs of a chunk that need it, one by one.
-fn update_each<N: Space<D>, S, V, const D: usize>(
-    mut rows: Rows<'_, S, V>,
+fn update_each<N: Space<D>, S, V, R, const D: usize>(
+    mut rows: Rows<'_, S, V, R>,
     table: &ObjectTable<N, D>,
     changes: &mut Changes,
-    update: impl Fn(&mut Rows<'_, S, V>, &ObjectTable<N, D>, usize, &mut Changes),
+    update: impl Fn(&mut Rows<'_, S, V, R>, &ObjectTable<N, D>, usize, &mut Changes),
 ) {
     for place in 0..rows.len() {
         if rows.take_due(place, table) {

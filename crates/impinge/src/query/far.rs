@@ -73,6 +73,13 @@ impl<N: Real, const D: usize> Bounds<N, D> {
         Self { extent, middle: aabb.center().coords, half: aabb.half_extents() }
     }
 
+    /// How far the points of the shape are from the origin of its frame at most; infinite where that is not
+    /// known.
+    pub(crate) fn reach(&self) -> N {
+        let corner = (self.middle.abs() + self.half).norm();
+        min(self.extent, corner)
+    }
+
     /// [`Apart::is_beyond`] for the shapes that these hold.
     #[inline]
     pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {

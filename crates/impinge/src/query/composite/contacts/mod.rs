@@ -92,6 +92,15 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         self.patches.iter().map(|patch| patch.points.len()).sum()
     }
 
+    /// Calls with the normal, the distance and the first point of each contact.
+    pub(crate) fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
+        for Patch { normal, points } in &mut self.patches {
+            points.iter_mut().for_each(|point| {
+                each(normal, &mut point.raw.distance, &point.raw.point1);
+            });
+        }
+    }
+
     /// The two shapes change places.
     pub(crate) fn flip_names(&mut self) {
         self.reference = None;
