@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         contenders.retain(|one| one.name().contains(&arguments.only));
         let mut rows = race(case, question, regime, contenders, rounds);
         rows.extend(target(case, question, scale));
-        verdicts.add(&rows);
+        verdicts.add(question, &rows);
         table.add(rows);
     });
     drop(std::panic::take_hook());

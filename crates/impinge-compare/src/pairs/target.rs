@@ -1,5 +1,7 @@
 //! The times that impinge is to reach, and whether it does.
 
+use std::collections::BTreeMap;
+
 use super::question::Question;
 use crate::measure::Times;
 use crate::table::Row;
@@ -32,6 +34,8 @@ const TARGETS: &[(&str, Question, f64)] = &[
 /// How the suite went.
 #[derive(Debug, Default)]
 pub struct Verdicts {
+    /// By question, and once more for contacts that are kept: how many times as fast as the best rival.
+    speeds: BTreeMap<String, Vec<f64>>,
     /// Cases where impinge took more than half of the time of its best rival: how much more, the two
     /// times, and the rival.
     slower: Vec<(f64, [f64; 2], Row)>,
@@ -64,24 +68,46 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 }
 
 impl Verdicts {
-    /// Looks at the rows of one case.
-    pub fn add(&mut self, rows: &[Row]) {
-        let is_whole =
-            |row: &&Row| is_ours(row) && ![PART, REUSING_PART].contains(&&*row.contender);
-        let ours = least(rows.iter().filter(is_whole));
+    /// Looks at the rows of one case. Manifolds of a world are held against rivals by what its narrow phase
+    /// takes.
+    pub fn add(&mut self, question: Question, rows: &[Row]) {
         let is_rival = |row: &&Row| !is_ours(row) && row.contender != "target";
-        let rival = least(rows.iter().filter(is_rival));
-        let (Some(ours), Some(rival)) = (ours, rival) else { return };
+        let Some(rival) = least(rows.iter().filter(is_rival)) else { return };
+        let named = |name: &str| rows.iter().find(|row| row.contender == name);
+        let best = || least(rows.iter().filter(|row| is_ours(row)));
+        let ours = if question.is_manifold() { named(PART) } else { best() };
+        let Some(ours) = ours else { return };
         self.cases += 1;
         let times = [ours, rival].map(|row| row.times.median());
-        let ratio = times[0] / times[1];
-        if ratio > 0.5 {
-            self.slower.push((ratio, times, rival.clone()));
+        if times[0] > 0.5 * times[1] {
+            self.slower.push((times[0] / times[1], times, rival.clone()));
+        }
+        let mut note = |name: String, time| {
+            self.speeds.entry(name).or_default().push(times[1] / time);
+        };
+        note(question.name().to_owned(), times[0]);
+        if let Some(reusing) = named(REUSING_PART) {
+            note(format!("{}, contacts kept", question.name()), reusing.times.median());
         }
     }
 
-    /// Prints the cases where impinge is not twice as fast as its best rival, worst first.
+    /// Prints how the questions went, and the cases where impinge is not twice as fast as its best rival,
+    /// worst first.
     pub fn print(&mut self) {
+        println!("\ntimes as fast as the best rival, over all cases of a question");
+        println!("{:<32} cases  median   >= 1   >= 2   >= 4", "question");
+        for (question, speeds) in &mut self.speeds {
+            speeds.sort_by(f64::total_cmp);
+            let share = |least: f64| {
+                let count = speeds.iter().filter(|speed| **speed >= least).count();
+                100.0 * count as f64 / speeds.len() as f64
+            };
+            let (cases, median) = (speeds.len(), speeds[speeds.len() / 2]);
+            let [one, two, four] = [1.0, 2.0, 4.0].map(share);
+            println!(
+                "{question:<32} {cases:>5} {median:>7.2} {one:>5.0}% {two:>5.0}% {four:>5.0}%"
+            );
+        }
         self.slower.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (count, cases) = (self.slower.len(), self.cases);
         println!("\nmore than half of the time of the best rival: {count} of {cases} cases");

@@ -127,7 +127,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// and a thousandth of the size of an object. This is the contact recycling of Box2D and Box3D.
     ///
     /// ```
-    /// use impinge::dim3::{CollisionWorld, DefaultNarrowPhase};
+    /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
+    /// use impinge::dim3::world::CollisionWorld;
     ///
     /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
     /// world.set_narrow_phase(Box::new(DefaultNarrowPhase::new().reusing(0.001)));
