@@ -59,6 +59,7 @@ pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
         IdAllocator, PairProximityDetector, ProximityDetector, ProximityDispatcher, ProximityPair,
+        ReuseError,
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
