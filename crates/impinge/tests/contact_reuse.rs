@@ -249,6 +249,29 @@ fn another_shape_or_question_is_answered_anew() {
     assert!(stage.depths().is_empty(), "without a floor there is nothing to stand on");
 }
 
+#[test]
+fn what_was_fast_and_slows_down_is_kept_again() {
+    // A box over the edge of a floor: contacts at the edge stay there, kept ones go with the box.
+    let mut stage = Stage::<f64>::new(floor(), [0.0, 0.499, 0.0], solids()[0].clone());
+    let edge = |stage: &Stage<f64>| {
+        let contacts = stage.world.contact_views().flat_map(|(_, _, view)| view.contacts());
+        contacts.map(|point| point.contact.world1.x.max(point.contact.world2.x)).fold(0.0, f64::max)
+    };
+    for step in 0..10 {
+        stage.moved([1.7 + 0.02 * f64::from(step), 0.499, 0.0], 0.0);
+        let at = edge(&stage);
+        assert!((at - 2.0).abs() < 1e-9, "fast, the edge is at {at}");
+    }
+    let mut kept = 0;
+    for step in 0..20 {
+        stage.moved([1.88 + 0.000_05 * f64::from(step), 0.499, 0.0], 0.0);
+        let off = (edge(&stage) - 2.0).abs();
+        assert!(off < TOLERANCE, "{off} is more than it moved");
+        kept += usize::from(off > 1e-6);
+    }
+    assert!(kept >= 10, "kept {kept} times");
+}
+
 /// Capsules that lie on capsules, and how many contacts they have and of what depths: the upper ones lean,
 /// less and less until both of their ends are near; all of them at once move, or one.
 fn capsules(narrow_phase: DefaultNarrowPhase<f64, 3>) -> Vec<Vec<f64>> {

@@ -51,13 +51,22 @@ pub(crate) struct Reference<N: Real, const D: usize> {
     /// How far the points that matter are from the origin of that solid at most; infinite if nothing can be
     /// kept.
     reach: N,
+    /// For so many updates nothing is held against this, nor noted: the pair is fast.
+    pause: u8,
     /// Of the contacts, in their order.
     distances: SmallVec<[N; 4]>,
 }
 
+/// A pair that has moved by so many times what may be kept is fast.
+const FAST: f64 = 4.0;
+/// So many updates of a fast pair are not noted before one is, for the next to be held against: where
+/// everything moves fast, that is what keeping contacts costs.
+const PAUSE: u8 = 6;
+
 impl<N: Real, const D: usize> Default for Reference<N, D> {
     fn default() -> Self {
-        Self { pose21: Pose::identity(), reach: N::INFINITY, distances: SmallVec::new() }
+        let (pose21, distances) = (Pose::identity(), SmallVec::new());
+        Self { pose21, reach: N::INFINITY, pause: 0, distances }
     }
 }
 
@@ -126,12 +135,22 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
         place: usize,
     ) -> bool {
-        let (key, reference) = (rows.keys[place], &rows.references[place]);
+        let (key, reference) = (rows.keys[place], &mut rows.references[place]);
+        if reference.pause > 0 {
+            reference.pause -= 1;
+            return false;
+        }
+        if !reference.reach.is_finite_number() {
+            return false;
+        }
         let entry = &mut rows.states[place];
         let pose21 = self.pose21(key, entry.state.is_swapped());
         let prediction = entry.request.prediction;
-        let is_kept = reference.motion(&pose21) < min(self.tolerance, prediction)
-            && reference.measure(&pose21, &mut entry.state, prediction);
+        let (motion, limit) = (reference.motion(&pose21), min(self.tolerance, prediction));
+        if motion > limit * N::lit(FAST) {
+            reference.pause = PAUSE;
+        }
+        let is_kept = motion < limit && reference.measure(&pose21, &mut entry.state, prediction);
         if is_kept {
             ContactView::expire_any(rows.views.get_mut(place));
         }
@@ -147,6 +166,9 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     ) {
         let (key, state) = (rows.keys[place], &mut rows.states[place].state);
         let Some(reference) = rows.references.get_mut(place) else { return };
+        if reference.pause > 0 {
+            return;
+        }
         let is_swapped = state.is_swapped();
         reference.pose21 = self.pose21(key, is_swapped);
         // Solids meet where both of them are: of one without end, or larger, only what is near the other
