@@ -76,8 +76,9 @@ impl<N: Real, const D: usize> Bounds<N, D> {
     /// How far the points of the shape are from the origin of its frame at most; infinite where that is not
     /// known.
     pub(crate) fn reach(&self) -> N {
+        // No number for the box of a half-space, which says nothing.
         let corner = (self.middle.abs() + self.half).norm();
-        min(self.extent, corner)
+        if corner < self.extent { corner } else { self.extent }
     }
 
     /// [`Apart::is_beyond`] for the shapes that these hold.
@@ -137,9 +138,20 @@ mod tests {
     use crate::query::separation::hulls::tests::Random;
     use crate::query::separation::separation;
     use crate::shape::{
-        Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Rounded,
-        Segment, Shape, TaperedCapsule, Triangle,
+        Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Plane,
+        Rounded, Segment, Shape, TaperedCapsule, TriMesh, Triangle,
     };
+
+    #[test]
+    fn reaches_are_those_of_the_nearer_bound() {
+        let half = Vector::<f64, 3>::new(1.0, 2.0, 2.0);
+        let corners = [[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]].map(Point::<f64, 3>::from);
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
+        let plane = Plane::<f64, 3>::new(Vector::<f64, 3>::y_axis());
+        assert_eq!(Bounds::of(&Cuboid::new(half)).reach(), 3.0, "its corner");
+        assert_eq!(Bounds::of(&mesh).reach(), 5.0, "of the box, as there is no ball");
+        assert_eq!(Bounds::of(&plane).reach(), f64::INFINITY, "it has no end");
+    }
 
     /// A solid of any kind that has a ball, with sizes between nothing and one.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
