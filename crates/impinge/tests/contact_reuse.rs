@@ -9,7 +9,9 @@ use impinge::math::{Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{
     CollisionObjectHandle, ContactEvent, DefaultNarrowPhase, GeometricQueryType,
 };
-use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle, TriMesh};
+use impinge::shape::{
+    Ball, Capsule, Compound, ConvexHull, Cuboid, Cylinder, HeightField, Plane, ShapeHandle, TriMesh,
+};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Scene, SceneQuery, mixed_shapes, pile};
 use scene_stage::{Digest, Play, Player, assert_views_agree, digest_state};
@@ -156,8 +158,17 @@ struct Stage<N: Real> {
 
 impl<N: Real> Stage<N> {
     fn new(ground: ShapeHandle<N, 3>, place: [f64; 3], object: ShapeHandle<N, 3>) -> Self {
+        Self::within(TOLERANCE, ground, place, object)
+    }
+
+    fn within(
+        tolerance: f64,
+        ground: ShapeHandle<N, 3>,
+        place: [f64; 3],
+        object: ShapeHandle<N, 3>,
+    ) -> Self {
         let mut world = World::<N>::new(N::lit(0.05));
-        let narrow_phase = DefaultNarrowPhase::<N, 3>::new().reusing(N::lit(TOLERANCE));
+        let narrow_phase = DefaultNarrowPhase::<N, 3>::new().reusing(N::lit(tolerance));
         world.set_narrow_phase(Box::new(narrow_phase));
         let query = GeometricQueryType::Contacts(N::lit(PREDICTION / 2.0), N::ZERO);
         let groups = CollisionGroups::new();
@@ -247,6 +258,50 @@ fn another_shape_or_question_is_answered_anew() {
     stage.world.remove(&[stage.ground]);
     stage.world.update();
     assert!(stage.depths().is_empty(), "without a floor there is nothing to stand on");
+}
+
+/// Where a leaning capsule touches a ground, step by step, while it leans over.
+fn leaning(tolerance: f64, ground: &ShapeHandle<f64, 3>) -> Vec<f64> {
+    let capsule = ShapeHandle::new(Capsule::<f64, 3>::new(0.5, 0.3));
+    let lean =
+        |step: u32| UnitQuaternion::from_scaled_axis(v(0.0, 0.0, 0.3 + 0.000_05 * f64::from(step)));
+    let place = |step: u32| {
+        let height = 0.299 + 0.5 * (0.3 + 0.000_05 * f64::from(step)).cos();
+        Isometry3::from_parts(Translation3::new(0.2, height, 0.1), lean(step))
+    };
+    let mut stage = Stage::within(tolerance, ground.clone(), [0.2, 0.9, 0.1], capsule);
+    let mut found = Vec::new();
+    for step in 0..16 {
+        stage.world.set_position(stage.object, place(step));
+        stage.world.set_position(stage.ground, Isometry3::identity());
+        stage.world.update();
+        let contacts = stage.world.contact_views().flat_map(|(_, _, view)| view.contacts());
+        let deepest =
+            contacts.map(|point| point.contact).max_by(|a, b| a.depth.total_cmp(&b.depth));
+        found.push(deepest.expect("it touches").world2.x);
+    }
+    found
+}
+
+#[test]
+fn contacts_are_kept_on_every_ground() {
+    let slab = ShapeHandle::new(Cuboid::new(v::<f64>(2.0, 0.5, 2.0)));
+    let slab = Compound::new(vec![(Isometry3::translation(0.0, -0.5, 0.0), slab)]);
+    let heights = HeightField::<f64, 3>::new(2, 2, vec![0.0; 4], v(4.0, 1.0, 4.0));
+    let half_space = Plane::<f64, 3>::new(Vector::<f64, 3>::y_axis());
+    let grounds = [
+        ("half-space", ShapeHandle::new(half_space)),
+        ("mesh", floor()),
+        ("field", ShapeHandle::new(heights)),
+        ("compound", ShapeHandle::new(slab)),
+    ];
+    for (name, ground) in grounds {
+        let (exact, kept) = (leaning(0.0, &ground), leaning(TOLERANCE, &ground));
+        let offs: Vec<f64> = exact.iter().zip(&kept).map(|(a, b)| (a - b).abs()).collect();
+        assert!(offs.iter().all(|off| *off < TOLERANCE), "{name}: {offs:?}");
+        let count = offs.iter().filter(|off| **off > 1e-6).count();
+        assert!(count >= 8, "{name}: kept {count} times, {offs:?}");
+    }
 }
 
 #[test]
