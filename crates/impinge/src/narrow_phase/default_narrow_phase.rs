@@ -118,7 +118,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// anew, along the normal that was; a pair without contacts has none. A depth is then at most twice
     /// the tolerance off that of a query, and contacts may begin and end late by as much; solids that
     /// overlap are never missed, as no more than the prediction of the pair counts as little. Numbers,
-    /// features and the order of contacts stay. The answers are the same on every machine and any number
+    /// features and the order of contacts stay. Balls beside balls, boxes, segments and capsules, whose
+    /// closed forms are as quick, are computed anew. The answers are the same on every machine and any number
     /// of threads, but depend on where objects were before.
     ///
     /// Worth it where most pairs move by less than a tenth of the tolerance in a step: a pair of hulls or

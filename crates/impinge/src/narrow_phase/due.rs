@@ -55,10 +55,6 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> 
         if !self.due.contains(index) {
             return None;
         }
-        // What is computed here is not noted, so that nothing may be held against what was before.
-        if let Some(reference) = self.rows.references.get_mut(index) {
-            *reference = Reference::default();
-        }
         let (key, entry, view) = self.rows.row(index);
         ContactView::expire_any(view);
         let poses = [self.table.pose(key.0), self.table.pose(key.1)];

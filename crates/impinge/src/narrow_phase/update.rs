@@ -221,15 +221,17 @@ fn update_convex<N: Space<D>, const D: usize>(
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
     let mut due = rows.take_all_due(reuse.table);
-    // The closed forms of balls are as quick as moving contacts along.
-    let has_ball =
-        solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))));
-    if has_ball || rows.references.is_empty() {
+    if rows.references.is_empty() || has_ball(solids) {
         return compute_convex(&mut rows, reuse.table, due, (solids, changes));
     }
     due.retain(|place| !reuse.keeps(&mut rows, place));
     compute_convex(&mut rows, reuse.table, due, (solids, changes));
     due.indices().for_each(|place| reuse.note(&mut rows, place));
+}
+
+/// The contacts of such pairs are never kept: their closed forms are as quick as moving contacts along.
+fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> bool {
+    solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
 
 /// Computes the contacts of those pairs of a chunk that are due.
@@ -293,14 +295,15 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     changes: &mut Changes,
 ) {
     let first = picked[0].place as usize;
-    let are_boxes =
-        matches!(rows.states[first].state.solids(), Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
+    let solids = rows.states[first].state.solids();
+    let are_boxes = matches!(solids, Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
+    let may_keep = !has_ball(solids);
     for picked in picked.chunks(CHUNK) {
         let mut places: Places = picked.iter().map(|at| at.place as usize).collect();
         for &place in &places {
             rows.take_mark(place);
         }
-        places.retain(|place| !reuse.keeps(&mut rows, *place));
+        places.retain(|place| !(may_keep && reuse.keeps(&mut rows, *place)));
         if are_boxes {
             update_boxes_at(&mut rows, reuse.table, &places, changes);
         } else {
@@ -308,7 +311,9 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
             let mut compute = |&place: &usize| compute_contact(&mut rows, table, place, changes);
             places.iter().for_each(&mut compute);
         }
-        places.iter().for_each(|&place| reuse.note(&mut rows, place));
+        if may_keep {
+            places.iter().for_each(|&place| reuse.note(&mut rows, place));
+        }
     }
 }
 
