@@ -13,7 +13,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::narrow_phase::{
     CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
-    GeometricQueryType, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
+    GeometricQueryType, Interaction, KeptContacts, ObjectTable, Posed, proximity_of, update_lanes2,
     update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
@@ -189,6 +189,8 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) project: ProjectFn<N, D>,
     pub(crate) holds: fn(&Body<N, D>, &Point<N, D>) -> bool,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
+    pub(crate) turn_over:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &[Interaction], &mut Events),
     pub(crate) pair_stopped:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32, &mut Events),
     pub(crate) object_changed:
@@ -216,6 +218,7 @@ impl<N: Space<D>, const D: usize> WorldTables<N, D> {
             project: Body::project,
             holds: Body::holds,
             pair_started: DefaultNarrowPhase::pair_started,
+            turn_over: DefaultNarrowPhase::turn_over,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,
         }

@@ -9,6 +9,7 @@ use ncollide3d::pipeline as ncollide;
 use crate::broad::swarm::{Cell, is_borderline};
 use crate::broad::{MARGIN, key};
 use crate::world::PREDICTION;
+use crate::world::ours::read;
 pub use crate::world::rapier::space::Colliders as Rapier;
 
 /// A world of boxes.
@@ -72,14 +73,8 @@ impl World for Ours {
     }
 
     fn read(&self) -> (usize, f32) {
-        let mut reading = (0, 0.0);
-        for (_, _, manifold) in self.world.contact_views() {
-            for tracked in manifold.contacts() {
-                reading.0 += 1;
-                reading.1 += tracked.contact.depth;
-            }
-        }
-        reading
+        let reading = read(&self.world);
+        (reading.points, reading.depth as f32)
     }
 
     fn touching(&self) -> Vec<u64> {

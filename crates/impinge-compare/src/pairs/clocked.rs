@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use impinge::math::Space;
 use impinge::narrow_phase::{
-    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
+    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
+    ProximityPair,
 };
 use impinge::world::{
     CollisionObjects, ContactManifolds, ContactPairs, ContactViews, NarrowPhase, ProximityPairs,
@@ -63,6 +64,15 @@ where
         started: bool,
     ) {
         self.inner.handle_interaction(events, objects, handle1, handle2, started);
+    }
+
+    fn handle_interactions(
+        &mut self,
+        events: &mut Events,
+        objects: &Objects<D, T>,
+        interactions: &[Interaction],
+    ) {
+        self.inner.handle_interactions(events, objects, interactions);
     }
 
     fn handle_removal(

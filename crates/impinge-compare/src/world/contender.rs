@@ -16,6 +16,16 @@ pub trait Contender<const D: usize> {
     /// Reads every contact point; timed.
     fn read(&self) -> Reading;
 
+    /// A step, and how many nanoseconds it took.
+    fn timed_step(&mut self) -> f64 {
+        timed(|| self.step()).0
+    }
+
+    /// The same of reading, and what was read.
+    fn timed_read(&self) -> (f64, Reading) {
+        timed(|| self.read())
+    }
+
     /// The pairs with a contact point, smaller index first, sorted; not timed.
     fn touching(&self) -> Vec<(usize, usize)>;
 }
@@ -41,6 +51,14 @@ pub struct Reading {
     pub points: usize,
     /// The sum of their depths.
     pub depth: f64,
+}
+
+#[cfg(feature = "parallel")]
+impl Reading {
+    /// Both together.
+    pub fn plus(self, other: Self) -> Self {
+        Self { points: self.points + other.points, depth: self.depth + other.depth }
+    }
 }
 
 /// How one contender did, in milliseconds per step.
@@ -87,8 +105,8 @@ impl Lane {
         is_kept: bool,
     ) {
         contender.prepare(moved);
-        let (update, ()) = timed(|| contender.step());
-        let (read, reading) = timed(|| contender.read());
+        let update = contender.timed_step();
+        let (read, reading) = contender.timed_read();
         assert!(reading.depth.is_finite(), "{} points of no depth", reading.points);
         self.points = reading.points;
         if is_kept {

@@ -39,10 +39,10 @@
 //! `joltc-sys`, another way to Jolt, has no listener of contacts: no point could be read. The safe crates
 //! above `boxdd-sys` and `boxddd-sys` look up each name in registries of their own, which would be
 //! charged to the engines. `box3d-sys` needs libclang, and has what `boxddd-sys` has.
-mod contender;
+pub mod contender;
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 mod engines;
-mod ours;
+pub mod ours;
 pub mod rapier;
 
 #[cfg(feature = "jolt")]
@@ -142,7 +142,8 @@ fn run_stages<const D: usize>(
 }
 
 /// The same scene, in which the sum over a pair of what is asked for is the prediction.
-fn asking_for_contacts<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
+/// The same scene, all of whose objects ask for contacts.
+pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     let linear = f64::from(PREDICTION) / 2.0;
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear, angular: 0.0 };

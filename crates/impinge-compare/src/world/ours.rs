@@ -5,11 +5,12 @@ use std::hint::black_box;
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
+use impinge::query::ManifoldView;
 use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, HeightField, Plane, Polyline,
     Segment, ShapeHandle, TriMesh, Triangle,
 };
-use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
 use super::PREDICTION;
@@ -146,6 +147,39 @@ fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> 
     })
 }
 
+/// Reads every contact point of a world.
+pub fn read<const D: usize, T: Sync>(world: &CollisionWorld<f32, D, T>) -> Reading
+where
+    f32: Space<D>,
+{
+    #[cfg(feature = "parallel")]
+    if rayon::current_num_threads() > 1 {
+        use rayon::prelude::*;
+        let pieces = world.contact_view_pieces(4 * rayon::current_num_threads());
+        let readings = pieces.into_par_iter().map(read_all);
+        return readings.reduce(Reading::default, Reading::plus);
+    }
+    read_all(world.contact_views())
+}
+
+/// Two objects of a world and a manifold of theirs.
+type View<'a, const D: usize, T> =
+    (&'a CollisionObject<f32, D, T>, &'a CollisionObject<f32, D, T>, ManifoldView<'a, f32, D>);
+
+fn read_all<'a, const D: usize, T: 'a>(views: impl Iterator<Item = View<'a, D, T>>) -> Reading
+where
+    f32: Space<D>,
+{
+    let mut reading = Reading::default();
+    for (_, _, manifold) in views {
+        for point in manifold.contacts() {
+            reading.points += 1;
+            reading.depth += f64::from(black_box(point).contact.depth);
+        }
+    }
+    reading
+}
+
 impl<const D: usize> Contender<D> for Impinge<D>
 where
     f32: Space<D>,
@@ -164,14 +198,7 @@ where
     }
 
     fn read(&self) -> Reading {
-        let mut reading = Reading::default();
-        for (_, _, manifold) in self.world.contact_views() {
-            for point in manifold.contacts() {
-                reading.points += 1;
-                reading.depth += f64::from(black_box(point).contact.depth);
-            }
-        }
-        reading
+        read(&self.world)
     }
 
     fn touching(&self) -> Vec<(usize, usize)> {

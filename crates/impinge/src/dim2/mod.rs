@@ -58,8 +58,8 @@ pub mod broad_phase {
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
-        IdAllocator, PairProximityDetector, ProximityDetector, ProximityDispatcher, ProximityPair,
-        ReuseError,
+        IdAllocator, Interaction, PairProximityDetector, ProximityDetector, ProximityDispatcher,
+        ProximityPair, ReuseError,
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 

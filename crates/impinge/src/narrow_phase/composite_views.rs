@@ -1,5 +1,7 @@
 //! All contacts of pairs with composites, read where they lie.
 
+use core::ops::Range;
+
 use super::ObjectTable;
 use super::lanes::CompositeGroup;
 use crate::math::{Space, max};
@@ -9,6 +11,8 @@ use crate::query::ManifoldView;
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     group: &'a CompositeGroup<N, D>,
+    /// Which of the pairs touch, sixty-four in a word.
+    touching: &'a [u64],
     /// The next word of flags, and what is left of the one before.
     word: usize,
     flags: u64,
@@ -19,14 +23,20 @@ pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
 
 impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
     pub(super) fn new(group: &'a CompositeGroup<N, D>, table: &'a ObjectTable<N, D>) -> Self {
-        Self { table, group, word: 0, flags: 0, place: 0, patch: usize::MAX }
+        let touching = group.touching();
+        Self { table, group, touching, word: 0, flags: 0, place: 0, patch: usize::MAX }
+    }
+
+    /// The manifolds of some words of flags alone.
+    pub(super) fn of_words(self, words: Range<usize>) -> Self {
+        Self { touching: &self.touching[..words.end], word: words.start, ..self }
     }
 
     /// Goes to the next pair that touches; `None` after the last.
     #[inline(never)]
     fn next_pair(&mut self) -> Option<()> {
         while self.flags == 0 {
-            self.flags = *self.group.touching().get(self.word)?;
+            self.flags = *self.touching.get(self.word)?;
             self.word += 1;
             self.fetch();
         }

@@ -1,5 +1,6 @@
 //! All contacts of pairs of convex solids, read where they lie.
 
+use core::ops::Range;
 use core::slice;
 
 use super::ObjectTable;
@@ -16,11 +17,30 @@ pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     /// The word of flags under way, and what is left of it.
     word: usize,
     flags: u64,
+    /// How many words come after it.
+    left: usize,
 }
 
 impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     pub(super) fn new(groups: &'a [ContactGroup<N, D>], table: &'a ObjectTable<N, D>) -> Self {
-        Self { table, groups: groups.iter(), group: None, word: 0, flags: 0 }
+        let groups = groups.iter();
+        Self { table, groups, group: None, word: 0, flags: 0, left: usize::MAX }
+    }
+
+    /// How many words of flags there are.
+    pub(super) fn num_words(groups: &[ContactGroup<N, D>]) -> usize {
+        groups.iter().map(|group| group.touching().len()).sum()
+    }
+
+    /// The manifolds of some words of flags alone.
+    pub(super) fn of_words(mut self, words: Range<usize>) -> Self {
+        (self.left, self.word) = (words.len(), words.start);
+        self.group = self.groups.next();
+        while let Some(group) = self.group.filter(|group| group.touching().len() <= self.word) {
+            self.word -= group.touching().len();
+            self.group = self.groups.next();
+        }
+        self
     }
 
     /// Goes to the next word of flags that is not zero; `None` after the last.
@@ -30,6 +50,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
             if let Some(group) = self.group
                 && let Some(&flags) = group.touching().get(self.word)
             {
+                self.left = self.left.checked_sub(1)?;
                 (self.word, self.flags) = (self.word + 1, flags);
                 if flags != 0 {
                     self.fetch(group);

@@ -192,7 +192,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// The pairs are others, or lie elsewhere, than when they were sorted.
-    fn forget_order(&mut self) {
+    pub(super) fn forget_order(&mut self) {
         self.order.take();
         self.touching.take();
     }
@@ -218,7 +218,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// The library's lane for a pair, if it serves it.
-    fn built_in_lane(&self, table: &ObjectTable<N, D>, key: (u32, u32)) -> Option<(Lane, usize)> {
+    pub(super) fn built_in_lane(
+        &self,
+        table: &ObjectTable<N, D>,
+        key: (u32, u32),
+    ) -> Option<(Lane, usize)> {
         let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
         match table.query(key.0).pair(table.query(key.1)) {
             PairQuery::Contacts { .. } => {
@@ -362,7 +366,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 }
 
 /// The shapes of a pair.
-fn shapes<N: Space<D>, const D: usize>(
+pub(super) fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     (first, second): (u32, u32),
 ) -> [&dyn Shape<N, D>; 2] {

@@ -127,6 +127,21 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
         Taken { state, is_touching, moved }
     }
 
+    /// Gives the place of a pair to another, which is due and does not touch, and answers whether the first
+    /// one did.
+    pub(crate) fn replace(&mut self, place: u32, key: (u32, u32), state: S) -> bool {
+        let at = place as usize;
+        let was_touching = set_touching(&mut self.touching, at, false);
+        (self.keys[at], self.due[at], self.states[at]) = (key, true, state);
+        if let Some(views) = self.views.get_mut() {
+            views[at] = V::default();
+        }
+        if let Some(references) = &mut self.references {
+            references[at] = R::default();
+        }
+        was_touching
+    }
+
     /// Gives back memory that a group which has stopped to grow does not need.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.keys);

@@ -39,3 +39,6 @@ impl CollisionObjectHandle {
         self.generation
     }
 }
+
+/// Two objects in order, and whether they started to be a pair (`true`) or stopped.
+pub type Interaction = ((CollisionObjectHandle, CollisionObjectHandle), bool);

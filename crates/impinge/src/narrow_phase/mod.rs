@@ -23,6 +23,7 @@ mod query_type;
 mod reuse;
 mod state;
 mod traits;
+mod turnover;
 mod update;
 mod view;
 
@@ -31,7 +32,7 @@ pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
 pub(crate) use due::{DueContacts, update_lanes2, update_lanes3};
 pub use events::{ContactEvent, Events, ProximityEvent};
 pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
-pub use handle::CollisionObjectHandle;
+pub use handle::{CollisionObjectHandle, Interaction};
 pub use ids::IdAllocator;
 pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;

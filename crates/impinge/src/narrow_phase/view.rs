@@ -5,7 +5,7 @@ use core::fmt;
 use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::entry::posed;
-use super::lanes::{CompositeGroup, ContactGroup, Lane};
+use super::lanes::{CompositeGroup, ContactGroup, Lane, Lanes};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
@@ -214,15 +214,41 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(crate) fn contact_views<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
-    ) -> impl Iterator<Item = (u32, u32, ManifoldView<'a, N, D>)> + 'a {
+    ) -> impl Iterator<Item = View<'a, N, D>> + 'a {
         let composites = CompositeViews::new(&self.lanes.composites, table);
-        let custom = self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
+        let convex = ConvexViews::new(&self.lanes.contacts, table);
+        Views { convex, others: composites.chain(self.custom_views()) }
+    }
+
+    /// The same, cut into at most so many pieces of about as many pairs, in their order.
+    pub(crate) fn contact_view_pieces<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+        pieces: usize,
+    ) -> impl Iterator<Item = impl Iterator<Item = View<'a, N, D>> + Send + 'a> + 'a {
+        let Lanes { contacts, composites, .. } = &self.lanes;
+        // Cut between words of flags: first those of convex solids, then those of composites.
+        let convex = ConvexViews::num_words(contacts);
+        let words = convex + composites.touching().len();
+        let pieces = pieces.min(words).max(1);
+        (0..pieces).map(move |piece| {
+            let [from, to] = [piece, piece + 1].map(|cut| words * cut / pieces);
+            let of_composites = from.saturating_sub(convex)..to.saturating_sub(convex);
+            let composites = CompositeViews::new(composites, table).of_words(of_composites);
+            let of_convex = from.min(convex)..to.min(convex);
+            let convex = ConvexViews::new(contacts, table).of_words(of_convex);
+            let custom = (to == words).then(|| self.custom_views());
+            Views { convex, others: composites.chain(custom.into_iter().flatten()) }
+        })
+    }
+
+    /// The manifolds of algorithms of the user's own that hold a contact.
+    fn custom_views<'a>(&'a self) -> impl Iterator<Item = View<'a, N, D>> + Send + 'a {
+        self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
             let views = manifolds.filter_map(ManifoldView::of_manifold);
             views.map(move |view| (key.0, key.1, view))
-        });
-        let convex = ConvexViews::new(&self.lanes.contacts, table);
-        Views { convex, others: composites.chain(custom) }
+        })
     }
 
     /// All pairs whose proximity is asked for, sorted by handle index.

@@ -5,14 +5,16 @@ use core::fmt;
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
-use super::step::{HandlePair, in_order};
+use super::step::in_order;
 use super::{
     BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase,
     WorldBroadPhase, WorldError,
 };
 use crate::math::Space;
 use crate::memory::Recent;
-use crate::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType};
+use crate::narrow_phase::{
+    CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType, Interaction,
+};
 use crate::shape::ShapeHandle;
 
 /// Objects that are told, at each update, who touches whom.
@@ -39,7 +41,7 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     /// Scratch: the objects whose pairs need other algorithms.
     pub(super) algorithms: Vec<u32>,
     /// Scratch: the pairs that started or stopped.
-    pub(super) interactions: Vec<(HandlePair, bool)>,
+    pub(super) interactions: Vec<Interaction>,
     /// How long the lists of the world have been lately.
     pub(super) recent: Recent,
 }

@@ -23,7 +23,9 @@ pub use collision_world::CollisionWorld;
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
 pub use groups::{CollisionGroups, GroupError};
-pub use narrow_phase::{ContactManifolds, ContactPairs, ContactViews, NarrowPhase, ProximityPairs};
+pub use narrow_phase::{
+    ContactManifolds, ContactPairs, ContactViewPiece, ContactViews, NarrowPhase, ProximityPairs,
+};
 pub use object::CollisionObject;
 pub use objects::CollisionObjects;
 pub use queries::{Neighbor, QueryFilter};

@@ -3,7 +3,8 @@
 use super::CollisionObjects;
 use crate::math::Space;
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
+    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
+    ProximityPair,
 };
 use crate::query::{ContactManifold, ManifoldView};
 
@@ -28,10 +29,17 @@ pub type ContactViews<'a, N, const D: usize> = Box<
         + 'a,
 >;
 
+/// The same for one thread of several.
+pub type ContactViewPiece<'a, N, const D: usize> = Box<
+    dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
+        + Send
+        + 'a,
+>;
+
 /// Exact answers for the pairs that the broad phase proposes.
 ///
 /// A world calls, in each update: [`Self::handle_change`] for each object with another shape or
-/// query type, [`Self::handle_interaction`] for each pair that started or stopped, then
+/// query type, [`Self::handle_interactions`] with the pairs that started or stopped, then
 /// [`Self::update`]. In all calls `handle1 < handle2`, except that both are the same for an object that
 /// is tested against itself, and [`CollisionObjects::table`] has the poses,
 /// shapes and query types that the call is about, and those of all objects with pairs.
@@ -49,6 +57,19 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
         started: bool,
     );
+
+    /// Several pairs, each of them once, started (`true`) or stopped: as [`Self::handle_interaction`] of
+    /// each, in any order.
+    fn handle_interactions(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        interactions: &[Interaction],
+    ) {
+        for &((handle1, handle2), started) in interactions {
+            self.handle_interaction(events, objects, handle1, handle2, started);
+        }
+    }
 
     /// The pair ends because one of its objects is being removed. What it did at the last update is
     /// over: one event at most.
@@ -127,6 +148,20 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }))
     }
 
+    /// What [`Self::contact_views`] gives, in its order, cut into at most so many pieces, at least one.
+    fn contact_view_pieces<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+        pieces: usize,
+    ) -> Vec<ContactViewPiece<'a, N, D>>
+    where
+        T: Sync,
+    {
+        let _ = pieces;
+        let views: Vec<_> = self.contact_views(objects).collect();
+        vec![Box::new(views.into_iter())]
+    }
+
     /// All pairs that are asked for proximity.
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
 }
@@ -150,6 +185,15 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         } else {
             (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
         }
+    }
+
+    fn handle_interactions(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        interactions: &[Interaction],
+    ) {
+        (N::tables().world.turn_over)(self, objects.table(), interactions, events);
     }
 
     fn handle_removal(
@@ -220,6 +264,18 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     ) -> ContactViews<'a, N, D> {
         let views = Self::contact_views(self, objects.table());
         Box::new(views.map(named(objects)))
+    }
+
+    fn contact_view_pieces<'a>(
+        &'a self,
+        objects: &'a CollisionObjects<N, D, T>,
+        pieces: usize,
+    ) -> Vec<ContactViewPiece<'a, N, D>>
+    where
+        T: Sync,
+    {
+        let pieces = Self::contact_view_pieces(self, objects.table(), pieces);
+        pieces.map(|views| Box::new(views.map(named(objects))) as _).collect()
     }
 
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {

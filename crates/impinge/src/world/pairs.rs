@@ -1,6 +1,5 @@
 //! Reading what the last update found: pairs, contacts, proximities, events.
 
-use super::narrow_phase::ContactViews;
 use super::step::in_order;
 use super::{CollisionObject, CollisionObjects, CollisionWorld};
 use crate::math::Space;
@@ -12,12 +11,19 @@ use crate::query::{ContactManifold, ManifoldView};
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
 /// Manifolds with their objects. Written out, since the closure of an adapter would be a call for each.
-struct Views<'a, N: Space<D>, const D: usize, T> {
+struct Views<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
-    views: ContactViews<'a, N, D>,
+    views: I,
 }
 
-impl<'a, N: Space<D>, const D: usize, T> Iterator for Views<'a, N, D, T> {
+/// Two handles and a manifold.
+type Named<'a, N, const D: usize> =
+    (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
+
+impl<'a, N: Space<D>, const D: usize, T, I> Iterator for Views<'a, N, D, T, I>
+where
+    I: Iterator<Item = Named<'a, N, D>>,
+{
     type Item = (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
     #[inline]
@@ -134,6 +140,53 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> {
         let views = self.narrow_phase.contact_views(&self.objects);
         Views { objects: &self.objects, views }
+    }
+
+    /// What [`Self::contact_views`] gives, in its order, cut into at most so many pieces of about as many
+    /// pairs, at least one: for threads of the user's own.
+    ///
+    /// Where the cuts are follows from the number of pieces alone. Pairs that touch a mesh cost more than
+    /// others: four pieces for a thread let quick ones help out.
+    ///
+    /// ```
+    /// use impinge::math::{Isometry3, Vector};
+    /// use impinge::narrow_phase::GeometricQueryType;
+    /// use impinge::shape::{Ball, ShapeHandle};
+    /// use impinge::world::{CollisionGroups, CollisionWorld};
+    ///
+    /// let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);
+    /// let ball = ShapeHandle::new(Ball::new(0.6));
+    /// let contacts = GeometricQueryType::Contacts(0.0, 0.0);
+    /// for n in 0..1000 {
+    ///     let place = Isometry3::translation(n as f32, 0.0, 0.0);
+    ///     world.add(place, ball.clone(), CollisionGroups::new(), contacts, ());
+    /// }
+    /// world.update();
+    /// let pieces = world.contact_view_pieces(4);
+    /// assert_eq!(pieces.len(), 4);
+    /// // With rayon: `pieces.into_par_iter().map(…).sum()`.
+    /// let points: usize = std::thread::scope(|scope| {
+    ///     let reading = pieces.into_iter().map(|views| {
+    ///         let counts = views.map(|(_, _, manifold)| manifold.len());
+    ///         scope.spawn(move || counts.sum::<usize>())
+    ///     });
+    ///     let threads: Vec<_> = reading.collect();
+    ///     threads.into_iter().map(|thread| thread.join().expect("counting does not fail")).sum()
+    /// });
+    /// assert_eq!(points, 999);
+    /// ```
+    pub fn contact_view_pieces(
+        &self,
+        pieces: usize,
+    ) -> Vec<
+        impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> + Send,
+    >
+    where
+        T: Sync,
+    {
+        let pieces = self.narrow_phase.contact_view_pieces(&self.objects, pieces);
+        let views = pieces.into_iter().map(|views| Views { objects: &self.objects, views });
+        views.collect()
     }
 
     /// Which pairs came to have contact points at the last update, and which lost their last.

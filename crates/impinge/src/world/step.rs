@@ -2,10 +2,12 @@
 
 use super::{CollisionWorld, NarrowPhase, WorldBroadPhase};
 use crate::math::Space;
-use crate::narrow_phase::{CollisionObjectHandle, ContactEvent, Events, ProximityEvent};
+use crate::narrow_phase::{
+    CollisionObjectHandle, ContactEvent, Events, Interaction, ProximityEvent,
+};
 use crate::query::Proximity;
 
-pub(super) type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
+type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Finds out what the changes since the last update have led to: pairs, contacts, proximities,
@@ -65,25 +67,27 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             interactions.push((in_order(handle1, handle2), has_started));
         });
         let interactions = core::mem::take(&mut self.interactions);
-        for &(pair, has_started) in &interactions {
-            self.tell(pair, has_started);
-        }
+        self.tell_all(&interactions);
         self.interactions = interactions;
         self.objects.table.tidy();
     }
 
-    /// Tells the narrow phase that a pair started or stopped. It has the rows of its pairs' objects and no
-    /// others.
+    /// Tells the narrow phase that a pair started or stopped.
     fn tell(&mut self, pair: HandlePair, has_started: bool) {
-        let (first, second) = pair;
-        if has_started {
+        self.tell_all(&[(pair, has_started)]);
+    }
+
+    /// Tells the narrow phase which pairs started or stopped. It has the rows of its pairs' objects and no
+    /// others.
+    fn tell_all(&mut self, interactions: &[Interaction]) {
+        for ((first, second), _) in interactions.iter().filter(|(_, has_started)| *has_started) {
             self.objects.lend(first.index());
             self.objects.lend(second.index());
         }
         let (events, objects) = (&mut self.events, &self.objects);
-        self.narrow_phase.handle_interaction(events, objects, first, second, has_started);
-        if !has_started {
-            self.give_back(pair);
+        self.narrow_phase.handle_interactions(events, objects, interactions);
+        for (pair, _) in interactions.iter().filter(|(_, has_started)| !has_started) {
+            self.give_back(*pair);
         }
     }
 

@@ -236,8 +236,27 @@ impl Hasher for Digest {
     }
 }
 
+/// Manifolds read in pieces are those read in one go, in the same order.
+fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWorld<N, D, T>) {
+    for most in [0, 1, 3, 50, usize::MAX] {
+        let pieces = world.contact_view_pieces(most);
+        assert!((1..=most.max(1)).contains(&pieces.len()), "{} of {most}", pieces.len());
+        let mut views = world.contact_views();
+        for (one, other, view) in pieces.into_iter().flatten() {
+            let expected = views.next().expect("as many in pieces");
+            assert_eq!((one.handle(), other.handle()), (expected.0.handle(), expected.1.handle()));
+            assert_eq!(view.len(), expected.2.len(), "the same manifold");
+            assert_eq!(view.deepest_contact().id, expected.2.deepest_contact().id, "the same");
+        }
+        assert!(views.next().is_none(), "no fewer in pieces");
+    }
+}
+
 /// Manifolds read in place are the manifolds, to the bit.
-pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) {
+pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T: Sync>(
+    world: &CollisionWorld<N, D, T>,
+) {
+    assert_pieces_agree(world);
     let views = world.contact_views();
     let mut views: Vec<_> = views.map(|(a, b, view)| ((a.handle(), b.handle()), view)).collect();
     views.sort_by_key(|(pair, _)| *pair);
@@ -261,7 +280,7 @@ pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T>(world: &Collisi
 
 /// Everything that a world says after an update: contacts with features and names, proximities and
 /// events, in order.
-pub(crate) fn digest_state<N: Space<D>, const D: usize, T>(
+pub(crate) fn digest_state<N: Space<D>, const D: usize, T: Sync>(
     world: &CollisionWorld<N, D, T>,
     digest: &mut Digest,
 ) {

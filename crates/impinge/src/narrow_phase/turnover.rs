@@ -1,0 +1,120 @@
+//! The pairs that begin and end in an update, all together.
+
+use smallvec::SmallVec;
+
+use super::default_narrow_phase::{push_change, shapes};
+use super::entry::{Change, ContactEntry};
+use super::lanes::{Lane, Location};
+use super::state::ContactState;
+use super::{DefaultNarrowPhase, Events, Interaction, ObjectTable, PairQuery};
+use crate::math::Space;
+use crate::pairs::pack;
+use crate::query::ManifoldRequest;
+
+/// Pairs of each sort whose memory is fetched together.
+const AT_ONCE: usize = 16;
+
+/// Some pairs, by handle index.
+type Keys = SmallVec<[(u32, u32); AT_ONCE]>;
+
+impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
+    /// Takes in the pairs that began and lets those go that ended, as
+    /// [`pair_started`](Self::pair_started) and [`pair_stopped`](Self::pair_stopped) do.
+    ///
+    /// Pairs lie anywhere in memory: what is known of several is fetched at once. One that begins gets the
+    /// place of one that ends, if the same algorithm serves both, so that no third one moves.
+    pub(crate) fn turn_over(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        interactions: &[Interaction],
+        events: &mut Events,
+    ) {
+        let all = |wanted: bool| {
+            let those = interactions.iter().filter(move |(_, has_started)| *has_started == wanted);
+            those.map(|((first, second), _)| (first.index(), second.index()))
+        };
+        let (mut starting, mut stopping) = (all(true), all(false));
+        loop {
+            let started: Keys = starting.by_ref().take(AT_ONCE).collect();
+            let stopped: Keys = stopping.by_ref().take(AT_ONCE).collect();
+            if started.is_empty() && stopped.is_empty() {
+                return;
+            }
+            self.fetch(table, &started, &stopped);
+            let both = started.len().min(stopped.len());
+            for (&new, &old) in started.iter().zip(&stopped) {
+                self.exchange(table, (old, new), events);
+            }
+            for &(first, second) in &started[both..] {
+                self.pair_started(table, first, second);
+            }
+            for &(first, second) in &stopped[both..] {
+                self.pair_stopped(table, first, second, events);
+            }
+        }
+    }
+
+    /// Brings what is known of some pairs into the cache, where whoever goes through them would wait for
+    /// one after the other. Changes nothing.
+    fn fetch(&self, table: &ObjectTable<N, D>, started: &[(u32, u32)], stopped: &[(u32, u32)]) {
+        let packed = |&(first, second): &(u32, u32)| pack(first, second);
+        let keys: SmallVec<[u64; 2 * AT_ONCE]> =
+            started.iter().chain(stopped).map(packed).collect();
+        self.pairs.fetch(&keys);
+        let kind = |object: u32| table.shape(object).geometry().kind() as u32;
+        let kinds = |sum: u32, &(first, second): &_| sum ^ kind(first) ^ kind(second);
+        let mut seen = u64::from(started.iter().fold(0, kinds));
+        for &(first, second) in stopped {
+            let index = self.pairs.index_of(first, second);
+            let location = index.map(|index| self.locations[index]);
+            if let Some(Location { lane: Lane::Contacts(group), place }) = location {
+                seen ^= self.lanes.contacts[usize::from(group)].state(place).number;
+            }
+        }
+        core::hint::black_box(seen);
+    }
+
+    /// Lets one pair go and takes another one in.
+    fn exchange(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        (old, new): ((u32, u32), (u32, u32)),
+        events: &mut Events,
+    ) {
+        if self.replace(table, (old, new), events).is_none() {
+            self.pair_stopped(table, old.0, old.1, events);
+            self.pair_started(table, new.0, new.1);
+        }
+    }
+
+    /// Puts a new pair in the place of an old one, if the library's contacts of the same kinds serve both.
+    fn replace(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        (old, new): ((u32, u32), (u32, u32)),
+        events: &mut Events,
+    ) -> Option<()> {
+        let index = self.pairs.index_of(old.0, old.1)?;
+        let Location { lane, place } = self.locations[index];
+        let (Lane::Contacts(group), PairQuery::Contacts { linear, angular }) =
+            (lane, table.query(new.0).pair(table.query(new.1)))
+        else {
+            return None;
+        };
+        let (_, max_points) =
+            self.built_in_lane(table, new).filter(|built_in| built_in.0 == lane)?;
+        if self.pairs.index_of(new.0, new.1).is_some() {
+            return None;
+        }
+        let request = ManifoldRequest::new(linear, angular, max_points);
+        let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, self.ids.allocate());
+        entry.state.set_solids(shapes(table, new));
+        let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);
+        let end = was_touching.then_some(Change::Contact { touching: false });
+        push_change(table, old, end, events);
+        self.pairs.replace(old, new);
+        self.due.push(new);
+        self.forget_order();
+        Some(())
+    }
+}
