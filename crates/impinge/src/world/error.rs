@@ -71,11 +71,12 @@ pub(super) fn finite_pose<N: Real, const D: usize>(
     pose: Pose<N, D>,
     handle: Option<CollisionObjectHandle>,
 ) -> Result<Pose<N, D>, WorldError> {
-    let mut numbers = pose.translation.iter().chain(pose.rotation.iter());
-    match numbers.find(|x| !x.is_finite_number()) {
-        Some(value) => Err(WorldError::Position { handle, value: value.as_f64() }),
-        None => Ok(pose),
+    if pose.is_finite() {
+        return Ok(pose);
     }
+    let mut numbers = pose.translation.iter().chain(pose.rotation.iter());
+    let value = numbers.find(|x| !x.is_finite_number()).map_or(f64::NAN, |value| value.as_f64());
+    Err(WorldError::Position { handle, value })
 }
 
 /// The query type, if its numbers are finite and not negative.

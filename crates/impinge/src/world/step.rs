@@ -7,6 +7,10 @@ use crate::narrow_phase::{
 };
 use crate::query::Proximity;
 
+/// Pairs that the narrow phase is told of in one go: few enough to be still in the cache when the rows of
+/// their objects are given back.
+const AT_ONCE: usize = 64;
+
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
@@ -80,6 +84,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Tells the narrow phase which pairs started or stopped. It has the rows of its pairs' objects and no
     /// others.
     fn tell_all(&mut self, interactions: &[Interaction]) {
+        interactions.chunks(AT_ONCE).for_each(|some| self.tell_some(some));
+    }
+
+    fn tell_some(&mut self, interactions: &[Interaction]) {
         for ((first, second), _) in interactions.iter().filter(|(_, has_started)| *has_started) {
             self.objects.lend(first.index());
             self.objects.lend(second.index());
