@@ -11,8 +11,8 @@ use crate::math::Space;
 use crate::pairs::pack;
 use crate::query::ManifoldRequest;
 
-/// Pairs whose memory is fetched together.
-const AT_ONCE: usize = 64;
+/// Pairs of each sort whose memory is fetched together.
+const AT_ONCE: usize = 16;
 
 /// Some pairs, by handle index.
 type Keys = SmallVec<[(u32, u32); AT_ONCE]>;
@@ -29,12 +29,17 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         interactions: &[Interaction],
         events: &mut Events,
     ) {
-        for some in interactions.chunks(AT_ONCE) {
-            let those = |wanted: bool| -> Keys {
-                let those = some.iter().filter(|(_, has_started)| *has_started == wanted);
-                those.map(|((first, second), _)| (first.index(), second.index())).collect()
-            };
-            let (started, stopped) = (those(true), those(false));
+        let all = |wanted: bool| {
+            let those = interactions.iter().filter(move |(_, has_started)| *has_started == wanted);
+            those.map(|((first, second), _)| (first.index(), second.index()))
+        };
+        let (mut starting, mut stopping) = (all(true), all(false));
+        loop {
+            let started: Keys = starting.by_ref().take(AT_ONCE).collect();
+            let stopped: Keys = stopping.by_ref().take(AT_ONCE).collect();
+            if started.is_empty() && stopped.is_empty() {
+                return;
+            }
             self.fetch(table, &started, &stopped);
             self.turn_some_over(table, (&started, &stopped), events);
         }
@@ -63,7 +68,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// one after the other. Changes nothing.
     fn fetch(&self, table: &ObjectTable<N, D>, started: &[(u32, u32)], stopped: &[(u32, u32)]) {
         let packed = |&(first, second): &(u32, u32)| pack(first, second);
-        let keys: SmallVec<[u64; AT_ONCE]> = started.iter().chain(stopped).map(packed).collect();
+        let keys: SmallVec<[u64; 2 * AT_ONCE]> =
+            started.iter().chain(stopped).map(packed).collect();
         self.pairs.fetch(&keys);
         let kind = |object: u32| table.shape(object).geometry().kind() as u32;
         let kinds = |sum: u32, &(first, second): &_| sum ^ kind(first) ^ kind(second);

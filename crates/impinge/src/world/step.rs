@@ -9,7 +9,7 @@ use crate::query::Proximity;
 
 /// Pairs that the narrow phase is told of in one go: few enough to be still in the cache when the rows of
 /// their objects are given back.
-const AT_ONCE: usize = 64;
+const AT_ONCE: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
