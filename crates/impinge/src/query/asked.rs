@@ -1,0 +1,252 @@
+//! Two shapes at isometries of the user's, as a question about both finds them.
+//!
+//! Rotations are turned into matrices where an algorithm asks for one; a ball needs none, and a solid that
+//! is held against a ball or a half-space is only asked to turn a few vectors.
+
+use super::far::Apart;
+use super::pair::{Pair, Placed, is_swapped};
+use super::separation::{of_balls, of_half_space};
+use crate::convex::Separation;
+use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Space, Vector};
+use crate::shape::{Ball, Geometry, Kind, Shape};
+
+/// A shape where the user's isometry puts it.
+type At<'q, 'a, N, R, const D: usize> = (&'q Isometry<N, R, D>, Geometry<'a, N, D>);
+
+/// Two shapes in their canonical order, as [`Ordered`](super::pair::Ordered) has it.
+///
+/// Answers are in the frame of the first: that of its solid or, of a ball, the axes of the world put
+/// through its centre.
+pub(super) struct Asked<'q, 'a, N: Real, R, const D: usize> {
+    first: At<'q, 'a, N, R, D>,
+    second: At<'q, 'a, N, R, D>,
+    /// The order is the opposite of that of the arguments.
+    pub(super) swapped: bool,
+}
+
+/// What composites are asked.
+type OfComposites<N, A, const D: usize> =
+    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<A>;
+
+impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, 'a, N, R, D> {
+    #[inline]
+    pub(super) fn new(
+        (isometry1, shape1): (&'q Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        (isometry2, shape2): (&'q Isometry<N, R, D>, &'a dyn Shape<N, D>),
+    ) -> Self {
+        let (one, two) = ((isometry1, shape1.geometry()), (isometry2, shape2.geometry()));
+        let (kind1, kind2) = (one.1.kind(), two.1.kind());
+        let [x1, x2] = [isometry1, isometry2].map(|isometry| isometry.translation.vector[0]);
+        let swapped = if kind1 != kind2 {
+            kind1 > kind2
+        } else if x1 < x2 || x1 > x2 {
+            x1 > x2
+        } else {
+            is_swapped_at_length(&one, &two)
+        };
+        let (first, second) = if swapped { (two, one) } else { (one, two) };
+        Self { first, second, swapped }
+    }
+
+    /// The distance of the two, of which any that is not positive will do; `None` beyond `limit`, and if
+    /// a pose is not finite.
+    #[inline]
+    pub(super) fn distance(&self, limit: N) -> Option<N> {
+        if self.has_composite() {
+            return self.of_composites(N::tables().distance_in_world, limit);
+        }
+        if let Some(found) = self.in_closed_form(limit) {
+            return found.map(|found| found.distance);
+        }
+        let pair = self.pair();
+        if pair.pose12.is_finite() { (N::tables().distance)(&pair, limit) } else { None }
+    }
+
+    /// The separation of the two in the world frame, as their arguments are ordered; `None` beyond `limit`,
+    /// and if a pose is not finite. Composites have their own answer.
+    #[inline]
+    pub(super) fn separation(
+        &self,
+        limit: N,
+        of_composites: OfComposites<N, Separation<N, D>, D>,
+    ) -> Option<Separation<N, D>> {
+        if self.has_composite() {
+            return self.of_composites(of_composites, limit);
+        }
+        let found = self.placed(&self.local(limit)?);
+        Some(if self.swapped { found.swapped() } else { found })
+    }
+
+    /// The separation of two convex solids in the frame of the first.
+    #[inline]
+    pub(super) fn local(&self, limit: N) -> Option<Separation<N, D>> {
+        if let Some(found) = self.in_closed_form(limit) {
+            return found;
+        }
+        let pair = self.pair();
+        if pair.pose12.is_finite() { (N::tables().separation)(&pair, limit) } else { None }
+    }
+
+    /// A separation in the frame of the first, in the world.
+    #[inline]
+    pub(super) fn placed(&self, found: &Separation<N, D>) -> Separation<N, D> {
+        let (isometry, distance) = (self.first.0, found.distance);
+        let outward = |v: &Vector<N, D>| self.from_first(v);
+        let place = |p: &Point<N, D>| Point::from(outward(&p.coords) + isometry.translation.vector);
+        let normal = outward(&found.normal);
+        Separation { distance, normal, point1: place(&found.point1), point2: place(&found.point2) }
+    }
+
+    /// The two as algorithms see them.
+    #[inline]
+    pub(super) fn pair(&self) -> Pair<'a, N, D> {
+        let ((isometry1, first), (isometry2, second)) = (self.first, self.second);
+        let pose12 = match first.0 {
+            Kind::Ball(_) => Pose {
+                rotation: matrix(&isometry2.rotation),
+                translation: self.between() + not_finite(&isometry1.rotation),
+            },
+            _ => {
+                let mut turn = isometry1.rotation.inverse();
+                turn *= isometry2.rotation.clone();
+                let translation = isometry1.rotation.inverse_transform_vector(&self.between());
+                Pose { rotation: matrix(&turn), translation }
+            }
+        };
+        Pair { first: first.0, second: second.0, pose12 }
+    }
+
+    /// They are certainly farther apart than `limit`.
+    #[inline]
+    pub(super) fn are_beyond(&self, limit: N) -> bool {
+        let apart = Apart { shapes: [self.first.1, self.second.1], between: self.between() };
+        (N::tables().are_beyond)(&apart, limit)
+    }
+
+    #[inline]
+    pub(super) fn has_composite(&self) -> bool {
+        // Composites are the last of kinds.
+        self.second.1.as_composite().is_some()
+    }
+
+    /// Composites have their own way, with poses and in the order of the arguments.
+    pub(super) fn of_composites<A>(&self, ask: OfComposites<N, A, D>, limit: N) -> Option<A> {
+        let [first, second] = [self.first, self.second].map(|(isometry, shape)| Placed {
+            pose: Pose::from_isometry(isometry),
+            shape,
+        });
+        if self.swapped { ask(&second, &first, limit) } else { ask(&first, &second, limit) }
+    }
+
+    /// [`Self::local`], where less than a pose will do.
+    #[inline]
+    fn in_closed_form(&self, limit: N) -> Option<Option<Separation<N, D>>> {
+        match (self.first.1.0, self.second.1.0) {
+            (Kind::Ball(ball1), Kind::Ball(ball2)) => Some(self.of_balls([ball1, ball2], limit)),
+            (Kind::Ball(ball), kind) => self.of_ball(ball, kind, limit),
+            (_, Kind::Plane(plane)) => {
+                let solid = self.first.1.as_support_map()?;
+                let normal = self.to_first(&self.from_second(plane.normal()));
+                let place = self.to_first(&self.between());
+                let is_known = is_finite(&(normal + place));
+                Some(if is_known { of_half_space(solid, &normal, &place, limit) } else { None })
+            }
+            _ => None,
+        }
+    }
+
+    #[inline]
+    fn of_balls(&self, [ball1, ball2]: [&Ball<N>; 2], limit: N) -> Option<Separation<N, D>> {
+        let [isometry1, isometry2] = [self.first.0, self.second.0];
+        let unknown = not_finite(&isometry1.rotation) + not_finite(&isometry2.rotation);
+        let center2 = self.between();
+        if !is_finite(&(center2 + unknown)) {
+            return None;
+        }
+        of_balls([ball1.radius(), ball2.radius()], &center2, limit, |axis| {
+            isometry1.rotation.transform_vector(&axis)
+        })
+    }
+
+    #[inline]
+    fn of_ball(
+        &self,
+        ball: &Ball<N>,
+        kind: Kind<'a, N, D>,
+        limit: N,
+    ) -> Option<Option<Separation<N, D>>> {
+        let rotation = &self.second.0.rotation;
+        let center = rotation.inverse_transform_vector(&-self.between());
+        if !is_finite(&(center + not_finite(&self.first.0.rotation))) {
+            return Some(None);
+        }
+        let seen = (N::tables().seen)(kind, &Point::from(center))?;
+        let distance = seen.distance - ball.radius();
+        if !(distance <= limit) {
+            return Some(None);
+        }
+        let normal = -rotation.transform_vector(&seen.outward);
+        let point1 = Point::from(normal * ball.radius());
+        let place = rotation.transform_vector(&seen.point.coords);
+        let point2 = Point::from(place + self.between());
+        Some(Some(Separation { distance, normal, point1, point2 }))
+    }
+
+    /// From the first's origin to the second's, in the world.
+    #[inline]
+    fn between(&self) -> Vector<N, D> {
+        self.second.0.translation.vector - self.first.0.translation.vector
+    }
+
+    /// A direction in the frame of the first, in the world.
+    #[inline]
+    fn from_first(&self, v: &Vector<N, D>) -> Vector<N, D> {
+        match self.first.1.0 {
+            Kind::Ball(_) => *v,
+            _ => self.first.0.rotation.transform_vector(v),
+        }
+    }
+
+    #[inline]
+    fn to_first(&self, v: &Vector<N, D>) -> Vector<N, D> {
+        self.first.0.rotation.inverse_transform_vector(v)
+    }
+
+    #[inline]
+    fn from_second(&self, v: &Vector<N, D>) -> Vector<N, D> {
+        self.second.0.rotation.transform_vector(v)
+    }
+}
+
+/// Of shapes of one kind that their first coordinates do not tell apart.
+#[cold]
+fn is_swapped_at_length<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+    one: &At<'_, '_, N, R, D>,
+    two: &At<'_, '_, N, R, D>,
+) -> bool {
+    is_swapped(&Pose::from_isometry(one.0), one.1, &Pose::from_isometry(two.0), two.1)
+}
+
+/// The matrix of a rotation.
+#[inline]
+fn matrix<N: Real, R: AbstractRotation<N, D>, const D: usize>(rotation: &R) -> Matrix<N, D> {
+    let mut matrix = Matrix::<N, D>::identity();
+    for axis in 0..D {
+        let column = matrix.column(axis).into_owned();
+        matrix.set_column(axis, &rotation.transform_vector(&column));
+    }
+    matrix
+}
+
+/// Zero; NaN if the rotation is not finite.
+#[inline]
+fn not_finite<N: Real, R: AbstractRotation<N, D>, const D: usize>(rotation: &R) -> Vector<N, D> {
+    // All of its numbers are in there.
+    rotation.transform_vector(&Vector::<N, D>::repeat(N::ONE)) * N::ZERO
+}
+
+/// No component is NaN or infinite.
+#[inline]
+fn is_finite<N: Real, const D: usize>(v: &Vector<N, D>) -> bool {
+    (0..D).fold(N::ZERO, |sum, axis| sum + v[axis] * N::ZERO) == N::ZERO
+}
