@@ -1,13 +1,13 @@
 //! Two shapes at isometries of the user's, as a question about both finds them.
 //!
-//! Rotations are turned into matrices where an algorithm asks for one; a ball needs none, and a solid that
-//! is held against a ball or a half-space is only asked to turn a few vectors.
+//! Most pairs need their poses as matrices. A ball needs none, and a solid that is held against a ball or a
+//! half-space only turns a few vectors, which takes a third of making the matrix or less.
 
 use super::far::Apart;
 use super::pair::{Pair, Placed, is_swapped};
 use super::separation::{of_balls, of_half_space};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Space, Vector};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, Geometry, Kind, Shape};
 
 /// A shape where the user's isometry puts it.
@@ -15,8 +15,8 @@ type At<'q, 'a, N, R, const D: usize> = (&'q Isometry<N, R, D>, Geometry<'a, N, 
 
 /// Two shapes in their canonical order, as [`Ordered`](super::pair::Ordered) has it.
 ///
-/// Answers are in the frame of the first: that of its solid or, of a ball, the axes of the world put
-/// through its centre.
+/// Answers in closed form are in the frame of the first: that of its solid or, of a ball, the axes of the
+/// world put through its centre.
 pub(super) struct Asked<'q, 'a, N: Real, R, const D: usize> {
     first: At<'q, 'a, N, R, D>,
     second: At<'q, 'a, N, R, D>,
@@ -24,9 +24,8 @@ pub(super) struct Asked<'q, 'a, N: Real, R, const D: usize> {
     pub(super) swapped: bool,
 }
 
-/// What composites are asked.
-type OfComposites<N, A, const D: usize> =
-    fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<A>;
+/// What two placed shapes are asked.
+type OfPlaced<N, A, const D: usize> = fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<A>;
 
 impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, 'a, N, R, D> {
     #[inline]
@@ -52,44 +51,28 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
     /// a pose is not finite.
     #[inline]
     pub(super) fn distance(&self, limit: N) -> Option<N> {
-        if self.has_composite() {
-            return self.of_composites(N::tables().distance_in_world, limit);
+        match self.in_closed_form(limit) {
+            Some(found) => found.map(|found| found.distance),
+            None => self.placed(N::tables().distance_in_world, limit),
         }
-        if let Some(found) = self.in_closed_form(limit) {
-            return found.map(|found| found.distance);
-        }
-        let pair = self.pair();
-        if pair.pose12.is_finite() { (N::tables().distance)(&pair, limit) } else { None }
     }
 
     /// The separation of the two in the world frame, as their arguments are ordered; `None` beyond `limit`,
-    /// and if a pose is not finite. Composites have their own answer.
+    /// and if a pose is not finite. What has no closed form is asked of them where they are placed.
     #[inline]
     pub(super) fn separation(
         &self,
         limit: N,
-        of_composites: OfComposites<N, Separation<N, D>, D>,
+        otherwise: OfPlaced<N, Separation<N, D>, D>,
     ) -> Option<Separation<N, D>> {
-        if self.has_composite() {
-            return self.of_composites(of_composites, limit);
-        }
-        let found = self.placed(&self.local(limit)?);
+        let Some(found) = self.in_closed_form(limit) else { return self.placed(otherwise, limit) };
+        let found = self.in_world(&found?);
         Some(if self.swapped { found.swapped() } else { found })
-    }
-
-    /// The separation of two convex solids in the frame of the first.
-    #[inline]
-    pub(super) fn local(&self, limit: N) -> Option<Separation<N, D>> {
-        if let Some(found) = self.in_closed_form(limit) {
-            return found;
-        }
-        let pair = self.pair();
-        if pair.pose12.is_finite() { (N::tables().separation)(&pair, limit) } else { None }
     }
 
     /// A separation in the frame of the first, in the world.
     #[inline]
-    pub(super) fn placed(&self, found: &Separation<N, D>) -> Separation<N, D> {
+    pub(super) fn in_world(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let (isometry, distance) = (self.first.0, found.distance);
         let outward = |v: &Vector<N, D>| self.from_first(v);
         let place = |p: &Point<N, D>| Point::from(outward(&p.coords) + isometry.translation.vector);
@@ -98,22 +81,14 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
     }
 
     /// The two as algorithms see them.
-    #[inline]
     pub(super) fn pair(&self) -> Pair<'a, N, D> {
-        let ((isometry1, first), (isometry2, second)) = (self.first, self.second);
-        let pose12 = match first.0 {
-            Kind::Ball(_) => Pose {
-                rotation: matrix(&isometry2.rotation),
-                translation: self.between() + not_finite(&isometry1.rotation),
-            },
-            _ => {
-                let mut turn = isometry1.rotation.inverse();
-                turn *= isometry2.rotation.clone();
-                let translation = isometry1.rotation.inverse_transform_vector(&self.between());
-                Pose { rotation: matrix(&turn), translation }
-            }
+        let [at1, at2] =
+            [self.first, self.second].map(|(isometry, _)| Pose::from_isometry(isometry));
+        let pose12 = match self.first.1.0 {
+            Kind::Ball(_) => Pose { rotation: at2.rotation, translation: self.between() },
+            _ => Pose::relative(&at1, &at2),
         };
-        Pair { first: first.0, second: second.0, pose12 }
+        Pair { first: self.first.1.0, second: self.second.1.0, pose12 }
     }
 
     /// They are certainly farther apart than `limit`.
@@ -123,24 +98,16 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
         (N::tables().are_beyond)(&apart, limit)
     }
 
-    #[inline]
-    pub(super) fn has_composite(&self) -> bool {
-        // Composites are the last of kinds.
-        self.second.1.as_composite().is_some()
-    }
-
-    /// Composites have their own way, with poses and in the order of the arguments.
-    pub(super) fn of_composites<A>(&self, ask: OfComposites<N, A, D>, limit: N) -> Option<A> {
-        let [first, second] = [self.first, self.second].map(|(isometry, shape)| Placed {
-            pose: Pose::from_isometry(isometry),
-            shape,
-        });
+    /// Asks them where they are placed, in the order of the arguments.
+    pub(super) fn placed<A>(&self, ask: OfPlaced<N, A, D>, limit: N) -> Option<A> {
+        let [first, second] = [self.first, self.second]
+            .map(|(isometry, shape)| Placed { pose: Pose::from_isometry(isometry), shape });
         if self.swapped { ask(&second, &first, limit) } else { ask(&first, &second, limit) }
     }
 
-    /// [`Self::local`], where less than a pose will do.
+    /// The separation of the two in the frame of the first, where that takes less than their poses.
     #[inline]
-    fn in_closed_form(&self, limit: N) -> Option<Option<Separation<N, D>>> {
+    pub(super) fn in_closed_form(&self, limit: N) -> Option<Option<Separation<N, D>>> {
         match (self.first.1.0, self.second.1.0) {
             (Kind::Ball(ball1), Kind::Ball(ball2)) => Some(self.of_balls([ball1, ball2], limit)),
             (Kind::Ball(ball), kind) => self.of_ball(ball, kind, limit),
@@ -225,17 +192,6 @@ fn is_swapped_at_length<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     two: &At<'_, '_, N, R, D>,
 ) -> bool {
     is_swapped(&Pose::from_isometry(one.0), one.1, &Pose::from_isometry(two.0), two.1)
-}
-
-/// The matrix of a rotation.
-#[inline]
-fn matrix<N: Real, R: AbstractRotation<N, D>, const D: usize>(rotation: &R) -> Matrix<N, D> {
-    let mut matrix = Matrix::<N, D>::identity();
-    for axis in 0..D {
-        let column = matrix.column(axis).into_owned();
-        matrix.set_column(axis, &rotation.transform_vector(&column));
-    }
-    matrix
 }
 
 /// Zero; NaN if the rotation is not finite.

@@ -91,12 +91,12 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     if asked.are_beyond(max_distance) {
         return None;
     }
-    if asked.has_composite() {
-        return asked.of_composites(N::tables().witness_in_world, max_distance);
-    }
-    let found = asked.local(max_distance).filter(|found| found.distance.is_finite_number())?;
+    let Some(found) = asked.in_closed_form(max_distance) else {
+        return asked.placed(N::tables().witness_in_world, max_distance);
+    };
+    let found = found.filter(|found| found.distance.is_finite_number())?;
     let features = (N::tables().witness_features)(&asked.pair(), &found);
-    let witness = joined(&asked.placed(&found), [0, 0], features);
+    let witness = joined(&asked.in_world(&found), [0, 0], features);
     Some(if asked.swapped { witness.flipped() } else { witness })
 }
 

@@ -19,6 +19,7 @@ mod ball_polytope;
 mod ball_segment;
 pub(super) mod ball_tapered;
 mod ball_triangle;
+mod ball_triangle2;
 mod chain;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;

@@ -3,7 +3,7 @@
 use super::projection::{Projection, first_axis};
 use super::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,
-    ball_segment, ball_tapered, ball_triangle,
+    ball_segment, ball_tapered, ball_triangle, ball_triangle2,
 };
 use crate::math::{Point, Real, unit};
 use crate::shape::Kind;
@@ -14,6 +14,7 @@ pub(crate) fn seen_in_plane<N: Real>(
     point: &Point<N, 2>,
 ) -> Option<Projection<N, 2>> {
     match kind {
+        Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), point),
         Kind::Polytope(polygon) => Some(ball_polygon::project(polygon, point)),
         Kind::Rounded(solid) => {
             let core = seen_in_plane(solid.inner().0, point)?;
