@@ -149,7 +149,7 @@ mod tests {
             assert!((seen.distance - expected.distance).abs() < 1e-13, "{corners:?} {center}");
             assert!((seen.outward + expected.normal).norm() < 1e-9, "{corners:?} {center}");
             let point = seen.point - center - expected.point2;
-            assert!(point.coords.norm() < 1e-9, "{corners:?} {center}");
+            assert!(point.norm() < 1e-9, "{corners:?} {center}");
             inside += u32::from(seen.distance < 0.0);
             tried += 1;
         }
