@@ -6,22 +6,30 @@
 use super::far::Apart;
 use super::pair::{Pair, Placed, is_swapped};
 use super::separation::{of_balls, of_half_space};
+use super::witness::Witness;
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector};
-use crate::shape::{Ball, Geometry, Kind, Shape};
+use crate::shape::{Ball, Geometry, Kind, Shape, ShapeKind};
 
 /// A shape where the user's isometry puts it.
 type At<'q, 'a, N, R, const D: usize> = (&'q Isometry<N, R, D>, Geometry<'a, N, D>);
 
-/// Two shapes in their canonical order, as [`Ordered`](super::pair::Ordered) has it.
-///
-/// Answers in closed form are in the frame of the first: that of its solid or, of a ball, the axes of the
-/// world put through its centre.
+/// Two shapes in the order of the arguments.
 pub(super) struct Asked<'q, 'a, N: Real, R, const D: usize> {
+    one: At<'q, 'a, N, R, D>,
+    two: At<'q, 'a, N, R, D>,
+}
+
+/// Two shapes of which the first is a ball or the second a half-space, in their canonical order, as
+/// [`Ordered`](super::pair::Ordered) has it.
+///
+/// Answers are in the frame of the first: that of its solid or, of a ball, the axes of the world put
+/// through its centre.
+struct Simple<'q, 'a, N: Real, R, const D: usize> {
     first: At<'q, 'a, N, R, D>,
     second: At<'q, 'a, N, R, D>,
     /// The order is the opposite of that of the arguments.
-    pub(super) swapped: bool,
+    swapped: bool,
 }
 
 /// What two placed shapes are asked.
@@ -33,25 +41,14 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
         (isometry1, shape1): (&'q Isometry<N, R, D>, &'a dyn Shape<N, D>),
         (isometry2, shape2): (&'q Isometry<N, R, D>, &'a dyn Shape<N, D>),
     ) -> Self {
-        let (one, two) = ((isometry1, shape1.geometry()), (isometry2, shape2.geometry()));
-        let (kind1, kind2) = (one.1.kind(), two.1.kind());
-        let [x1, x2] = [isometry1, isometry2].map(|isometry| isometry.translation.vector[0]);
-        let swapped = if kind1 != kind2 {
-            kind1 > kind2
-        } else if x1 < x2 || x1 > x2 {
-            x1 > x2
-        } else {
-            is_swapped_at_length(&one, &two)
-        };
-        let (first, second) = if swapped { (two, one) } else { (one, two) };
-        Self { first, second, swapped }
+        Self { one: (isometry1, shape1.geometry()), two: (isometry2, shape2.geometry()) }
     }
 
     /// The distance of the two, of which any that is not positive will do; `None` beyond `limit`, and if
     /// a pose is not finite.
     #[inline]
     pub(super) fn distance(&self, limit: N) -> Option<N> {
-        match self.in_closed_form(limit) {
+        match self.simple().and_then(|simple| simple.separation(limit)) {
             Some(found) => found.map(|found| found.distance),
             None => self.placed(N::tables().distance_in_world, limit),
         }
@@ -65,14 +62,70 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
         limit: N,
         otherwise: OfPlaced<N, Separation<N, D>, D>,
     ) -> Option<Separation<N, D>> {
-        let Some(found) = self.in_closed_form(limit) else { return self.placed(otherwise, limit) };
-        let found = self.in_world(&found?);
-        Some(if self.swapped { found.swapped() } else { found })
+        let simple = self.simple();
+        let known = simple.as_ref().and_then(|simple| simple.separation(limit));
+        let (Some(simple), Some(found)) = (simple, known) else {
+            return self.placed(otherwise, limit);
+        };
+        let found = simple.in_world(&found?);
+        Some(if simple.swapped { found.swapped() } else { found })
     }
 
+    /// The nearest points of the two with what they lie on.
+    pub(super) fn witness(&self, limit: N) -> Option<Witness<N, D>> {
+        let simple = self.simple();
+        let known = simple.as_ref().and_then(|simple| simple.separation(limit));
+        let (Some(simple), Some(found)) = (simple, known) else {
+            return self.placed(N::tables().witness_in_world, limit);
+        };
+        let found = found.filter(|found| found.distance.is_finite_number())?;
+        let features = (N::tables().witness_features)(&simple.pair(), &found);
+        let witness = Witness::joined(&simple.in_world(&found), [0, 0], features);
+        Some(if simple.swapped { witness.flipped() } else { witness })
+    }
+
+    /// They are certainly farther apart than `limit`.
+    #[inline]
+    pub(super) fn are_beyond(&self, limit: N) -> bool {
+        let between = self.two.0.translation.vector - self.one.0.translation.vector;
+        (N::tables().are_beyond)(&Apart { shapes: [self.one.1, self.two.1], between }, limit)
+    }
+
+    /// Asks them where they are placed.
+    #[inline]
+    fn placed<A>(&self, ask: OfPlaced<N, A, D>, limit: N) -> Option<A> {
+        let [one, two] = [&self.one, &self.two];
+        let placed1 = Placed { pose: Pose::from_isometry(one.0), shape: one.1 };
+        let placed2 = Placed { pose: Pose::from_isometry(two.0), shape: two.1 };
+        ask(&placed1, &placed2, limit)
+    }
+
+    /// The two in order, if one of them may make a closed form of it.
+    #[inline]
+    fn simple(&self) -> Option<Simple<'q, 'a, N, R, D>> {
+        let (one, two) = (self.one, self.two);
+        let (kind1, kind2) = (one.1.kind(), two.1.kind());
+        let is_simple = |kind| matches!(kind, ShapeKind::Ball | ShapeKind::Plane);
+        if !(is_simple(kind1) || is_simple(kind2)) {
+            return None;
+        }
+        let [x1, x2] = [one.0, two.0].map(|isometry| isometry.translation.vector[0]);
+        let swapped = if kind1 != kind2 {
+            kind1 > kind2
+        } else if x1 < x2 || x1 > x2 {
+            x1 > x2
+        } else {
+            is_swapped_at_length(&one, &two)
+        };
+        let (first, second) = if swapped { (two, one) } else { (one, two) };
+        Some(Simple { first, second, swapped })
+    }
+}
+
+impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, N, R, D> {
     /// A separation in the frame of the first, in the world.
     #[inline]
-    pub(super) fn in_world(&self, found: &Separation<N, D>) -> Separation<N, D> {
+    fn in_world(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let (isometry, distance) = (self.first.0, found.distance);
         let outward = |v: &Vector<N, D>| self.from_first(v);
         let place = |p: &Point<N, D>| Point::from(outward(&p.coords) + isometry.translation.vector);
@@ -81,7 +134,7 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
     }
 
     /// The two as algorithms see them.
-    pub(super) fn pair(&self) -> Pair<'a, N, D> {
+    fn pair(&self) -> Pair<'a, N, D> {
         let [at1, at2] =
             [self.first, self.second].map(|(isometry, _)| Pose::from_isometry(isometry));
         let pose12 = match self.first.1.0 {
@@ -91,23 +144,9 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
         Pair { first: self.first.1.0, second: self.second.1.0, pose12 }
     }
 
-    /// They are certainly farther apart than `limit`.
-    #[inline]
-    pub(super) fn are_beyond(&self, limit: N) -> bool {
-        let apart = Apart { shapes: [self.first.1, self.second.1], between: self.between() };
-        (N::tables().are_beyond)(&apart, limit)
-    }
-
-    /// Asks them where they are placed, in the order of the arguments.
-    pub(super) fn placed<A>(&self, ask: OfPlaced<N, A, D>, limit: N) -> Option<A> {
-        let [first, second] = [self.first, self.second]
-            .map(|(isometry, shape)| Placed { pose: Pose::from_isometry(isometry), shape });
-        if self.swapped { ask(&second, &first, limit) } else { ask(&first, &second, limit) }
-    }
-
     /// The separation of the two in the frame of the first, where that takes less than their poses.
     #[inline]
-    pub(super) fn in_closed_form(&self, limit: N) -> Option<Option<Separation<N, D>>> {
+    fn separation(&self, limit: N) -> Option<Option<Separation<N, D>>> {
         match (self.first.1.0, self.second.1.0) {
             (Kind::Ball(ball1), Kind::Ball(ball2)) => Some(self.of_balls([ball1, ball2], limit)),
             (Kind::Ball(ball), kind) => self.of_ball(ball, kind, limit),

@@ -34,6 +34,24 @@ pub struct Witness<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
+    /// From the separation in the world, the parts and their features.
+    pub(super) fn joined(
+        in_world: &Separation<N, D>,
+        parts: [u32; 2],
+        features: [FeatureId; 2],
+    ) -> Self {
+        Self {
+            point1: in_world.point1,
+            point2: in_world.point2,
+            normal: Unit::new_unchecked(in_world.normal),
+            distance: in_world.distance,
+            part1: parts[0],
+            part2: parts[1],
+            feature1: features[0],
+            feature2: features[1],
+        }
+    }
+
     /// The same witness with the shapes swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
@@ -91,13 +109,7 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     if asked.are_beyond(max_distance) {
         return None;
     }
-    let Some(found) = asked.in_closed_form(max_distance) else {
-        return asked.placed(N::tables().witness_in_world, max_distance);
-    };
-    let found = found.filter(|found| found.distance.is_finite_number())?;
-    let features = (N::tables().witness_features)(&asked.pair(), &found);
-    let witness = joined(&asked.in_world(&found), [0, 0], features);
-    Some(if asked.swapped { witness.flipped() } else { witness })
+    asked.witness(max_distance)
 }
 
 /// See [`witness`].
@@ -117,7 +129,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     let features = features(&between.parts(found.parts), &found.local);
     let first = if swapped { placed2 } else { placed1 };
     let in_world = placed(&found.separation, &first.pose, false);
-    let witness = joined(&in_world, found.parts, features);
+    let witness = Witness::joined(&in_world, found.parts, features);
     Some(if swapped { witness.flipped() } else { witness })
 }
 
@@ -126,21 +138,4 @@ fn features<N: Space<D>, const D: usize>(
     found: &Separation<N, D>,
 ) -> [FeatureId; 2] {
     (N::tables().witness_features)(&parts.pair(), found)
-}
-
-fn joined<N: Real, const D: usize>(
-    in_world: &Separation<N, D>,
-    parts: [u32; 2],
-    features: [FeatureId; 2],
-) -> Witness<N, D> {
-    Witness {
-        point1: in_world.point1,
-        point2: in_world.point2,
-        normal: Unit::new_unchecked(in_world.normal),
-        distance: in_world.distance,
-        part1: parts[0],
-        part2: parts[1],
-        feature1: features[0],
-        feature2: features[1],
-    }
 }
