@@ -84,9 +84,15 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
         Some(if simple.swapped { witness.flipped() } else { witness })
     }
 
-    /// They are certainly farther apart than `limit`.
+    /// They are certainly farther apart than `limit`. Not told of half-spaces, which have no end, and of two
+    /// balls, whose distance costs no more.
     #[inline]
     pub(super) fn are_beyond(&self, limit: N) -> bool {
+        if let (Kind::Plane(_), _) | (_, Kind::Plane(_)) | (Kind::Ball(_), Kind::Ball(_)) =
+            (self.one.1.0, self.two.1.0)
+        {
+            return false;
+        }
         let between = self.two.0.translation.vector - self.one.0.translation.vector;
         (N::tables().are_beyond)(&Apart { shapes: [self.one.1, self.two.1], between }, limit)
     }
@@ -244,4 +250,96 @@ fn not_finite<N: Real, R: AbstractRotation<N, D>, const D: usize>(rotation: &R) 
 #[inline]
 fn is_finite<N: Real, const D: usize>(v: &Vector<N, D>) -> bool {
     (0..D).fold(N::ZERO, |sum, axis| sum + v[axis] * N::ZERO) == N::ZERO
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Isometry2, Isometry3, Unit};
+    use crate::query::separation::in_world;
+    use crate::shape::{
+        Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Rounded, Segment,
+        Triangle,
+    };
+
+    type Solids<const D: usize> = Vec<Box<dyn Shape<f64, D>>>;
+
+    /// In the order of the arguments and in the other, as where they are placed, up to rounding.
+    fn as_placed<R: AbstractRotation<f64, D>, const D: usize>(
+        solids: &Solids<D>,
+        places: &[Isometry<f64, R, D>],
+    ) where
+        f64: Space<D>,
+    {
+        let mut count = 0;
+        let each = solids.iter().flat_map(|one| solids.iter().map(move |two| (one, two)));
+        for ((one, two), (m1, m2)) in each.flat_map(|pair| {
+            places.iter().flat_map(move |m1| places.iter().map(move |m2| (pair, (m1, m2))))
+        }) {
+            let asked = Asked::new((m1, &**one), (m2, &**two));
+            let Some(simple) = asked.simple() else { continue };
+            let Some(Some(local)) = simple.separation(f64::INFINITY) else { continue };
+            let found = asked.separation(f64::INFINITY, in_world::<f64, D>).expect("the same");
+            let expected = asked.placed(in_world::<f64, D>, f64::INFINITY).expect("finite");
+            let off = (found.point1 - expected.point1).norm()
+                + (found.point2 - expected.point2).norm()
+                + (found.normal - expected.normal).norm()
+                + (found.distance - expected.distance).abs();
+            assert!(off < 1e-11, "{one:?} at {:?}, {two:?}: {off}", asked.two.1);
+            assert_eq!(asked.distance(f64::INFINITY), Some(local.distance), "one number");
+            count += 1;
+            // One solid at one place has no order.
+            if core::ptr::eq(one, two) && m1 == m2 {
+                continue;
+            }
+            let swapped = Asked::new((m2, &**two), (m1, &**one));
+            let swapped = swapped.separation(f64::INFINITY, in_world::<f64, D>).expect("finite");
+            assert_eq!(swapped.swapped(), found, "swapped");
+        }
+        assert!(count > 100, "{count} have a closed form");
+    }
+
+    #[test]
+    fn closed_forms_are_what_placed_solids_say_in_the_plane() {
+        let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
+        let corners = [p(0.0, -1.0), p(1.2, 0.3), p(-0.4, 1.0)];
+        let solids: Solids<2> = vec![
+            Box::new(Ball::new(0.5)),
+            Box::new(Ball::new(0.25)),
+            Box::new(Segment::new(corners[0], corners[1])),
+            Box::new(Capsule::<f64, 2>::new(0.7, 0.2)),
+            Box::new(Triangle::new(corners[0], corners[1], corners[2])),
+            Box::new(Cuboid::new(Vector::<f64, 2>::new(0.5, 0.8))),
+            Box::new(Rounded::new(Cuboid::new(Vector::<f64, 2>::new(0.5, 0.3)), 0.1)),
+            Box::new(ConvexPolygon::from_points(&corners)),
+            Box::new(Plane::new(Unit::new_normalize(Vector::<f64, 2>::new(0.3, 1.0)))),
+        ];
+        let places = [(0.1, 0.2, 0.3), (2.5, -1.0, -2.0), (-0.6, 0.7, 1.1), (1e3, 2e3, 0.0)]
+            .map(|(x, y, angle)| Isometry2::new(Vector::<f64, 2>::new(x, y), angle));
+        as_placed(&solids, &places);
+    }
+
+    #[test]
+    fn closed_forms_are_what_placed_solids_say_in_space() {
+        let p = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);
+        let corners = [p(0.0, -1.0, 0.1), p(1.2, 0.3, 0.0), p(-0.4, 1.0, -0.2), p(0.2, 0.1, 1.0)];
+        let solids: Solids<3> = vec![
+            Box::new(Ball::new(0.5)),
+            Box::new(Ball::new(0.25)),
+            Box::new(Segment::new(corners[0], corners[1])),
+            Box::new(Capsule::<f64, 3>::new(0.7, 0.2)),
+            Box::new(Triangle::new(corners[0], corners[1], corners[2])),
+            Box::new(Cuboid::new(Vector::<f64, 3>::new(0.5, 0.8, 0.3))),
+            Box::new(Rounded::new(Cuboid::new(Vector::<f64, 3>::new(0.5, 0.3, 0.2)), 0.1)),
+            Box::new(Cylinder::new(0.6, 0.4)),
+            Box::new(Cone::new(0.6, 0.4)),
+            Box::new(ConvexHull::from_points(&corners)),
+            Box::new(Plane::new(Unit::new_normalize(Vector::<f64, 3>::new(0.3, 1.0, -0.2)))),
+        ];
+        let places = [(0.1, 0.3), (2.5, -2.0), (-0.6, 1.1), (1e3, 0.0)].map(|(x, angle)| {
+            let turn = Vector::<f64, 3>::new(0.2, -0.7, 0.5) * angle;
+            Isometry3::new(Vector::<f64, 3>::new(x, 0.4 * x + 0.1, 0.2 - 0.3 * x), turn)
+        });
+        as_placed(&solids, &places);
+    }
 }
