@@ -3,6 +3,8 @@
 //! Most pairs need their poses as matrices. A ball needs none, and a solid that is held against a ball or a
 //! half-space only turns a few vectors, which takes a third of making the matrix or less.
 
+use core::cmp::Ordering;
+
 use super::far::Apart;
 use super::pair::{Pair, Placed, is_swapped};
 use super::separation::{of_balls, of_half_space};
@@ -116,12 +118,11 @@ impl<'q, 'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Asked<'q, '
             return None;
         }
         let [x1, x2] = [one.0, two.0].map(|isometry| isometry.translation.vector[0]);
-        let swapped = if kind1 != kind2 {
-            kind1 > kind2
-        } else if x1 < x2 || x1 > x2 {
-            x1 > x2
-        } else {
-            is_swapped_at_length(&one, &two)
+        let swapped = match x1.partial_cmp(&x2) {
+            _ if kind1 != kind2 => kind1 > kind2,
+            Some(Ordering::Less) => false,
+            Some(Ordering::Greater) => true,
+            _ => is_swapped_at_length(&one, &two),
         };
         let (first, second) = if swapped { (two, one) } else { (one, two) };
         Some(Simple { first, second, swapped })
@@ -133,7 +134,7 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
     #[inline]
     fn in_world(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let (isometry, distance) = (self.first.0, found.distance);
-        let outward = |v: &Vector<N, D>| self.from_first(v);
+        let outward = |v: &Vector<N, D>| self.out_of_first(v);
         let place = |p: &Point<N, D>| Point::from(outward(&p.coords) + isometry.translation.vector);
         let normal = outward(&found.normal);
         Separation { distance, normal, point1: place(&found.point1), point2: place(&found.point2) }
@@ -158,7 +159,7 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
             (Kind::Ball(ball), kind) => self.of_ball(ball, kind, limit),
             (_, Kind::Plane(plane)) => {
                 let solid = self.first.1.as_support_map()?;
-                let normal = self.to_first(&self.from_second(plane.normal()));
+                let normal = self.to_first(&self.out_of_second(plane.normal()));
                 let place = self.to_first(&self.between());
                 let is_known = is_finite(&(normal + place));
                 Some(if is_known { of_half_space(solid, &normal, &place, limit) } else { None })
@@ -170,14 +171,12 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
     #[inline]
     fn of_balls(&self, [ball1, ball2]: [&Ball<N>; 2], limit: N) -> Option<Separation<N, D>> {
         let [isometry1, isometry2] = [self.first.0, self.second.0];
-        let unknown = not_finite(&isometry1.rotation) + not_finite(&isometry2.rotation);
         let center2 = self.between();
-        if !is_finite(&(center2 + unknown)) {
-            return None;
-        }
-        of_balls([ball1.radius(), ball2.radius()], &center2, limit, |axis| {
+        let found = of_balls([ball1.radius(), ball2.radius()], &center2, limit, |axis| {
             isometry1.rotation.transform_vector(&axis)
-        })
+        })?;
+        let unknown = not_finite(&isometry1.rotation) + not_finite(&isometry2.rotation);
+        is_finite(&(center2 + unknown)).then_some(found)
     }
 
     #[inline]
@@ -194,14 +193,12 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
         }
         let seen = (N::tables().seen)(kind, &Point::from(center))?;
         let distance = seen.distance - ball.radius();
-        if !(distance <= limit) {
-            return Some(None);
-        }
-        let normal = -rotation.transform_vector(&seen.outward);
-        let point1 = Point::from(normal * ball.radius());
-        let place = rotation.transform_vector(&seen.point.coords);
-        let point2 = Point::from(place + self.between());
-        Some(Some(Separation { distance, normal, point1, point2 }))
+        Some((distance <= limit).then(|| {
+            let normal = -rotation.transform_vector(&seen.outward);
+            let point1 = Point::from(normal * ball.radius());
+            let place = rotation.transform_vector(&seen.point.coords);
+            Separation { distance, normal, point1, point2: Point::from(place + self.between()) }
+        }))
     }
 
     /// From the first's origin to the second's, in the world.
@@ -212,7 +209,7 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
 
     /// A direction in the frame of the first, in the world.
     #[inline]
-    fn from_first(&self, v: &Vector<N, D>) -> Vector<N, D> {
+    fn out_of_first(&self, v: &Vector<N, D>) -> Vector<N, D> {
         match self.first.1.0 {
             Kind::Ball(_) => *v,
             _ => self.first.0.rotation.transform_vector(v),
@@ -225,7 +222,7 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Simple<'_, 'a, 
     }
 
     #[inline]
-    fn from_second(&self, v: &Vector<N, D>) -> Vector<N, D> {
+    fn out_of_second(&self, v: &Vector<N, D>) -> Vector<N, D> {
         self.second.0.rotation.transform_vector(v)
     }
 }
