@@ -25,9 +25,9 @@ use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, Separations, distance_in_plane, distance_in_space, distance_in_world,
-    in_world, parted_in_plane, parted_in_space, separation_in_plane, separation_in_space,
-    separations2, separations3, touching_in_world,
+    Algorithm, PartedFn, Projection, Separations, distance_in_plane, distance_in_space,
+    distance_in_world, in_world, parted_in_plane, parted_in_space, seen_in_plane, seen_in_space,
+    separation_in_plane, separation_in_space, separations2, separations3, touching_in_world,
 };
 use crate::query::tiles::TiledParts;
 use crate::query::{
@@ -51,6 +51,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) update_quickly: QuickFn<N, D>,
     /// Its distance, and any that is not positive of solids that overlap clearly.
     pub(crate) distance: DistanceFn<N, D>,
+    /// How a solid sees a point; nothing where there is no closed form.
+    pub(crate) seen: SeenFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
     /// Whether two convex solids are farther apart than a limit of less than zero.
@@ -109,6 +111,7 @@ type InWorldFn<N, const D: usize> =
 type DistanceInWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<N>;
 type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
+type SeenFn<N, const D: usize> = fn(Kind<'_, N, D>, &Point<N, D>) -> Option<Projection<N, D>>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), bool) -> FeatureId;
@@ -242,6 +245,7 @@ struct Particular<N: Space<D>, const D: usize> {
     separations: SeparationsFn<N, D>,
     update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
+    seen: SeenFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
     box_contacts: fn(&mut [BoxJob<'_, N, D>]),
@@ -263,6 +267,7 @@ impl<N: Real> Particular<N, 2> {
         separations: separations2,
         update_quickly: update_chain,
         distance: distance_in_plane,
+        seen: seen_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
         box_contacts: update_box_pairs2,
@@ -285,6 +290,7 @@ impl<N: Real> Particular<N, 3> {
         separations: separations3,
         update_quickly: update_on_surface,
         distance: distance_in_space,
+        seen: seen_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
         box_contacts: update_box_pairs3,
@@ -309,6 +315,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             separations: particular.separations,
             update_quickly: particular.update_quickly,
             distance: particular.distance,
+            seen: particular.seen,
             are_beyond,
             separation_in_world: in_world,
             contact_in_world,

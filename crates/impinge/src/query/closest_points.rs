@@ -1,6 +1,6 @@
 //! The points of two solids that are nearest to each other.
 
-use super::pair::Placed;
+use super::asked::Asked;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
 
@@ -41,10 +41,11 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     max_distance: N,
 ) -> ClosestPoints<N, D> {
     let limit = max(max_distance, N::ZERO);
-    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
+    let asked = Asked::new((m1, g1), (m2, g2));
+    if asked.are_beyond(limit) {
         return ClosestPoints::Disjoint;
-    };
-    match (N::tables().touching_in_world)(&placed1, &placed2, limit) {
+    }
+    match asked.separation(limit, N::tables().touching_in_world) {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,
         Some(found) => ClosestPoints::WithinMargin(found.point1, found.point2),

@@ -2,10 +2,10 @@
 
 use super::ImpactStatus;
 use crate::convex::Separation;
-use crate::math::{Real, Space, Vector, max_component};
+use crate::math::{Point, Real, Space, Vector, max_component};
 use crate::query::Pair;
 use crate::query::separation::separation;
-use crate::shape::{FeatureId, Geometry};
+use crate::shape::{FeatureId, Geometry, Kind};
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 128;
@@ -99,11 +99,46 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
         if later <= along {
             return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
         }
+        let step = path.velocity * (later - along);
         along = later;
         pair.pose12.translation = start.pose12.translation + path.velocity * along;
+        if let Some(touch) = touching(&pair, (&found, &step), (path.target, tolerance)) {
+            return Some(Arrival::new(&pair, along, touch, ImpactStatus::Reached));
+        }
         found = separation(&pair, N::INFINITY)?;
     }
     Some(Arrival::new(&pair, along, found, ImpactStatus::StepsSpent))
+}
+
+/// The separation at the end of a step which used up the gap along the normal of its beginning, where one
+/// of the nearest points from then tells it; `None` says nothing.
+///
+/// Planes across that normal still hold the solids apart by the target distance. So they are that far from
+/// each other if the point of one, on its plane, is that far from the other solid.
+fn touching<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    (before, step): (&Separation<N, D>, &Vector<N, D>),
+    (target, tolerance): (N, N),
+) -> Option<Separation<N, D>> {
+    // Of balls the separation costs no more, and the points of others are hardly ever the same.
+    if let Kind::Ball(_) | Kind::SupportMap(_) = pair.first {
+        return None;
+    }
+    let Pair { first, second, pose12 } = pair;
+    let normal = before.normal;
+    let is_there = |distance: &N| (*distance - target).abs() <= tolerance;
+    let distance_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| {
+        (N::tables().seen)(kind, point).map(|seen| seen.distance).filter(is_there)
+    };
+    let point2 = before.point2 + step;
+    // Every point of a half-space's plane is as good: that of the solid tells.
+    let known = if let Kind::Plane(_) = second { None } else { distance_from(*first, &point2) };
+    if let Some(distance) = known {
+        return Some(Separation { distance, normal, point1: point2 - normal * distance, point2 });
+    }
+    let point1 = before.point1;
+    let distance = distance_from(*second, &pose12.inverse_point(&point1))?;
+    Some(Separation { distance, normal, point1, point2: point1 + normal * distance })
 }
 
 /// The length that tolerances are in proportion to: the sizes of the solids and how far they are.

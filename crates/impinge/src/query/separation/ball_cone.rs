@@ -74,7 +74,7 @@ impl<N: Real> Section<N> {
 }
 
 /// A point seen from a cone.
-fn project<N: Real>(cone: &Cone<N>, center: &Point<N, 3>) -> Projection<N, 3> {
+pub(super) fn project<N: Real>(cone: &Cone<N>, center: &Point<N, 3>) -> Projection<N, 3> {
     let (section, plane) = (Section::of(cone), HalfPlane::of(center));
     let p = plane.point;
     let (flat, outward) = section.highest(&p);

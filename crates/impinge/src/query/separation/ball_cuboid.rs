@@ -23,7 +23,7 @@ pub(super) fn separation<N: Real, const D: usize>(
 }
 
 /// A point seen from a box.
-fn project<N: Real, const D: usize>(
+pub(super) fn project<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
     center: &Point<N, D>,
 ) -> Projection<N, D> {

@@ -25,7 +25,7 @@ fn height<N: Real>(side: &PolytopeFace<N, 2>, point: &Point<N, 2>) -> N {
 }
 
 /// A point seen from a polygon.
-fn project<N: Real>(polygon: &Polytope<N, 2>, center: &Point<N, 2>) -> Projection<N, 2> {
+pub(super) fn project<N: Real>(polygon: &Polytope<N, 2>, center: &Point<N, 2>) -> Projection<N, 2> {
     let mut highest = &polygon.faces()[0];
     for side in &polygon.faces()[1..] {
         if height(side, center) > height(highest, center) {

@@ -26,7 +26,7 @@ fn height<N: Real>(face: &PolytopeFace<N, 3>, point: &Point<N, 3>) -> N {
 }
 
 /// A point seen from a convex hull.
-fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> Projection<N, 3> {
+pub(super) fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> Projection<N, 3> {
     let mut highest = &hull.faces()[0];
     for face in &hull.faces()[1..] {
         if height(face, center) > height(highest, center) {

@@ -21,7 +21,10 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 }
 
 /// A point seen from a triangle; the distance is never negative.
-fn project<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
+pub(super) fn project<N: Real>(
+    corners: &[Point<N, 3>; 3],
+    center: &Point<N, 3>,
+) -> Projection<N, 3> {
     let front = front(corners);
     let normal = front.map(|front| toward(&front, &(center - corners[0])));
     if let (Some(front), Some(normal)) = (front, normal)

@@ -7,7 +7,7 @@ pub(super) use crate::math::perpendicular_to;
 
 /// A point seen from a solid, in the frame of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::query) struct Projection<N: Real, const D: usize> {
+pub(crate) struct Projection<N: Real, const D: usize> {
     /// Positive outside, negative inside: the signed distance of the point from the surface.
     pub(in crate::query) distance: N,
     /// The unit vector out of the solid along which that distance is measured.
