@@ -25,6 +25,7 @@ mod fences;
 mod frame;
 mod half_space;
 mod names;
+mod outlines;
 mod overlap;
 mod patch;
 mod patch_line;
@@ -149,7 +150,7 @@ pub(crate) fn contacts2<N: Real>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_plane(pair, request.prediction), out);
     }
-    if box_sides::build(pair, request, out) {
+    if box_sides::build(pair, request, out) || outlines::build(pair, request, out) {
         return;
     }
     match separation_in_plane(pair, request.prediction) {
