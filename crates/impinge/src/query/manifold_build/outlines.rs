@@ -28,7 +28,9 @@ pub(super) fn build<N: Real>(
         return false;
     };
     let tolerance = rounding(pair);
-    let is_ordinary = request.sine <= N::ZERO && request.max_points > 1;
+    // Two segments have lanes of their own, which give the bits of the general way.
+    let are_segments = names1 == Names::Segment && names2 == Names::Segment;
+    let is_ordinary = request.sine <= N::ZERO && request.max_points > 1 && !are_segments;
     if !(is_ordinary && tolerance.is_finite_number()) {
         return false;
     }
@@ -54,12 +56,15 @@ enum Names {
     Clockwise,
     Box,
     Segment,
+    /// A ball is a point swollen by its radius.
+    Ball,
 }
 
 impl Names {
     /// `None` for solids without an outline, and for triangles that are hardly more than a line.
     fn of<N: Real>(kind: &Kind<'_, N, 2>) -> Option<Self> {
         Some(match kind {
+            Kind::Ball(_) => Self::Ball,
             Kind::Segment(_) | Kind::Capsule(_) => Self::Segment,
             Kind::Cuboid(_) => Self::Box,
             Kind::Polytope(_) => Self::Plain,
@@ -72,7 +77,7 @@ impl Names {
                 return (!is_thin).then_some(if area < N::ZERO { Self::Clockwise } else { Self::Plain });
             }
             Kind::Rounded(solid) => match solid.inner().0 {
-                Kind::Rounded(_) | Kind::Capsule(_) => return None,
+                Kind::Rounded(_) | Kind::Capsule(_) | Kind::Ball(_) => return None,
                 inner => return Self::of(&inner),
             },
             _ => return None,
@@ -82,11 +87,12 @@ impl Names {
     fn corner(self, number: usize) -> FeatureId {
         const BOX: [u32; 4] = [0, 1, 3, 2];
         const CLOCKWISE: [u32; 4] = [0, 2, 1, 1];
-        FeatureId::Vertex(match self {
-            Self::Plain | Self::Segment => small(number),
-            Self::Box => BOX[number & 3],
-            Self::Clockwise => CLOCKWISE[number & 3],
-        })
+        match self {
+            Self::Plain | Self::Segment => FeatureId::Vertex(small(number)),
+            Self::Box => FeatureId::Vertex(BOX[number & 3]),
+            Self::Clockwise => FeatureId::Vertex(CLOCKWISE[number & 3]),
+            Self::Ball => FeatureId::Face(0),
+        }
     }
 
     fn side(self, number: usize) -> FeatureId {
@@ -95,6 +101,7 @@ impl Names {
         match self {
             Self::Plain => FeatureId::Face(small(number)),
             Self::Segment => FeatureId::Edge(0),
+            Self::Ball => FeatureId::Face(0),
             Self::Box => FeatureId::Face(BOX[number & 3]),
             Self::Clockwise => FeatureId::Face(CLOCKWISE[number & 3]),
         }
@@ -154,6 +161,9 @@ impl<N: Real> Part<N> {
         let corner = meeting.corners[which];
         let mut near = End::of(meeting, which, corner, names);
         near.height = if which == 0 { N::ZERO } else { meeting.gap };
+        if names == Names::Ball {
+            return Self { id: near.id, is_side: false, ends: [near; 2], near: 0 };
+        }
         let (next, before) = (meeting.next(which, corner), meeting.previous(which, corner));
         let far = [next, before].map(|corner| meeting.corner(which, corner) - near.point);
         let [(rise1, squared1), (rise2, squared2)] =

@@ -30,7 +30,7 @@ pub(in crate::query) struct Meeting<N: Real> {
     pub(in crate::query) radii: [N; 2],
 }
 
-/// How two solids meet that have outlines of up to eight corners, none of them a point; `None` for others and
+/// How two solids meet that have outlines of up to eight corners, not both of them balls; `None` for others and
 /// where lengths up to `noise` would decide.
 pub(in crate::query) fn meeting<N: Real>(
     level: Level,
@@ -97,6 +97,9 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     own: &Outline<N, V>,
     other: &Outline<N, V>,
 ) -> (N, usize) {
+    if own.count < 2 {
+        return (-N::INFINITY, 0);
+    }
     farthest(simd, gaps(simd, own, other, &own.normals))
 }
 
@@ -195,6 +198,10 @@ fn bare<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     kind: &Kind<'_, N, 2>,
 ) -> Option<Outline<N, V>> {
     match kind {
+        Kind::Ball(ball) => {
+            let zero = V::all(simd, N::ZERO);
+            Some(Outline::of_sides(([zero; 2], [zero; 2]), (1, ball.radius())))
+        }
         Kind::Segment(segment) => of_segment(simd, segment, N::ZERO),
         Kind::Capsule(capsule) => of_segment(simd, capsule.segment(), capsule.radius()),
         Kind::Triangle(triangle) => of_triangle(simd, triangle),
