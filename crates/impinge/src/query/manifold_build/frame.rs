@@ -153,8 +153,6 @@ fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
         Kind::Triangle(triangle) => triangle.reach(),
         Kind::Cuboid(cuboid) => cuboid.reach(),
         Kind::Polytope(polytope) => polytope.reach(),
-        _ => Geometry(kind)
-            .as_support_map()
-            .map_or(N::ZERO, |map| map.reach() + map.rounding()),
+        _ => Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding()),
     }
 }

@@ -30,7 +30,10 @@ pub(super) fn build<N: Real>(
     let tolerance = rounding(pair);
     // Two segments have lanes of their own, which give the bits of the general way.
     let are_segments = names1 == Names::Segment && names2 == Names::Segment;
-    let is_ordinary = request.sine <= N::ZERO && request.max_points > 1 && !are_segments;
+    // So have two boxes their own separating axis, of which the last digit is another.
+    let are_boxes = names1 == Names::Box && names2 == Names::Box;
+    let is_left = are_segments || are_boxes;
+    let is_ordinary = request.sine <= N::ZERO && request.max_points > 1 && !is_left;
     if !(is_ordinary && tolerance.is_finite_number()) {
         return false;
     }
@@ -42,7 +45,8 @@ pub(super) fn build<N: Real>(
         out.points.clear();
         return true;
     }
-    let parts = [(0, names1), (1, names2)].map(|(which, names)| Part::of(&meeting, which, (names, tolerance)));
+    let parts = [(0, names1), (1, names2)]
+        .map(|(which, names)| Part::of(&meeting, which, (names, tolerance)));
     let facing = Facing { meeting: &meeting, parts, distance, tolerance };
     facing.build(request.prediction, out)
 }
@@ -74,7 +78,11 @@ impl Names {
                 let area = cross2(&side1, &side2);
                 let squares = side1.norm_squared() + side2.norm_squared();
                 let is_thin = area.abs() <= N::lit(1024.0) * N::EPSILON * squares;
-                return (!is_thin).then_some(if area < N::ZERO { Self::Clockwise } else { Self::Plain });
+                return (!is_thin).then_some(if area < N::ZERO {
+                    Self::Clockwise
+                } else {
+                    Self::Plain
+                });
             }
             Kind::Rounded(solid) => match solid.inner().0 {
                 Kind::Rounded(_) | Kind::Capsule(_) | Kind::Ball(_) => return None,
@@ -176,7 +184,8 @@ impl<N: Real> Part<N> {
         if !is_side {
             // A segment that is seen end on has no corner that is the nearest for certain.
             let other = End::of(meeting, which, next, names);
-            let is_end_on = names == Names::Segment && (other.place - near.place).abs() <= tolerance;
+            let is_end_on =
+                names == Names::Segment && (other.place - near.place).abs() <= tolerance;
             let id = if is_end_on { names.side(corner) } else { near.id };
             return Self { id, is_side, ends: [near; 2], near: 0 };
         }
@@ -220,7 +229,10 @@ impl<N: Real> Part<N> {
     fn at(&self, place: N) -> (Point<N, 2>, N) {
         let [from, to] = &self.ends;
         let share = min(max((place - from.place) / self.length(), N::ZERO), N::ONE);
-        (from.point + (to.point - from.point) * share, from.height + (to.height - from.height) * share)
+        (
+            from.point + (to.point - from.point) * share,
+            from.height + (to.height - from.height) * share,
+        )
     }
 
     /// The smallest part that holds a place.
@@ -302,7 +314,9 @@ impl<N: Real> Facing<'_, N> {
             return (length < -least).then_some([None, None]);
         }
         let is_turned = match (low.ends, high.ends) {
-            ([Some(low), _], [Some(high), _]) | ([None, Some(low)], [None, Some(high)]) => low > high,
+            ([Some(low), _], [Some(high), _]) | ([None, Some(low)], [None, Some(high)]) => {
+                low > high
+            }
             ([None, _], [Some(_), _]) => true,
             _ => false,
         };
@@ -330,7 +344,8 @@ impl<N: Real> Facing<'_, N> {
     /// way, the nearer of their other ends.
     fn shared_at_corners(&self) -> Option<[Option<SharedEnd<N>>; 2]> {
         let [first, second] = &self.parts;
-        let near = SharedEnd { place: first.near().place, ends: [Some(first.near), Some(second.near)] };
+        let near =
+            SharedEnd { place: first.near().place, ends: [Some(first.near), Some(second.near)] };
         let [far1, far2] = [first, second].map(|part| 1 - part.near);
         let reach = [first.ends[far1].place, second.ends[far2].place];
         if (reach[0] < N::ZERO) != (reach[1] < N::ZERO) {
@@ -394,7 +409,8 @@ impl<N: Real> Facing<'_, N> {
         let (core, place) = match self.meeting.best {
             Some((0, _)) => {
                 let place = second.near().place;
-                let (low, high) = (first.ends[first.low()].place, first.ends[1 - first.low()].place);
+                let (low, high) =
+                    (first.ends[first.low()].place, first.ends[1 - first.low()].place);
                 (first.at(place).0, min(max(place, low), high))
             }
             _ => (first.near().point, first.near().place),
@@ -419,9 +435,10 @@ fn settle<N: Real>(
     out: &mut RawManifold<N, 2>,
 ) {
     let is_old = candidates.len() == out.points.len()
-        && candidates.iter().zip(&out.points).all(|(candidate, point)| {
-            candidate.features == [point.feature1, point.feature2]
-        });
+        && candidates
+            .iter()
+            .zip(&out.points)
+            .all(|(candidate, point)| candidate.features == [point.feature1, point.feature2]);
     if !is_old || candidates.len() > 2 {
         return choose(candidates, (distance, tolerance), 2, out);
     }

@@ -257,10 +257,7 @@ fn of_triangle<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 #[inline(always)]
-fn of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    half: &Vector<N, 2>,
-) -> Outline<N, V> {
+fn of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, half: &Vector<N, 2>) -> Outline<N, V> {
     let (no, yes) = (N::ZERO, N::ONE);
     let xs = V::load(simd, &[-yes, yes, yes, -yes, -yes, -yes, -yes, -yes]);
     let ys = V::load(simd, &[-yes, -yes, yes, yes, yes, yes, yes, yes]);
