@@ -34,6 +34,8 @@ pub trait Wide<S: Simd>: SimdFloat<S> {
     fn load(simd: S, numbers: &[Self::Scalar]) -> Self;
     /// Writes as many numbers as there are lanes.
     fn store(self, numbers: &mut [Self::Scalar]);
+    /// The greatest, of numbers none of which is NaN; of zeros with different signs either.
+    fn greatest(self) -> Self::Scalar;
 
     /// The smaller number; the second if either is NaN.
     #[inline(always)]
@@ -64,5 +66,10 @@ impl<S: Simd, V: SimdFloat<S>> Wide<S> for V {
     #[inline(always)]
     fn store(self, numbers: &mut [V::Element]) {
         self.store_slice(numbers);
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> V::Element {
+        self.reduce_max()
     }
 }

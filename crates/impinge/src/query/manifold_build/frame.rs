@@ -3,7 +3,7 @@
 use super::super::{ManifoldRequest, Pair, RawPoint};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max};
-use crate::shape::{FeatureId, Geometry, Kind};
+use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
 /// How many rounding errors of the pair's size are told from nothing.
 pub(super) const ROUNDING_ERRORS: f64 = 16.0;
@@ -146,8 +146,13 @@ pub(super) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
 /// The reach of a solid with its rounding; half-spaces have none.
 #[inline]
 fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
-    if let Kind::Ball(ball) = kind {
-        return ball.radius();
+    match kind {
+        Kind::Ball(ball) => ball.radius(),
+        Kind::Segment(segment) => segment.reach(),
+        Kind::Capsule(capsule) => capsule.reach() + capsule.radius(),
+        Kind::Triangle(triangle) => triangle.reach(),
+        Kind::Cuboid(cuboid) => cuboid.reach(),
+        Kind::Polytope(polytope) => polytope.reach(),
+        _ => Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding()),
     }
-    Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
 }

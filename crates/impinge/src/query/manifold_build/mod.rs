@@ -25,6 +25,7 @@ mod fences;
 mod frame;
 mod half_space;
 mod names;
+mod outlines;
 mod overlap;
 mod patch;
 mod patch_line;
@@ -146,11 +147,15 @@ pub(crate) fn contacts2<N: Real>(
     _: Option<&mut Certificate<N, 2>>,
     out: &mut RawManifold<N, 2>,
 ) {
-    if let Kind::Ball(_) = pair.first {
+    let is_ball = matches!(pair.first, Kind::Ball(_));
+    if is_ball && !matches!(pair.second, Kind::Triangle(_)) {
         return ball::build(pair, separation_in_plane(pair, request.prediction), out);
     }
-    if box_sides::build(pair, request, out) {
+    if box_sides::build(pair, request, out) || outlines::build(pair, request, out) {
         return;
+    }
+    if is_ball {
+        return ball::build(pair, separation_in_plane(pair, request.prediction), out);
     }
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),

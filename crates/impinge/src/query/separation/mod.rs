@@ -28,6 +28,7 @@ mod cylinder_cylinder;
 mod flat_core;
 mod general;
 pub(super) mod hulls;
+pub(super) mod meeting;
 mod outline;
 mod overlap;
 mod plane_any;

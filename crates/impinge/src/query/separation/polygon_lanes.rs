@@ -14,10 +14,10 @@ use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max, perp, un
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
 /// How many vertices are looked at side by side.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// A number for each vertex.
-type Row<N> = [N; LANES];
+pub(in crate::query) type Row<N> = [N; LANES];
 
 /// A convex polygon in its own frame, swollen by a rounding radius; its last vertex fills the rest.
 pub(super) struct Polygon<N: Real> {
@@ -168,7 +168,7 @@ pub(super) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 
 /// A polygon in some frame.
 pub(super) struct Outline<N: Real, V> {
-    vertices: [V; 2],
+    pub(super) vertices: [V; 2],
     /// Of a point anything.
     pub(super) normals: [V; 2],
     /// The same coordinates as numbers.
@@ -187,24 +187,54 @@ impl<N: Real, V> Outline<N, V> {
     {
         let Polygon { vertices: rows, ref sides, count, rounding } = *polygon;
         let vertices = [V::load(simd, &rows[0]), V::load(simd, &rows[1])];
-        let normals = match sides {
-            Sides::Normals(normals) => [V::load(simd, &normals[0]), V::load(simd, &normals[1])],
-            Sides::None => vertices,
+        match sides {
+            Sides::Normals(normals) => {
+                let normals = [V::load(simd, &normals[0]), V::load(simd, &normals[1])];
+                Some(Self::of_sides((vertices, normals), (count, rounding)))
+            }
+            Sides::None => Some(Self::of_sides((vertices, vertices), (count, rounding))),
             Sides::Ends(ends) => {
                 let ends = [V::load(simd, &ends[0]), V::load(simd, &ends[1])];
-                let side = [ends[0] - vertices[0], ends[1] - vertices[1]];
-                let squared = dot(&side, &side);
-                let is_usual = squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
-                    & squared.simd_lt(V::all(simd, N::MAX.sqrt()));
-                if !is_usual.all_true() {
-                    return None;
-                }
-                let length = squared.sqrt();
-                [side[1] / length, -(side[0] / length)]
+                Self::of_ends(simd, (vertices, ends), (count, rounding))
             }
-        };
-        let has_sides = count > 1;
-        Some(Self { vertices, normals, rows, count, has_sides, rounding })
+        }
+    }
+
+    /// The outline of these vertices, of which the sides end there; `None` as above.
+    #[inline(always)]
+    pub(super) fn of_ends<S: Simd>(
+        simd: S,
+        (vertices, ends): ([V; 2], [V; 2]),
+        (count, rounding): (usize, N),
+    ) -> Option<Self>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let side = [ends[0] - vertices[0], ends[1] - vertices[1]];
+        let squared = dot(&side, &side);
+        let is_usual = squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
+            & squared.simd_lt(V::all(simd, N::MAX.sqrt()));
+        if !is_usual.all_true() {
+            return None;
+        }
+        let length = squared.sqrt();
+        let normals = [side[1] / length, -(side[0] / length)];
+        Some(Self::of_sides((vertices, normals), (count, rounding)))
+    }
+
+    /// The outline of these vertices and normals of sides.
+    #[inline(always)]
+    pub(super) fn of_sides<S: Simd>(
+        (vertices, normals): ([V; 2], [V; 2]),
+        (count, rounding): (usize, N),
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let mut rows = [[N::ZERO; LANES]; 2];
+        vertices[0].store(&mut rows[0]);
+        vertices[1].store(&mut rows[1]);
+        Self { vertices, normals, rows, count, has_sides: count > 1, rounding }
     }
 
     /// The same outline seen from the frame in which its own has the given pose.
@@ -337,7 +367,7 @@ fn best_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 
 /// The gaps between two outlines along directions away from the first.
 #[inline(always)]
-fn gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     own: &Outline<N, V>,
     other: &Outline<N, V>,

@@ -3,6 +3,7 @@
 mod box_faces;
 mod faces;
 mod lasting;
+mod outlines;
 mod overlap;
 mod properties;
 mod resting;
