@@ -3,8 +3,10 @@
 mod box_faces;
 mod faces;
 mod lasting;
+mod level_corners;
 mod overlap;
 mod properties;
 mod resting;
+mod rods;
 pub(in crate::query) mod scene;
 mod stretch;
