@@ -41,7 +41,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 return;
             }
             self.fetch(table, &started, &stopped);
-            self.turn_some_over(table, (&started, &stopped), events);
+            self.turn_some_over(table, [&started, &stopped], events);
         }
     }
 
@@ -49,7 +49,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn turn_some_over(
         &mut self,
         table: &ObjectTable<N, D>,
-        (started, stopped): (&[(u32, u32)], &[(u32, u32)]),
+        [started, stopped]: [&[(u32, u32)]; 2],
         events: &mut Events,
     ) {
         let both = started.len().min(stopped.len());

@@ -10,6 +10,10 @@ use crate::query::{ContactManifold, ManifoldView};
 
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
+/// Two objects and a manifold of theirs.
+type View<'a, N, const D: usize, T> =
+    (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
+
 /// Manifolds with their objects. Written out, since the closure of an adapter would be a call for each.
 struct Views<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
@@ -24,7 +28,7 @@ impl<'a, N: Space<D>, const D: usize, T, I> Iterator for Views<'a, N, D, T, I>
 where
     I: Iterator<Item = Named<'a, N, D>>,
 {
-    type Item = (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
+    type Item = View<'a, N, D, T>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
@@ -178,9 +182,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn contact_view_pieces(
         &self,
         pieces: usize,
-    ) -> Vec<
-        impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> + Send,
-    >
+    ) -> Vec<impl Iterator<Item = View<'_, N, D, T>> + Send>
     where
         T: Sync,
     {

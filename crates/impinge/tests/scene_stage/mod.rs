@@ -244,7 +244,8 @@ fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWo
         let mut views = world.contact_views();
         for (one, other, view) in pieces.into_iter().flatten() {
             let expected = views.next().expect("as many in pieces");
-            assert_eq!((one.handle(), other.handle()), (expected.0.handle(), expected.1.handle()));
+            let pair = (one.handle(), other.handle());
+            assert_eq!(pair, (expected.0.handle(), expected.1.handle()), "in the same order");
             assert_eq!(view.len(), expected.2.len(), "the same manifold");
             assert_eq!(view.deepest_contact().id, expected.2.deepest_contact().id, "the same");
         }

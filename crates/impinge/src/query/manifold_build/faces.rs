@@ -64,7 +64,7 @@ pub(super) fn build<N: Real>(
 
 /// Makes a blank ring the face that a solid shows to a direction, if that has few corners and an area.
 /// Either way gives the name of what it shows, where that is known of a box or a hull.
-fn shown<N: Real>(
+pub(super) fn shown<N: Real>(
     kind: &Kind<'_, N, 3>,
     (direction, likely): (&Vector<N, 3>, Option<u32>),
     ring: &mut FaceRing<N>,
@@ -146,7 +146,7 @@ fn laid_out<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 
 /// Where points are seen along the normal of a frame.
 #[inline(always)]
-fn flat<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn flat<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     frame: &Frame<N, 3>,
     points: &[V; 3],
@@ -317,7 +317,7 @@ impl<N: Real> Meeting<'_, N> {
 }
 
 /// The part of a side that contains a place on its line: one of its corners or itself.
-fn on_side<N: Real>(
+pub(super) fn on_side<N: Real>(
     ends: [Vector<N, 2>; 2],
     [from, to, side]: [FeatureId; 3],
     place: &Vector<N, 2>,

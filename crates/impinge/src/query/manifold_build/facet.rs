@@ -50,7 +50,16 @@ pub(super) fn lifted<N: Real>(
     (room, top): (N, N),
     away: &Vector<N, 2>,
 ) -> N {
-    let away_squared = away.norm_squared();
+    lifted_by((radius, cosine), (room, top), away.norm_squared())
+}
+
+/// [`lifted`], where the square of the way across the normal is known.
+#[inline]
+pub(super) fn lifted_by<N: Real>(
+    (radius, cosine): (N, N),
+    (room, top): (N, N),
+    away_squared: N,
+) -> N {
     let turns_squared = radius * radius * (N::ONE - cosine * cosine);
     let lift = if away_squared < turns_squared {
         room - top + (radius * radius - away_squared).sqrt()

@@ -10,7 +10,7 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{Cuboid, FeatureId, Kind};
 
 /// The only feature of a half-space.
-const BOUNDARY: FeatureId = FeatureId::Face(0);
+pub(super) const BOUNDARY: FeatureId = FeatureId::Face(0);
 
 /// Adds the points of the first solid, of which the facet is given, above the boundary of the second.
 ///

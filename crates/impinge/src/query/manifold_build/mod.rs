@@ -24,6 +24,7 @@ mod facet;
 mod fences;
 mod frame;
 mod half_space;
+mod level_corners;
 mod names;
 mod outlines;
 mod overlap;
@@ -31,6 +32,7 @@ mod patch;
 mod patch_line;
 mod patch_outline;
 mod reduce;
+mod rod_face;
 mod segments;
 mod shown;
 mod stretch;
@@ -92,6 +94,9 @@ pub(crate) fn build3<N: Real>(
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
     let limits = (request, request.max_points);
+    if rod_face::build(pair, &frame, limits, out) {
+        return;
+    }
     if let Err(shown) = faces::build((pair, likely), &frame, limits, out) {
         build((pair, shown), &frame, limits, out);
     }
@@ -120,7 +125,7 @@ pub(crate) fn contacts3<N: Real>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_space(pair, request.prediction), out);
     }
-    if box_faces::build(pair, request, out) {
+    if box_faces::build(pair, request, out) || level_corners::build(pair, request, out) {
         return;
     }
     let (separation, likely) = if hulls::treats(pair) {

@@ -122,6 +122,7 @@ impl Names {
 }
 
 /// A number below eight.
+#[expect(clippy::cast_possible_truncation, reason = "three bits are left")]
 const fn small(number: usize) -> u32 {
     (number & 7) as u32
 }

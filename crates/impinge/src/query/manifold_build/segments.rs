@@ -44,7 +44,7 @@ fn core<'a, N: Real>(kind: Kind<'a, N, 3>) -> Option<(&'a Segment<N, 3>, N)> {
 }
 
 /// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.
-fn part_at<N: Real>(
+pub(super) fn part_at<N: Real>(
     point: &Point<N, 3>,
     from: &Point<N, 3>,
     along: &Vector<N, 3>,

@@ -99,7 +99,10 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
         (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
             Way::Formula
         }
-        (Segment(_) | Capsule(_), Segment(_) | Capsule(_)) => Way::Formula,
+        (
+            Segment(_) | Capsule(_),
+            Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
+        ) => Way::Formula,
         (Cuboid(_), Cuboid(_)) => Way::Formula,
         (Triangle(_), Triangle(_)) => Way::Search,
         (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,

@@ -4,7 +4,7 @@ use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cuboid_cylinder,
     cylinder_cylinder, flipped, general, hulls, look_up, plane_any, ridges, rounded,
-    segment_segment, triangle_cuboid, triangle_polytope,
+    segment_cuboid, segment_segment, segment_triangle, triangle_cuboid, triangle_polytope,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -24,6 +24,9 @@ impl<N: Real> Space<N> {
         let by: Algorithm<N, 3> = ball_cylinder::separation;
         let bo: Algorithm<N, 3> = ball_cone::separation;
         let ss: Algorithm<N, 3> = segment_segment::separation;
+        let st: Algorithm<N, 3> = segment_triangle::separation;
+        let sh: Algorithm<N, 3> = hulls::segment::separation;
+        let sc: Algorithm<N, 3> = segment_cuboid::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
         let tc: Algorithm<N, 3> = triangle_cuboid::separation;
         let th: Algorithm<N, 3> = triangle_polytope::separation;
@@ -44,8 +47,8 @@ impl<N: Real> Space<N> {
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
-            [__, ss, ss, ff, ff, ff, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, ss, ff, ff, ff, fr, fr, gg, gg, rr, gg, gp, gx],
+            [__, ss, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
             [__, __, __, ff, tc, th, fr, fr, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, cc, hh, cy, fr, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, fr, fr, gg, gg, rr, gg, gp, gx],

@@ -3,9 +3,11 @@
 mod box_faces;
 mod faces;
 mod lasting;
+mod level_corners;
 mod outlines;
 mod overlap;
 mod properties;
 mod resting;
+mod rods;
 pub(in crate::query) mod scene;
 mod stretch;

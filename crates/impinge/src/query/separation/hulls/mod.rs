@@ -19,6 +19,7 @@ mod edges;
 mod face;
 mod guide;
 mod pool;
+pub(super) mod segment;
 mod solid;
 #[cfg(test)]
 pub(in crate::query) mod tests;
