@@ -13,7 +13,7 @@ use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
 use crate::math::{Point, Real, Vector, cross2, max, min};
 use crate::query::separation::meeting::{Meeting, meeting};
-use crate::shape::{FACING_SINE_SQUARED, FeatureId, Kind};
+use crate::shape::{FACING_SINE_SQUARED, FeatureId, Geometry, Kind};
 
 /// The squared sine of the lean up to which a segment shows itself; see [`super::facet::LEAST_COSINE`].
 const SEGMENT_SINE_SQUARED: f64 = 0.75;
@@ -32,7 +32,7 @@ pub(super) fn build<N: Real>(
     let are_segments = names1 == Names::Segment && names2 == Names::Segment;
     // So have two boxes their own separating axis, of which the last digit is another.
     let are_boxes = names1 == Names::Box && names2 == Names::Box;
-    let is_left = are_segments || are_boxes;
+    let is_left = are_segments || are_boxes || is_out_of_order(pair);
     let is_ordinary = request.sine <= N::ZERO && request.max_points > 1 && !is_left;
     if !(is_ordinary && tolerance.is_finite_number()) {
         return false;
@@ -49,6 +49,16 @@ pub(super) fn build<N: Real>(
         .map(|(which, names)| Part::of(&meeting, which, (names, tolerance)));
     let facing = Facing { meeting: &meeting, parts, distance, tolerance };
     facing.build(request.prediction, out)
+}
+
+/// Rounded solids are parted as what is within them is, whose order may be the opposite: of that the last digit
+/// is another.
+fn is_out_of_order<N: Real>(pair: &Pair<'_, N, 2>) -> bool {
+    let [first, second] = [pair.first, pair.second].map(|kind| match kind {
+        Kind::Rounded(solid) => solid.inner().kind(),
+        other => Geometry(other).kind(),
+    });
+    matches!(pair.second, Kind::Rounded(_)) && first > second
 }
 
 /// How the corners and sides of an outline are named.

@@ -5,7 +5,7 @@ use super::scene::{Random, Scene, describe, near_pose, solids};
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::separation::separation;
 use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::{ConvexPolygon, Cuboid, Rounded, Segment, Shape, Triangle};
+use crate::shape::{ConvexPolygon, Cuboid, Geometry, Rounded, Segment, Shape, Triangle};
 
 /// The solids of the scene that have outlines, rounded ones, and such that often lie flush.
 fn outlined<N: Scene<2>>(random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
@@ -30,6 +30,8 @@ struct Count {
     points: [usize; 3],
     /// Of which normals are others though the depths are equal.
     tied: usize,
+    /// In canonical order, with a depth that differs by rounding.
+    off: usize,
 }
 
 fn of_pair<N: Space<2>>(pair: &Pair<'_, N, 2>, max_points: usize, count: &mut Count) {
@@ -54,6 +56,8 @@ fn of_pair<N: Space<2>>(pair: &Pair<'_, N, 2>, max_points: usize, count: &mut Co
         let close = N::lit(512.0) * N::EPSILON;
         let depths = [&quick, &slow].map(|raw| raw.points[raw.deepest()].distance);
         assert!((depths[0] - depths[1]).abs() <= close, "{slow:?} not {quick:?}: {what}");
+        let is_in_order = Geometry(pair.first).kind() <= Geometry(pair.second).kind();
+        count.off += usize::from(is_in_order && depths[0] != depths[1]);
         if (quick.normal - slow.normal).norm() > N::lit(64.0) * N::EPSILON {
             count.tied += 1;
             return;
@@ -111,7 +115,8 @@ fn compare<N: Scene<2> + Space<2>>(seed: u64) -> Count {
 #[test]
 fn outlines_in_one_go_are_what_sides_share() {
     for count in [compare::<f32>(11), compare::<f64>(12)] {
-        let Count { pairs, built, points, tied } = count;
+        let Count { pairs, built, points, tied, off } = count;
+        assert!(off * 1000 < pairs, "{off} of {pairs} depths are not those of the separation");
         assert!(built * 10 > pairs * 7, "{built} of {pairs}");
         assert!(points.iter().all(|&points| points * 10 > pairs), "{points:?} of {pairs}");
         assert!(tied * 100 < pairs, "{tied} of {pairs} tied");
