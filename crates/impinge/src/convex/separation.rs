@@ -30,11 +30,6 @@ impl<N: Real, const D: usize> Separation<N, D> {
         }
     }
 
-    /// The same fact with the solids swapped, in the same frame.
-    pub(crate) fn swapped(&self) -> Self {
-        Self { normal: -self.normal, point1: self.point2, point2: self.point1, ..*self }
-    }
-
     /// The cores swollen by their rounding radii.
     pub(crate) fn rounded(&self, rounding1: N, rounding2: N) -> Self {
         Self {

@@ -1,6 +1,6 @@
 //! The points of two solids that are nearest to each other.
 
-use super::asked::Asked;
+use super::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
 
@@ -41,11 +41,10 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     max_distance: N,
 ) -> ClosestPoints<N, D> {
     let limit = max(max_distance, N::ZERO);
-    let asked = Asked::new((m1, g1), (m2, g2));
-    if asked.are_beyond(limit) {
+    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
         return ClosestPoints::Disjoint;
-    }
-    match asked.separation(limit, N::tables().touching_in_world) {
+    };
+    match (N::tables().touching_in_world)(&placed1, &placed2, limit) {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,
         Some(found) => ClosestPoints::WithinMargin(found.point1, found.point2),

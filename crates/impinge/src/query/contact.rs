@@ -1,6 +1,6 @@
 //! A contact: two points and a normal.
 
-use super::asked::Asked;
+use super::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 
@@ -57,11 +57,8 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     prediction: N,
 ) -> Option<Contact<N, D>> {
-    let asked = Asked::new((m1, g1), (m2, g2));
-    if asked.are_beyond(prediction) {
-        return None;
-    }
-    let found = asked.separation(prediction, N::tables().contact_in_world)?;
+    let [placed1, placed2] = Placed::within((m1, g1), (m2, g2), prediction)?;
+    let found = (N::tables().contact_in_world)(&placed1, &placed2, prediction)?;
     found.distance.is_finite_number().then(|| Contact {
         world1: found.point1,
         world2: found.point2,

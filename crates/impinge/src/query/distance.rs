@@ -1,6 +1,6 @@
 //! How far apart two solids are.
 
-use super::asked::Asked;
+use super::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 
@@ -28,6 +28,7 @@ pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
 ) -> N {
-    let found = Asked::new((m1, g1), (m2, g2)).distance(N::INFINITY);
+    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
+    let found = (N::tables().distance_in_world)(&placed1, &placed2, N::INFINITY);
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }

@@ -1,6 +1,5 @@
 //! Questions about one solid or two, answered from nothing but the arguments.
 
-mod asked;
 mod closest_points;
 pub(crate) mod composite;
 mod contact;

@@ -1,6 +1,6 @@
 //! How near two solids are, in three words.
 
-use super::asked::Asked;
+use super::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 
@@ -30,11 +30,10 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     margin: N,
 ) -> Proximity {
     let limit = max(margin, N::ZERO);
-    let asked = Asked::new((m1, g1), (m2, g2));
-    if asked.are_beyond(limit) {
+    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
         return Proximity::Disjoint;
-    }
-    match asked.distance(limit) {
+    };
+    match (N::tables().distance_in_world)(&placed1, &placed2, limit) {
         None => Proximity::Disjoint,
         Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,

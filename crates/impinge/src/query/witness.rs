@@ -1,7 +1,6 @@
 //! The nearest points of two shapes with all that is known about them.
 
-use super::asked::Asked;
-use super::composite::{Between, PartPair, Wanted, nearest_between};
+use super::composite::{Between, PartPair, PartSeparation, Wanted, nearest_between};
 use super::pair::Placed;
 use super::separation::placed;
 use crate::convex::Separation;
@@ -34,24 +33,6 @@ pub struct Witness<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
-    /// From the separation in the world, the parts and their features.
-    pub(super) fn joined(
-        in_world: &Separation<N, D>,
-        parts: [u32; 2],
-        features: [FeatureId; 2],
-    ) -> Self {
-        Self {
-            point1: in_world.point1,
-            point2: in_world.point2,
-            normal: Unit::new_unchecked(in_world.normal),
-            distance: in_world.distance,
-            part1: parts[0],
-            part2: parts[1],
-            feature1: features[0],
-            feature2: features[1],
-        }
-    }
-
     /// The same witness with the shapes swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
@@ -105,11 +86,8 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> Option<Witness<N, D>> {
-    let asked = Asked::new((m1, g1), (m2, g2));
-    if asked.are_beyond(max_distance) {
-        return None;
-    }
-    asked.witness(max_distance)
+    let [placed1, placed2] = Placed::within((m1, g1), (m2, g2), max_distance)?;
+    (N::tables().witness_in_world)(&placed1, &placed2, max_distance)
 }
 
 /// See [`witness`].
@@ -128,8 +106,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     }
     let features = features(&between.parts(found.parts), &found.local);
     let first = if swapped { placed2 } else { placed1 };
-    let in_world = placed(&found.separation, &first.pose, false);
-    let witness = Witness::joined(&in_world, found.parts, features);
+    let witness = joined(&placed(&found.separation, &first.pose, false), &found, features);
     Some(if swapped { witness.flipped() } else { witness })
 }
 
@@ -138,4 +115,21 @@ fn features<N: Space<D>, const D: usize>(
     found: &Separation<N, D>,
 ) -> [FeatureId; 2] {
     (N::tables().witness_features)(&parts.pair(), found)
+}
+
+fn joined<N: Real, const D: usize>(
+    in_world: &Separation<N, D>,
+    found: &PartSeparation<N, D>,
+    features: [FeatureId; 2],
+) -> Witness<N, D> {
+    Witness {
+        point1: in_world.point1,
+        point2: in_world.point2,
+        normal: Unit::new_unchecked(in_world.normal),
+        distance: in_world.distance,
+        part1: found.parts[0],
+        part2: found.parts[1],
+        feature1: features[0],
+        feature2: features[1],
+    }
 }

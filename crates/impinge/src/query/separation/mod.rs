@@ -62,12 +62,10 @@ use crate::math::{Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, ShapeKind};
 
-pub(super) use ball_ball::of_balls;
 pub(crate) use ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
 pub(crate) use hulls::Certificate;
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
-pub(super) use plane_any::of_half_space;
 pub(crate) use projection::Projection;
 pub(crate) use seen::{seen_in_plane, seen_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};

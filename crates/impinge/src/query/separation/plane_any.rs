@@ -5,7 +5,7 @@ use super::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit_or};
 use crate::query::Pair;
-use crate::shape::{Geometry, Kind, SupportMap};
+use crate::shape::{Geometry, Kind};
 
 /// The separation of any convex solid from a half-space: of its point deepest in it.
 ///
@@ -19,21 +19,9 @@ pub(super) fn separation<N: Real, const D: usize>(
     else {
         wrong_kinds(pair)
     };
-    of_half_space(solid, &pair.pose12.vector(plane.normal()), &pair.pose12.translation, limit)
-}
-
-/// [`separation`] from the half-space with this outward normal and through this point, in the frame of the
-/// solid.
-#[inline]
-pub(in crate::query) fn of_half_space<N: Real, const D: usize>(
-    solid: &dyn SupportMap<N, D>,
-    outward: &Vector<N, D>,
-    place: &Vector<N, D>,
-    limit: N,
-) -> Option<Separation<N, D>> {
-    let normal = -outward;
+    let normal = -pair.pose12.vector(plane.normal());
     let core = solid.core_support(&normal);
-    let beyond = normal.dot(&(core.coords - place));
+    let beyond = normal.dot(&(core.coords - pair.pose12.translation));
     let distance = -beyond - solid.rounding();
     let point1 = core + normal * solid.rounding();
     let point2 = point1 + normal * distance;

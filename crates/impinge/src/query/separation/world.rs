@@ -3,8 +3,9 @@
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
 use crate::query::composite::{Between, Wanted, nearest_between};
+use crate::query::far::Apart;
 use crate::query::pair::{Ordered, Placed};
-use crate::shape::Shape;
+use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
@@ -94,8 +95,12 @@ pub(crate) fn placed<N: Real, const D: usize>(
 ) -> Separation<N, D> {
     let (normal, point1, point2) =
         (first.vector(&found.normal), first.point(&found.point1), first.point(&found.point2));
-    let found = Separation { distance: found.distance, normal, point1, point2 };
-    if swapped { found.swapped() } else { found }
+    let distance = found.distance;
+    if swapped {
+        Separation { distance, normal: -normal, point1: point2, point2: point1 }
+    } else {
+        Separation { distance, normal, point1, point2 }
+    }
 }
 
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
@@ -105,6 +110,30 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         isometry: &Isometry<N, R, D>,
         shape: &'a dyn Shape<N, D>,
     ) -> Self {
-        Self { pose: Pose::from_isometry(isometry), shape: shape.geometry() }
+        Self::at(isometry, shape.geometry())
+    }
+
+    #[inline]
+    fn at<R: AbstractRotation<N, D>>(
+        isometry: &Isometry<N, R, D>,
+        shape: Geometry<'a, N, D>,
+    ) -> Self {
+        Self { pose: Pose::from_isometry(isometry), shape }
+    }
+
+    /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than
+    /// `limit`.
+    #[inline]
+    pub(crate) fn within<R: AbstractRotation<N, D>>(
+        (isometry1, shape1): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        (isometry2, shape2): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        limit: N,
+    ) -> Option<[Self; 2]> {
+        let shapes = [shape1.geometry(), shape2.geometry()];
+        let between = isometry2.translation.vector - isometry1.translation.vector;
+        if (N::tables().are_beyond)(&Apart { shapes, between }, limit) {
+            return None;
+        }
+        Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])
     }
 }
