@@ -4,15 +4,14 @@ mod scene_stage;
 
 use impinge::math::Space;
 use impinge::narrow_phase::{
-    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
-    ProximityPair,
+    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, ProximityPair,
 };
 use impinge::world::{CollisionObjects, ContactPairs, NarrowPhase, ProximityPairs};
 use impinge_scenes::{Scene, SceneQuery, mixed_shapes, sparse_drift, spawn_and_despawn};
 use scene_stage::{Digest, Play, Player, digest_state};
 use std::hash::Hasher;
 
-/// The default narrow phase, told of pairs one by one.
+/// The default narrow phase, told of pairs one by one: `handle_interactions` is the provided method.
 struct OneByOne<N: Space<D>, const D: usize>(DefaultNarrowPhase<N, D>);
 
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {
@@ -29,17 +28,6 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {
         started: bool,
     ) {
         self.0.handle_interaction(events, objects, handle1, handle2, started);
-    }
-
-    fn handle_interactions(
-        &mut self,
-        events: &mut Events,
-        objects: &CollisionObjects<N, D, T>,
-        interactions: &[Interaction],
-    ) {
-        for &((handle1, handle2), started) in interactions {
-            self.handle_interaction(events, objects, handle1, handle2, started);
-        }
     }
 
     fn handle_removal(

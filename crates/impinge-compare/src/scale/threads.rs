@@ -20,13 +20,13 @@ const PILE: usize = 10_000;
 /// Runs all sizes up to so many boxes, and of the scenes those that are not larger.
 pub fn run(arguments: &Arguments) -> Table {
     let mut table = Table::new("threads", "ms");
-    for (name, make, count) in stages::<2>(arguments) {
-        run_scene(name, &make(count), arguments, &mut table, |scene, threads| {
+    for stage in stages::<2>(arguments) {
+        run_scene(stage, arguments, &mut table, |scene, threads| {
             [pooled(ours::plane(scene), threads), pooled(plane::Rapier::new(scene), threads)]
         });
     }
-    for (name, make, count) in stages::<3>(arguments) {
-        run_scene(name, &make(count), arguments, &mut table, |scene, threads| {
+    for stage in stages::<3>(arguments) {
+        run_scene(stage, arguments, &mut table, |scene, threads| {
             [pooled(ours::space(scene), threads), pooled(space::Rapier::new(scene), threads)]
         });
     }
@@ -49,17 +49,16 @@ fn stages<const D: usize>(arguments: &Arguments) -> impl Iterator<Item = Stage<D
 
 /// Races the contenders of a scene, with one thread and with two.
 fn run_scene<const D: usize>(
-    name: &str,
-    scene: &Scene<D>,
+    (name, make, count): Stage<D>,
     arguments: &Arguments,
     table: &mut Table,
     contenders: impl Fn(&Scene<D>, usize) -> [Box<dyn Contender<D>>; 2],
 ) {
-    let cases = KINDS.map(|kind| format!("{name} {D}D, {}: {kind}", scene.objects.len()));
+    let cases = KINDS.map(|kind| format!("{name} {D}D, {count}: {kind}"));
     if !cases.iter().any(|case| arguments.wants_case(case)) {
         return;
     }
-    let scene = asking_for_contacts(scene.clone());
+    let scene = asking_for_contacts(make(count));
     let [ours1, theirs1] = contenders(&scene, 1);
     let [ours2, theirs2] = contenders(&scene, 2);
     let all = [

@@ -302,8 +302,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
                 Lane::Contacts(group) => {
-                    let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, number);
-                    entry.state.set_solids(shapes(table, key));
+                    let entry = new_entry(table, key, (request, number));
                     self.lanes.contacts[usize::from(group)].push(key, entry, is_touching)
                 }
                 Lane::Composites => {
@@ -365,8 +364,19 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
+/// The state of a pair of convex solids that begins.
+pub(super) fn new_entry<N: Space<D>, const D: usize>(
+    table: &ObjectTable<N, D>,
+    key: (u32, u32),
+    (request, number): (ManifoldRequest<N>, u64),
+) -> ContactEntry<N, ContactState<N, D>> {
+    let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, number);
+    entry.state.set_solids(shapes(table, key));
+    entry
+}
+
 /// The shapes of a pair.
-pub(super) fn shapes<N: Space<D>, const D: usize>(
+fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     (first, second): (u32, u32),
 ) -> [&dyn Shape<N, D>; 2] {

@@ -2,10 +2,9 @@
 
 use smallvec::SmallVec;
 
-use super::default_narrow_phase::{push_change, shapes};
-use super::entry::{Change, ContactEntry};
+use super::default_narrow_phase::{new_entry, push_change};
+use super::entry::Change;
 use super::lanes::{Lane, Location};
-use super::state::ContactState;
 use super::{DefaultNarrowPhase, Events, Interaction, ObjectTable, PairQuery};
 use crate::math::Space;
 use crate::pairs::pack;
@@ -118,8 +117,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             return None;
         }
         let request = ManifoldRequest::new(linear, angular, max_points);
-        let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, self.ids.allocate());
-        entry.state.set_solids(shapes(table, new));
+        let entry = new_entry(table, new, (request, self.ids.allocate()));
         let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);
         let end = was_touching.then_some(Change::Contact { touching: false });
         push_change(table, old, end, events);

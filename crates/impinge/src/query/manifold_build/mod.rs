@@ -153,10 +153,11 @@ pub(crate) fn contacts2<N: Real>(
     out: &mut RawManifold<N, 2>,
 ) {
     let is_ball = matches!(pair.first, Kind::Ball(_));
-    if is_ball && !matches!(pair.second, Kind::Triangle(_)) {
-        return ball::build(pair, separation_in_plane(pair, request.prediction), out);
-    }
-    if box_sides::build(pair, request, out) || outlines::build(pair, request, out) {
+    // Of balls beside other solids the separation is as quick.
+    let may_be_direct = !is_ball || matches!(pair.second, Kind::Triangle(_));
+    let is_built = may_be_direct
+        && (box_sides::build(pair, request, out) || outlines::build(pair, request, out));
+    if is_built {
         return;
     }
     if is_ball {

@@ -12,6 +12,7 @@ use super::frame::{Candidate, rounding};
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
 use crate::math::{Point, Real, Vector, cross2, max, min};
+use crate::query::separation::bare;
 use crate::query::separation::meeting::{Meeting, meeting};
 use crate::shape::{FACING_SINE_SQUARED, FeatureId, Geometry, Kind};
 
@@ -54,10 +55,7 @@ pub(super) fn build<N: Real>(
 /// Rounded solids are parted as what is within them is, whose order may be the opposite: of that the last digit
 /// is another.
 fn is_out_of_order<N: Real>(pair: &Pair<'_, N, 2>) -> bool {
-    let [first, second] = [pair.first, pair.second].map(|kind| match kind {
-        Kind::Rounded(solid) => solid.inner().kind(),
-        other => Geometry(other).kind(),
-    });
+    let [first, second] = [pair.first, pair.second].map(|kind| Geometry(bare(kind).0).kind());
     matches!(pair.second, Kind::Rounded(_)) && first > second
 }
 

@@ -13,10 +13,11 @@ use super::facet::{LEAST_COSINE, lifted_by};
 use super::fences::{LANES, fence, placed};
 use super::frame::{Candidate, Frame};
 use super::overlap::Candidates;
-use super::segments::part_at;
+use super::segments::{core, part_at};
 use super::{ManifoldRequest, Pair, RawManifold, choose, names};
 use crate::math::lanes::{load, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component};
+use crate::query::separation::bare;
 use crate::shape::{ConvexPolyhedron, FaceRing, FeatureId, Kind};
 
 /// Builds the manifold of a segment or capsule, the first of a pair, whose nearest points to the other solid
@@ -42,14 +43,6 @@ pub(super) fn build<N: Real>(
     }
 }
 
-/// What is rounded, and by how much.
-fn bare<N: Real>(kind: Kind<'_, N, 3>) -> (Kind<'_, N, 3>, N) {
-    match kind {
-        Kind::Rounded(solid) => (solid.inner().0, solid.swelling()),
-        other => (other, N::ZERO),
-    }
-}
-
 /// The core of the first solid as seen along the normal.
 struct Core<N: Real> {
     ends: [Point<N, 3>; 2],
@@ -65,11 +58,7 @@ struct Core<N: Real> {
 
 impl<N: Real> Core<N> {
     fn of(kind: Kind<'_, N, 3>, frame: &Frame<N, 3>) -> Option<Self> {
-        let (segment, radius) = match kind {
-            Kind::Capsule(capsule) => (capsule.segment(), capsule.radius()),
-            Kind::Segment(segment) => (segment, N::ZERO),
-            _ => return None,
-        };
+        let (segment, radius) = core(kind)?;
         let ends = [*segment.a(), *segment.b()];
         let flats = [frame.flat(&ends[0]), frame.flat(&ends[1])];
         let (along, way) = (flats[1] - flats[0], ends[1] - ends[0]);

@@ -35,7 +35,7 @@ pub(super) fn crossing_parts<N: Real>(
 }
 
 /// The segment in the middle of a segment or capsule, and the radius around it.
-fn core<'a, N: Real>(kind: Kind<'a, N, 3>) -> Option<(&'a Segment<N, 3>, N)> {
+pub(super) fn core<'a, N: Real>(kind: Kind<'a, N, 3>) -> Option<(&'a Segment<N, 3>, N)> {
     match kind {
         Kind::Segment(segment) => Some((segment, N::ZERO)),
         Kind::Capsule(capsule) => Some((capsule.segment(), capsule.radius())),

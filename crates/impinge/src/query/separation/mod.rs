@@ -67,6 +67,7 @@ pub(crate) use chain::{ChainQuestion, Links, links};
 pub(crate) use hulls::Certificate;
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use projection::Projection;
+pub(super) use rounded::bare;
 pub(crate) use seen::{seen_in_plane, seen_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};

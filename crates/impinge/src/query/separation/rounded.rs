@@ -21,7 +21,7 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
 }
 
 /// What is rounded, and by how much.
-fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
+pub(in crate::query) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.swelling()),
         other => (other, N::ZERO),
