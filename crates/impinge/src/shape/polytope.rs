@@ -85,6 +85,13 @@ pub struct PolytopeFace<N: Real, const D: usize> {
     pub(super) len: u32,
 }
 
+impl<N: Real, const D: usize> PolytopeFace<N, D> {
+    /// How far a point lies above the face's plane.
+    pub(crate) fn height_of(&self, point: &Point<N, D>) -> N {
+        self.normal.dot(&point.coords) - self.offset
+    }
+}
+
 /// An edge between two faces, in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PolytopeEdge {
@@ -179,6 +186,13 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// The name of an edge (in the plane: of a face).
     pub(super) fn side_id(index: u32) -> FeatureId {
         FeatureId::flat::<D>(1, index)
+    }
+
+    /// The index of the face that a point lies highest above, the first of equals, and how high: positive
+    /// exactly if the point is outside.
+    pub(crate) fn highest_face(&self, point: &Point<N, D>) -> (u32, N) {
+        let highest = polytope_support::plane(Level::new(), &self.planes, point);
+        (count32(highest), self.faces[highest].height_of(point))
     }
 
     /// The index of a vertex farthest along a direction: the first of equals.

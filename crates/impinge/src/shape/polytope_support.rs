@@ -1,12 +1,13 @@
-//! Support points of polytopes of more than a few vertices, by vectors.
+//! Support points of polytopes of more than a few vertices, and the faces that points lie highest above, by
+//! vectors.
 
 use fearless_simd::{Level, Select, Simd, SimdMask};
 
-use super::polytope::LANES;
+use super::polytope::{LANES, Planes};
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
-use crate::math::{Real, Vector, Wide};
+use crate::math::{Point, Real, Vector, Wide};
 
-/// [`vertex_in_lanes`] with the vectors of an instruction set; the answer does not depend on it.
+/// The index of a vertex farthest along a direction: the first of equals.
 pub(super) fn vertex<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],
@@ -15,7 +16,15 @@ pub(super) fn vertex<N: Real, const D: usize>(
     with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction), else 0)
 }
 
-/// The index of a vertex farthest along a direction: the first of equals.
+/// The index of a plane that a point lies highest above: the first of equals.
+pub(super) fn plane<N: Real, const D: usize>(
+    level: Level,
+    planes: &[Planes<N, D>],
+    point: &Point<N, D>,
+) -> usize {
+    with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point), else 0)
+}
+
 #[inline(always)]
 fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -23,12 +32,45 @@ fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     direction: &Vector<N, D>,
 ) -> usize {
     let along: [V; D] = spread(simd, direction);
-    let mut highest = dot(&load::<_, _, V, D, LANES>(simd, &blocks[0]), &along);
+    highest(
+        simd,
+        blocks,
+        #[inline(always)]
+        |block| dot(&load::<_, _, V, D, LANES>(simd, block), &along),
+    )
+}
+
+#[inline(always)]
+fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    planes: &[Planes<N, D>],
+    point: &Point<N, D>,
+) -> usize {
+    let point: [V; D] = spread(simd, &point.coords);
+    highest(
+        simd,
+        planes,
+        #[inline(always)]
+        |planes| {
+            let normals = load::<_, _, V, D, LANES>(simd, &planes.normals);
+            dot(&normals, &point) - V::load(simd, &planes.offsets)
+        },
+    )
+}
+
+/// The place of the highest of the numbers that blocks have in their lanes: the first of equals.
+#[inline(always)]
+fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
+    simd: S,
+    blocks: &[B],
+    heights: impl Fn(&B) -> V,
+) -> usize {
+    let mut highest = heights(&blocks[0]);
     // Numbers of blocks are few, so that they are exact as numbers of the type.
     let (mut places, mut place) = (V::all(simd, N::ZERO), N::ZERO);
     for block in &blocks[1..] {
         place += N::ONE;
-        let heights = dot(&load::<_, _, V, D, LANES>(simd, block), &along);
+        let heights = heights(block);
         let is_higher = heights.simd_gt(highest);
         places = is_higher.select(V::all(simd, place), places);
         highest = is_higher.select(heights, highest);

@@ -5,34 +5,17 @@ use super::segment::{feature_at, nearest};
 use crate::math::{Point, Real, cross};
 use crate::shape::{FeatureId, Polytope, PolytopeFace};
 
-/// The first of the faces that lie highest above the solid's inside as seen from `point`, with the
-/// signed height of the point over it: positive exactly if the point is outside.
-fn highest_face<N: Real, const D: usize>(solid: &Polytope<N, D>, point: &Point<N, D>) -> (u32, N) {
-    let mut best = (0, -N::INFINITY);
-    for (number, face) in (0_u32..).zip(solid.faces()) {
-        let height = height(face, point);
-        if height > best.1 {
-            best = (number, height);
-        }
-    }
-    best
-}
-
-fn height<N: Real, const D: usize>(face: &PolytopeFace<N, D>, point: &Point<N, D>) -> N {
-    face.normal.dot(&point.coords) - face.offset
-}
-
 /// From inside: the foot on the plane of the nearest face, which is the nearest point of the
 /// boundary because the solid is convex. `None` from outside.
 fn from_inside<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     point: &Point<N, D>,
 ) -> Option<SurfacePoint<N, D>> {
-    let (number, height) = highest_face(solid, point);
+    let (face, height) = solid.highest_face(point);
     let is_inside = height <= N::ZERO;
     is_inside.then(|| SurfacePoint {
-        point: point - solid.faces()[number as usize].normal * height,
-        feature: FeatureId::Face(number),
+        point: point - solid.faces()[face as usize].normal * height,
+        feature: FeatureId::Face(face),
         is_inside,
     })
 }
@@ -64,7 +47,7 @@ pub(super) fn surface_point3<N: Real>(
     }
     let mut best = SurfacePoint::on(solid.vertices()[0], FeatureId::Vertex(0));
     for (number, face) in (0_u32..).zip(solid.faces()) {
-        let height = height(face, point);
+        let height = face.height_of(point);
         if height > N::ZERO && falls_into(solid, face, point) {
             let foot = SurfacePoint::on(point - face.normal * height, FeatureId::Face(number));
             best = foot.nearer(best, point);

@@ -19,20 +19,11 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     project(polygon, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// The distance of a point from the line of a side: positive in front of it.
-fn height<N: Real>(side: &PolytopeFace<N, 2>, point: &Point<N, 2>) -> N {
-    side.normal.dot(&point.coords) - side.offset
-}
-
 /// A point seen from a polygon.
 pub(super) fn project<N: Real>(polygon: &Polytope<N, 2>, center: &Point<N, 2>) -> Projection<N, 2> {
-    let mut highest = &polygon.faces()[0];
-    for side in &polygon.faces()[1..] {
-        if height(side, center) > height(highest, center) {
-            highest = side;
-        }
-    }
-    let (distance, outward) = (height(highest, center), highest.normal);
+    let (index, distance) = polygon.highest_face(center);
+    let highest = &polygon.faces()[index as usize];
+    let outward = highest.normal;
     // Written so that NaN ends here too.
     if distance > N::ZERO {
         return project_from_outside(polygon, center, highest);
@@ -51,17 +42,18 @@ fn project_from_outside<N: Real>(
     let certain =
         |seen: &Projection<N, 2>| seen.outward.dot(&(center - polygon.core_support(&seen.outward)));
     let mut best = project_on_side(polygon, highest, center);
-    if certain(&best) + noise / N::lit(4.0) >= best.distance {
+    let is_over_side = best.outward == highest.normal;
+    if is_over_side || certain(&best) + noise / N::lit(4.0) >= best.distance {
         return best;
     }
-    for side in polygon.faces().iter().filter(|side| height(side, center) > N::ZERO) {
+    for side in polygon.faces().iter().filter(|side| side.height_of(center) > N::ZERO) {
         let seen = project_on_side(polygon, side, center);
         if seen.distance < best.distance {
             best = seen;
         }
     }
     // The offset from a corner is mostly rounding where the point is close: a side may know better.
-    if certain(&best) + noise < height(highest, center) {
+    if certain(&best) + noise < highest.height_of(center) {
         best.outward = highest.normal;
     }
     best
@@ -79,7 +71,7 @@ fn project_on_side<N: Real>(
     if (center - ends[0]).dot(&along) <= N::ZERO || (ends[1] - center).dot(&along) <= N::ZERO {
         return ball_segment::project(&ends, center);
     }
-    let distance = height(side, center);
+    let distance = side.height_of(center);
     Projection { distance, outward: side.normal, point: center - side.normal * distance }
 }
 

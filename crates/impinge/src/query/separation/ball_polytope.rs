@@ -20,20 +20,11 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     project(hull, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// The distance of a point from the plane of a face: positive in front of it.
-fn height<N: Real>(face: &PolytopeFace<N, 3>, point: &Point<N, 3>) -> N {
-    face.normal.dot(&point.coords) - face.offset
-}
-
 /// A point seen from a convex hull.
 pub(super) fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> Projection<N, 3> {
-    let mut highest = &hull.faces()[0];
-    for face in &hull.faces()[1..] {
-        if height(face, center) > height(highest, center) {
-            highest = face;
-        }
-    }
-    let (distance, outward) = (height(highest, center), highest.normal);
+    let (index, distance) = hull.highest_face(center);
+    let highest = &hull.faces()[index as usize];
+    let outward = highest.normal;
     let flat = Projection { distance, outward, point: center - outward * distance };
     // Written so that NaN ends here too.
     if distance > N::ZERO { project_from_outside(hull, center, (highest, &flat)) } else { flat }
@@ -51,11 +42,12 @@ fn project_from_outside<N: Real>(
     let certain =
         |seen: &Projection<N, 3>| seen.outward.dot(&(center - hull.core_support(&seen.outward)));
     let seen = project_on_face(hull, highest, center);
-    if certain(&seen) + noise / N::lit(4.0) >= seen.distance {
+    let is_over_face = seen.outward == highest.normal;
+    if is_over_face || certain(&seen) + noise / N::lit(4.0) >= seen.distance {
         return seen;
     }
     let mut best: Option<Projection<N, 3>> = None;
-    for face in hull.faces().iter().filter(|face| height(face, center) > N::ZERO) {
+    for face in hull.faces().iter().filter(|face| face.height_of(center) > N::ZERO) {
         let seen = project_on_face(hull, face, center);
         if best.is_none_or(|best| seen.distance < best.distance) {
             best = Some(seen);
@@ -76,10 +68,10 @@ fn project_on_face<N: Real>(
     center: &Point<N, 3>,
 ) -> Projection<N, 3> {
     let around = hull.face_vertices(face);
-    let corner = |at: usize| hull.vertices()[around[at % around.len()] as usize];
+    let corner = |vertex: u32| hull.vertices()[vertex as usize];
     let mut best: Option<Projection<N, 3>> = None;
-    for side in 0..around.len() {
-        let ends = [corner(side), corner(side + 1)];
+    for (&from, &to) in around.iter().zip(around.iter().cycle().skip(1)) {
+        let ends = [corner(from), corner(to)];
         let beyond = cross(&(ends[1] - ends[0]), &face.normal).dot(&(center - ends[0]));
         if beyond > N::ZERO {
             let seen = ball_segment::project(&ends, center);
@@ -89,7 +81,7 @@ fn project_on_face<N: Real>(
         }
     }
     best.unwrap_or_else(|| {
-        let distance = height(face, center);
+        let distance = face.height_of(center);
         let point = center - face.normal * distance;
         Projection { distance, outward: face.normal, point }
     })
