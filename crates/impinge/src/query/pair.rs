@@ -45,8 +45,8 @@ pub(crate) struct Placed<'a, N: Real, const D: usize> {
 ///
 /// Every answer about two solids is computed in this order and turned round at the end, so that
 /// swapping the arguments flips the answer bit for bit. Kinds come in the order of
-/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations,
-/// then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
+/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations, of
+/// which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
 /// (Of a support map of the user's own the numbers are its rounding and its support points along the
 /// axes and the diagonals; of a composite they are those of its parts.)
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
