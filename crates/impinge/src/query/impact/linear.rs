@@ -34,10 +34,10 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Path<N, D> {
-    /// The pair that begins so, at a later time.
-    fn at<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
-        let translation = start.pose12.translation + self.velocity * along;
-        Pair { pose12: Pose { translation, ..start.pose12 }, ..*start }
+    /// Where the second solid of the pair that begins so is at a later time.
+    #[inline]
+    fn place(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
+        start.pose12.translation + self.velocity * along
     }
 
     /// How fast the solids approach along a normal.
@@ -67,7 +67,8 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
 
     /// What the points of the pair that begins so lie on when it arrives.
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
-        (N::tables().witness_features)(&path.at(start, self.along), &self.separation)
+        let pose12 = Pose { translation: path.place(start, self.along), ..start.pose12 };
+        (N::tables().witness_features)(&Pair { pose12, ..*start }, &self.separation)
     }
 }
 
@@ -83,7 +84,7 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     path: &Path<N, D>,
 ) -> Option<Arrival<N, D>> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    let mut along = N::ZERO;
+    let (mut pair, mut along) = (*start, N::ZERO);
     let mut found = separation(start, N::INFINITY).filter(|_| path.end >= N::ZERO)?;
     let gap = found.distance - path.target;
     if gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
@@ -104,7 +105,7 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
         }
         let step = path.velocity * (later - along);
         along = later;
-        let pair = path.at(start, along);
+        pair.pose12.translation = path.place(start, along);
         if let Some(touch) = touching(&pair, (&found, &step), (path.target, tolerance)) {
             return Some(Arrival::reached(along, touch));
         }

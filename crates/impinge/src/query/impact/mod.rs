@@ -269,6 +269,7 @@ struct Course<'m, 'a, N: Real, const D: usize> {
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     /// `None` if the solids certainly stay apart, or something is not finite.
+    #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
         moving2: &'m Moving<'a, N, D>,
@@ -300,6 +301,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     }
 
     /// The first touch, in the frame of the first part, and when that is.
+    #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {
             first_arrival(&Between::of_ordered(&self.ordered), &self.path)?
@@ -311,6 +313,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     }
 
     /// A touch seen from the world, for the solids in their canonical order.
+    #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {
             touch.seen_from(&Between::of_ordered(&self.ordered), &self.path)
