@@ -68,7 +68,7 @@ pub(super) fn project<N: Real>(
     let [a, b, c] = if turns_left { [a, b, c] } else { [a, c, b] };
     let sides =
         [Side::new([a, b], center)?, Side::new([b, c], center)?, Side::new([c, a], center)?];
-    if is_thin(&sides) {
+    if !has_area(&sides) {
         return None;
     }
     if let Some(below) = sides.iter().find(|side| side.is_below(center)) {
@@ -83,13 +83,13 @@ pub(super) fn project<N: Real>(
     (highest.height <= N::ZERO).then(|| highest.projection(center))
 }
 
-/// All corners lie on the longest side, up to rounding.
-fn is_thin<N: Real>(sides: &[Side<N>; 3]) -> bool {
+/// Not all corners lie on the longest side, up to rounding; nothing that is not a number has an area.
+fn has_area<N: Real>(sides: &[Side<N>; 3]) -> bool {
     let [side, next, last] = sides;
     let longest = max(max(side.length, next.length), last.length);
     let sine = cross2(&side.along, &next.along);
     let area = sine * (side.length / longest) * (next.length / longest);
-    !(area > N::lit(64.0) * N::EPSILON)
+    area > N::lit(64.0) * N::EPSILON
 }
 
 /// Seen from the nearest corner, the first of equals; where that is so close that the direction is mostly
