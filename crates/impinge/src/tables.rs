@@ -34,8 +34,8 @@ use crate::query::{
     BoxJob, Certificate, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving,
     OnFace, Pair, Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
     contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
-    tangents2, tangents3, update_box_pairs2, update_box_pairs3, witness_feature2, witness_feature3,
-    witness_features2, witness_features3, witness_in_world,
+    tangents2, tangents3, time_of_pair, update_box_pairs2, update_box_pairs3, witness_feature2,
+    witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -74,6 +74,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) over: OverFn<N, D>,
     /// When two moving solids touch, and where.
     pub(crate) impact: ImpactFn<N, D>,
+    pub(crate) time_of_impact: TimeFn<N, D>,
     pub(crate) nonlinear_impact: NonlinearImpactFn<N, D>,
     /// When the line of a ray is inside a solid.
     pub(crate) ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
@@ -129,6 +130,8 @@ type EachHitFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &RayQuestion<N, D>, &mut dyn FnMut(RayIntersection<N, D>) -> N);
 type ImpactFn<N, const D: usize> =
     fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
+type TimeFn<N, const D: usize> =
+    fn(&Moving<'_, N, D>, &Moving<'_, N, D>, &ImpactOptions<N>) -> Option<N>;
 type NonlinearImpactFn<N, const D: usize> =
     fn(&Flight<'_, N, D>, &ImpactOptions<N>) -> Option<Impact<N, D>>;
 type PublicManifoldFn<N, const D: usize> =
@@ -328,6 +331,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             parted: particular.parted,
             on_face: particular.on_face,
             impact: impact_of_pair,
+            time_of_impact: time_of_pair,
             nonlinear_impact: impact_of_flight,
             ray_span: particular.ray_span,
             surface_point: particular.surface_point,

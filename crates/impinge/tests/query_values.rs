@@ -1,5 +1,6 @@
 //! Answers computed by hand, through the public functions.
 
+use impinge::math::na::UnitQuaternion;
 use impinge::math::{Isometry2, Isometry3, Point, Unit, Vector};
 use impinge::query::{
     ClosestPoints, Proximity, closest_points, contact, distance, proximity, time_of_impact,
@@ -33,6 +34,28 @@ fn balls() {
     assert_eq!(found.world2, Point::<f64, 2>::new(0.0, 0.0), "the bottom of the second");
     let middle = contact(&at(7.0, 7.0), &small, &at(7.0, 7.0), &large, 0.0).expect("overlap");
     assert_eq!((middle.depth, middle.normal.x), (3.0, 1.0), "along the first axis");
+}
+
+#[test]
+fn a_ball_looks_the_same_however_it_is_turned() {
+    let (ball, cuboid) = (Ball::new(1.0_f32), Cuboid::new(Vector::<f32, 3>::new(0.5, 1.0, 2.0)));
+    let (away, turn) =
+        (Vector::<f32, 3>::new(1.5, 1.0, -2.5), Vector::<f32, 3>::new(0.3, 2.0, 1.0));
+    let straight = Isometry3::new(away, Vector::<f32, 3>::zeros());
+    let turned = Isometry3::new(away, turn);
+    let beside = Isometry3::new(-away, -turn);
+    for shape in [&ball as &dyn Shape<f32, 3>, &cuboid] {
+        let ask = |place| contact(place, &ball, &beside, shape, 9.0);
+        assert_eq!(ask(&turned), ask(&straight), "{shape:?}");
+        assert!(ask(&turned).is_some(), "within nine of {shape:?}");
+        let way = -away * 2.0;
+        let hit = |m1| time_of_impact(m1, &way, &ball, &beside, &Vector::<f32, 3>::zeros(), shape);
+        assert_eq!(hit(&turned), hit(&straight), "{shape:?}");
+    }
+    let mut broken = turned;
+    broken.rotation = UnitQuaternion::new_unchecked(broken.rotation.into_inner() * f32::NAN);
+    assert_eq!(distance(&broken, &ball, &beside, &cuboid), f32::INFINITY, "no rotation");
+    assert_eq!(contact(&beside, &ball, &broken, &ball, f32::INFINITY), None, "no rotation");
 }
 
 #[test]

@@ -40,6 +40,33 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: isometry.translation.vector }
     }
 
+    /// The pose of what looks the same however it is turned: it counts as not turned at all. The
+    /// translation is infinite if the rotation is not finite.
+    #[must_use]
+    #[inline]
+    pub fn unturned<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
+        let mut e = Vector::<N, D>::zeros();
+        e[0] = N::ONE;
+        // Every number of a rotation is a factor of something in every turned axis.
+        let turned = isometry.rotation.transform_vector(&e);
+        Self::from_translation(isometry.translation.vector).unless_broken(&turned)
+    }
+
+    /// This pose of what looks the same however it is turned, as [`Self::unturned`].
+    #[must_use]
+    pub(crate) fn without_rotation(&self) -> Self {
+        let sums = self.rotation.column_sum();
+        Self::from_translation(self.translation).unless_broken(&sums)
+    }
+
+    /// With a translation that is not finite, if a vector is not.
+    #[inline]
+    fn unless_broken(self, vector: &Vector<N, D>) -> Self {
+        let is_finite = (vector * N::ZERO).sum() == N::ZERO;
+        let nowhere = Vector::<N, D>::repeat(N::INFINITY);
+        Self { translation: if is_finite { self.translation } else { nowhere }, ..self }
+    }
+
     /// The pose of `second` in the frame of `first`.
     ///
     /// The translations are subtracted first, so that two solids close to each other lose nothing
@@ -127,8 +154,34 @@ impl<N: Real, const D: usize> Pose<N, D> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::na::UnitQuaternion;
     use super::super::{Isometry2, Isometry3};
     use super::*;
+
+    #[test]
+    fn what_is_no_rotation_gives_no_finite_pose() {
+        let quaternion = |[x, y, z, w]: [f32; 4]| crate::math::na::Quaternion::new(w, x, y, z);
+        for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
+            for index in 0..4 {
+                let mut numbers = [0.5_f32, 0.0, -0.5, 0.5];
+                numbers[index] = bad;
+                let rotation = UnitQuaternion::new_unchecked(quaternion(numbers));
+                let pose = Pose::unturned(&Isometry3::from_parts(Default::default(), rotation));
+                assert!(!pose.is_finite(), "{bad} at {index}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_its_rotation_a_pose_is_where_it_was() {
+        let at = Isometry3::new(Vector::<f32, 3>::new(1.0, -2.0, 3.0), [0.3, -0.2, 0.9].into());
+        let expected = Pose::from_translation(at.translation.vector);
+        assert!(Pose::unturned(&at).is_same(&expected), "of an isometry");
+        assert!(Pose::from_isometry(&at).without_rotation().is_same(&expected), "of a pose");
+        let mut broken = Pose::from_isometry(&at);
+        broken.rotation[(1, 2)] = f32::NAN;
+        assert!(!broken.without_rotation().is_finite(), "a rotation that is none");
+    }
 
     #[test]
     fn agrees_with_isometries() {

@@ -16,6 +16,10 @@ pub trait Space<const D: usize>: Real {
     /// The pose that an isometry describes.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
 
+    /// The pose of what looks the same however it is turned: see [`Pose::unturned`].
+    #[doc(hidden)]
+    fn unturned(isometry: &Self::Isometry) -> Pose<Self, D>;
+
     /// Where an isometry takes the origin.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
@@ -37,6 +41,11 @@ impl<N: Real> Space<2> for N {
     #[inline]
     fn pose(isometry: &Isometry2<N>) -> Pose<N, 2> {
         Pose::from_isometry(isometry)
+    }
+
+    #[inline]
+    fn unturned(isometry: &Isometry2<N>) -> Pose<N, 2> {
+        Pose::unturned(isometry)
     }
 
     #[inline]
@@ -69,6 +78,11 @@ impl<N: Real> Space<3> for N {
     fn pose(isometry: &Isometry3<N>) -> Pose<N, 3> {
         let rotation = matrix_of(&isometry.rotation);
         Pose { rotation, translation: isometry.translation.vector }
+    }
+
+    #[inline]
+    fn unturned(isometry: &Isometry3<N>) -> Pose<N, 3> {
+        Pose::unturned(isometry)
     }
 
     #[inline]

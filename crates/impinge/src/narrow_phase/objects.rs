@@ -137,7 +137,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.is_written.push(true);
         self.handles.push(row.handle);
         self.bounds.push(Bounds::of(row.shape.as_ref()));
-        self.solids.push(Solid { pose: N::pose(&row.isometry), shape: row.shape });
+        let pose = row.shape.geometry().pose_at(&row.isometry);
+        self.solids.push(Solid { pose, shape: row.shape });
         self.isometries.push(row.isometry);
         self.queries.push(row.query);
     }
@@ -148,7 +149,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             return;
         }
         let row = self.row(index);
-        self.solids[row].pose = N::pose(isometry);
+        let turns = self.bounds[row].turns();
+        self.solids[row].pose = if turns { N::pose(isometry) } else { N::unturned(isometry) };
         self.isometries[row] = *isometry;
         if !self.is_written[row] {
             self.is_written[row] = true;
@@ -241,7 +243,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.handles[self.row(index)]
     }
 
-    /// The pose at the last update.
+    /// The pose at the last update; the rotation of a ball is none.
     #[inline]
     pub(crate) fn pose(&self, index: u32) -> &Pose<N, D> {
         &self.solids[self.row(index)].pose

@@ -43,9 +43,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
         let solids = [(self.pose1, self.shape1), (self.pose2, self.shape2)];
         let [(first, shape1), (second, shape2)] =
             [solids[usize::from(is_swapped)], solids[usize::from(!is_swapped)]];
-        let [first_kind, second_kind] = [shape1, shape2].map(|shape| shape.geometry().0);
-        let pose12 = Pose::relative(first, second);
-        Pair { first: first_kind, second: second_kind, pose12 }
+        Pair::new([shape1.geometry(), shape2.geometry()], [first, second])
     }
 
     /// The two solids, each for itself.
@@ -89,7 +87,7 @@ pub(super) fn poses_within<N: Space<D>, const D: usize>(
     let shapes = [shapes[0].geometry(), shapes[1].geometry()];
     let between = N::translation(isometry2) - N::translation(isometry1);
     let is_beyond = (N::tables().are_beyond)(&Apart { shapes, between }, limit);
-    (!is_beyond).then(|| [N::pose(isometry1), N::pose(isometry2)])
+    (!is_beyond).then(|| [shapes[0].pose_at(isometry1), shapes[1].pose_at(isometry2)])
 }
 
 /// One of two shapes at least is a composite.

@@ -64,13 +64,25 @@ pub(crate) struct Bounds<N: Real, const D: usize> {
     extent: N,
     middle: Vector<N, D>,
     half: Vector<N, D>,
+    turns: bool,
 }
 
 impl<N: Real, const D: usize> Bounds<N, D> {
     /// Those of a shape.
     pub(crate) fn of(shape: &dyn Shape<N, D>) -> Self {
-        let (extent, aabb) = (shape.geometry().extent(), shape.local_aabb());
-        Self { extent, middle: aabb.center().coords, half: aabb.half_extents() }
+        let (geometry, aabb) = (shape.geometry(), shape.local_aabb());
+        Self {
+            extent: geometry.extent(),
+            middle: aabb.center().coords,
+            half: aabb.half_extents(),
+            turns: geometry.turns(),
+        }
+    }
+
+    /// See [`Geometry::turns`].
+    #[inline]
+    pub(crate) const fn turns(&self) -> bool {
+        self.turns
     }
 
     /// How far the points of the shape are from the origin of its frame at most; infinite where that is not

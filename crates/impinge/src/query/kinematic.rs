@@ -10,7 +10,7 @@ use self::side::Side;
 use super::{Contact, Pair, RawPoint};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, min, unit};
-use crate::shape::FeatureId;
+use crate::shape::{FeatureId, Geometry};
 
 /// What the core of a solid looks like near a contact, in its local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,8 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     /// The same normal in the frame of the second.
     pub(crate) normal2: Vector<N, D>,
     rule: NormalRule<N, D>,
+    /// The frame of each solid turns with it; that of a ball does not.
+    turns: [bool; 2],
 }
 
 /// Two points of the cores, in the frame of the first solid.
@@ -102,8 +104,11 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         m1: &Isometry<N, R, D>,
         m2: &Isometry<N, R, D>,
     ) -> Contact<N, D> {
-        let pose1 = Pose::from_isometry(m1);
-        let moved = self.predicted(&Pose::relative(&pose1, &Pose::from_isometry(m2)));
+        let pose = |isometry, turns| {
+            if turns { Pose::from_isometry(isometry) } else { Pose::unturned(isometry) }
+        };
+        let (pose1, pose2) = (pose(m1, self.turns[0]), pose(m2, self.turns[1]));
+        let moved = self.predicted(&Pose::relative(&pose1, &pose2));
         Contact {
             world1: pose1.point(&moved.point1),
             world2: pose1.point(&moved.point2),
@@ -131,6 +136,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
                 NormalRule::Edges(edge1, edge2) => NormalRule::Edges(edge2, edge1),
                 NormalRule::Geometry => NormalRule::Geometry,
             },
+            turns: [self.turns[1], self.turns[0]],
         }
     }
 
@@ -142,10 +148,15 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         Self { rule, ..self }
     }
 
-    /// The same, told in other frames than those of the solids: `pose1` and `pose2` are the poses of
-    /// the solids in these.
-    pub(super) fn seen_from(&self, pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Self {
+    /// The same, told in the frames of two shapes of which the solids are parts, or all: `pose1` and
+    /// `pose2` are the poses of the solids in these.
+    pub(super) fn seen_from(
+        &self,
+        [pose1, pose2]: [&Pose<N, D>; 2],
+        shapes: [Geometry<'_, N, D>; 2],
+    ) -> Self {
         Self {
+            turns: shapes.map(|shape| shape.turns()),
             local1: pose1.point(&self.local1),
             local2: pose2.point(&self.local2),
             geometry1: self.geometry1.moved(pose1),
@@ -241,6 +252,7 @@ pub(super) struct Sides<'a, N: Real, const D: usize> {
     normal2: Vector<N, D>,
     side1: Side<N, D>,
     side2: Side<N, D>,
+    turns: [bool; 2],
     /// The rule of points whose own geometry does not give the normal, once it was asked for.
     rule: Option<NormalRule<N, D>>,
 }
@@ -255,6 +267,7 @@ impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
             normal2,
             side1: Side::new(pair.first, *normal),
             side2: Side::new(pair.second, -normal2),
+            turns: [pair.first, pair.second].map(|kind| Geometry(kind).turns()),
             rule: None,
         }
     }
@@ -274,6 +287,7 @@ impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
             normal1: self.normal1,
             normal2: self.normal2,
             rule: NormalRule::Geometry,
+            turns: self.turns,
         };
         if !kinematic.reproduces(self.pose12) {
             kinematic.rule = self.rule();

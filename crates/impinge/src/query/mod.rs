@@ -28,7 +28,7 @@ pub use impact::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
     nonlinear_time_of_impact, time_of_impact,
 };
-pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair};
+pub(crate) use impact::{Flight, impact_of_flight, impact_of_pair, time_of_pair};
 pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};

@@ -16,7 +16,24 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
     pub(crate) pose12: Pose<N, D>,
 }
 
-/// A solid where it stands in the world.
+impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
+    /// Two solids in canonical order at poses in the world; the rotation of a ball is none.
+    #[inline]
+    pub(crate) fn new(
+        [first, second]: [Geometry<'a, N, D>; 2],
+        [pose1, pose2]: [&Pose<N, D>; 2],
+    ) -> Self {
+        let pose12 = if first.turns() {
+            Pose::relative(pose1, pose2)
+        } else {
+            let translation = pose2.translation - pose1.translation;
+            Pose { rotation: pose2.rotation, translation }
+        };
+        Self { first: first.0, second: second.0, pose12 }
+    }
+}
+
+/// A solid where it stands in the world. The rotation of a ball counts as none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
@@ -28,8 +45,8 @@ pub(crate) struct Placed<'a, N: Real, const D: usize> {
 ///
 /// Every answer about two solids is computed in this order and turned round at the end, so that
 /// swapping the arguments flips the answer bit for bit. Kinds come in the order of
-/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations,
-/// then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
+/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations, of
+/// which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
 /// (Of a support map of the user's own the numbers are its rounding and its support points along the
 /// axes and the diagonals; of a composite they are those of its parts.)
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
@@ -40,9 +57,9 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
 ) -> (Pair<'a, N, D>, bool) {
     let swapped = is_swapped(pose1, shape1, pose2, shape2);
     let pair = if swapped {
-        Pair { first: shape2.0, second: shape1.0, pose12: Pose::relative(pose2, pose1) }
+        Pair::new([shape2, shape1], [pose2, pose1])
     } else {
-        Pair { first: shape1.0, second: shape2.0, pose12: Pose::relative(pose1, pose2) }
+        Pair::new([shape1, shape2], [pose1, pose2])
     };
     (pair, swapped)
 }
@@ -69,11 +86,8 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
     /// The canonical pair.
     #[inline]
     pub(crate) fn pair(&self) -> Pair<'a, N, D> {
-        Pair {
-            first: self.first.shape.0,
-            second: self.second.shape.0,
-            pose12: Pose::relative(&self.first.pose, &self.second.pose),
-        }
+        let Self { first, second, .. } = self;
+        Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
     }
 
     /// One of the two is made of parts: [`Between`](super::composite::Between) has the answers.

@@ -7,7 +7,7 @@ use super::{
     Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
     SupportMap, TaperedCapsule, Triangle,
 };
-use crate::math::{Point, Real, max};
+use crate::math::{Point, Pose, Real, Space, max};
 
 /// The kinds of solid that the pair table knows, in the order in which pairs are named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -98,6 +98,21 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Plane(_) => ShapeKind::Plane,
             Kind::Composite(_) => ShapeKind::Composite,
         }
+    }
+
+    /// A rotation about the origin changes it, so that its pose has one: not that of a ball.
+    #[inline]
+    pub(crate) fn turns(&self) -> bool {
+        !matches!(self.0, Kind::Ball(_))
+    }
+
+    /// Where an isometry of the user's puts it.
+    #[inline]
+    pub(crate) fn pose_at(&self, isometry: &N::Isometry) -> Pose<N, D>
+    where
+        N: Space<D>,
+    {
+        if self.turns() { N::pose(isometry) } else { N::unturned(isometry) }
     }
 
     /// The solid as a support map; `None` for a [`Plane`], which has no farthest points, and for a

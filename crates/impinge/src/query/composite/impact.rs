@@ -1,13 +1,14 @@
 //! When a moving composite first touches another shape: when the first of its parts does.
 
-use super::between::{Between, by_number};
+use super::between::{Between, PartPair, by_number};
 use super::bounds::loosened;
 use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Path, advance};
-use crate::shape::CompositeShape;
+use crate::shape::{CompositeShape, FeatureId};
 
-/// The arrival of one part at another, in the frame of the first shape, and which parts they are.
+/// The arrival of one part at another, in the frame of the first part, and which parts they are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartArrival<N: Real, const D: usize> {
     pub(crate) arrival: Arrival<N, D>,
@@ -65,13 +66,11 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
     fn hold(&mut self, parts: [u32; 2]) {
         let placed = self.between.parts(parts);
         let path = Path {
-            velocity: placed.to_first_part(&self.path.velocity),
             end: self.first.map_or(self.path.end, |first| first.arrival.along),
             mirrored: self.path.mirrored && parts[0] == parts[1],
-            ..*self.path
+            ..seen_by(&placed, self.path)
         };
-        let Some(found) = advance(&placed.pair(), &path) else { return };
-        let arrival = Arrival { separation: placed.in_first(&found.separation), ..found };
+        let Some(arrival) = advance(&placed.pair(), &path) else { return };
         let found = PartArrival { arrival, parts };
         if self.first.is_none_or(|first| found.is_before(&first)) {
             self.first = Some(found);
@@ -93,6 +92,24 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
     fn end(&self) -> N {
         let end = self.first.map_or(self.path.end, |first| first.arrival.along);
         if end >= N::ZERO { loosened(end) } else { -N::ONE }
+    }
+}
+
+/// A path in the frame of the first shape, in that of its part.
+fn seen_by<N: Real, const D: usize>(placed: &PartPair<'_, N, D>, path: &Path<N, D>) -> Path<N, D> {
+    Path { velocity: placed.to_first_part(&path.velocity), ..*path }
+}
+
+impl<N: Space<D>, const D: usize> PartArrival<N, D> {
+    /// How the parts lie when they touch, in the frame of the first shape, and what touches.
+    pub(crate) fn seen_from(
+        &self,
+        between: &Between<'_, N, D>,
+        path: &Path<N, D>,
+    ) -> (Separation<N, D>, [FeatureId; 2]) {
+        let placed = between.parts(self.parts);
+        let features = self.arrival.features(&placed.pair(), &seen_by(&placed, path));
+        (placed.in_first(&self.arrival.separation), features)
     }
 }
 

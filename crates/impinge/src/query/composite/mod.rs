@@ -18,7 +18,7 @@ pub(crate) use contacts::{
     CompositeContacts, contact_in_world, over2, over3, own_distance, update_chain,
     update_on_surface,
 };
-pub(crate) use impact::first_arrival;
+pub(crate) use impact::{PartArrival, first_arrival};
 pub(in crate::query) use point::surface_point;
 pub(crate) use point::{Near, PartPoint, nearest_part};
 pub(crate) use ray::{RayQuestion, each_hit};

@@ -2,7 +2,7 @@
 
 use super::ImpactStatus;
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector, max_component};
+use crate::math::{Point, Pose, Real, Space, Vector, max_component};
 use crate::query::Pair;
 use crate::query::separation::separation;
 use crate::shape::{FeatureId, Geometry, Kind};
@@ -30,12 +30,16 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
     pub(crate) along: N,
     /// How the solids lie then, in the frame of the first.
     pub(crate) separation: Separation<N, D>,
-    /// What the points lie on, of the first and of the second.
-    pub(crate) features: [FeatureId; 2],
     pub(crate) status: ImpactStatus,
 }
 
 impl<N: Real, const D: usize> Path<N, D> {
+    /// Where the second solid of the pair that begins so is at a later time.
+    #[inline]
+    fn place(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
+        start.pose12.translation + self.velocity * along
+    }
+
     /// How fast the solids approach along a normal.
     fn closing(&self, normal: &Vector<N, D>) -> N {
         let closing = -normal.dot(&self.velocity);
@@ -57,14 +61,14 @@ impl<N: Real, const D: usize> Path<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Arrival<N, D> {
-    fn new(
-        pair: &Pair<'_, N, D>,
-        along: N,
-        separation: Separation<N, D>,
-        status: ImpactStatus,
-    ) -> Self {
-        let features = (N::tables().witness_features)(pair, &separation);
-        Self { along, separation, features, status }
+    const fn reached(along: N, separation: Separation<N, D>) -> Self {
+        Self { along, separation, status: ImpactStatus::Reached }
+    }
+
+    /// What the points of the pair that begins so lie on when it arrives.
+    pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
+        let pose12 = Pose { translation: path.place(start, self.along), ..start.pose12 };
+        (N::tables().witness_features)(&Pair { pose12, ..*start }, &self.separation)
     }
 }
 
@@ -89,7 +93,7 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     for _ in 0..MAX_STEPS {
         let (gap, closing) = (found.distance - path.target, path.closing(&found.normal));
         if gap <= tolerance {
-            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
+            return Some(Arrival::reached(along, found));
         }
         let later = along + gap / closing;
         let in_time = closing > path.noise() && later <= path.end;
@@ -97,17 +101,17 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
             return None;
         }
         if later <= along {
-            return Some(Arrival::new(&pair, along, found, ImpactStatus::Reached));
+            return Some(Arrival::reached(along, found));
         }
         let step = path.velocity * (later - along);
         along = later;
-        pair.pose12.translation = start.pose12.translation + path.velocity * along;
+        pair.pose12.translation = path.place(start, along);
         if let Some(touch) = touching(&pair, (&found, &step), (path.target, tolerance)) {
-            return Some(Arrival::new(&pair, along, touch, ImpactStatus::Reached));
+            return Some(Arrival::reached(along, touch));
         }
         found = separation(&pair, N::INFINITY)?;
     }
-    Some(Arrival::new(&pair, along, found, ImpactStatus::StepsSpent))
+    Some(Arrival { along, separation: found, status: ImpactStatus::StepsSpent })
 }
 
 /// The separation at the end of a step which used up the gap along the normal of its beginning, where one

@@ -15,9 +15,9 @@ pub use motion::{ConstantVelocities, RigidMotion};
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
-use super::composite::{Between, first_arrival};
+use super::composite::{Between, PartArrival, first_arrival};
 use super::far::Apart;
-use super::pair::{Ordered, Placed, indistinguishable};
+use super::pair::{Ordered, Pair, Placed, indistinguishable};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
@@ -230,51 +230,109 @@ pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
 ) -> Option<N> {
     let (moving1, moving2) = (Moving::new(m1, v1, g1), Moving::new(m2, v2, g2));
-    impact(&moving1, &moving2, &ImpactOptions::new()).map(|found| found.toi)
+    (N::tables().time_of_impact)(&moving1, &moving2, &ImpactOptions::new())
 }
 
-/// [`impact`] of solids that the pair table knows: [`advance`] in the canonical order.
-///
-/// The relative velocity is divided by a power of two, which makes its largest component one to two:
-/// then nothing overflows on the way, and the unit of time drops out exactly.
+/// [`impact`] of solids that the pair table knows.
 pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
-    let (placed1, placed2) = (&moving1.placed, &moving2.placed);
-    if are_parted(moving1, moving2, options) {
-        return None;
+    let course = Course::new(moving1, moving2, options)?;
+    let (touch, toi) = course.touch()?;
+    let found = course.impact(&touch, toi);
+    Some(if course.ordered.swapped { found.flipped() } else { found })
+}
+
+/// The time in [`impact_of_pair`], without asking what touches.
+pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
+    moving1: &Moving<'_, N, D>,
+    moving2: &Moving<'_, N, D>,
+    options: &ImpactOptions<N>,
+) -> Option<N> {
+    Course::new(moving1, moving2, options)?.touch().map(|(_, toi)| toi)
+}
+
+/// Two solids in canonical order, of which the second moves in the frame of the first.
+///
+/// The relative velocity is divided by a power of two, which makes its largest component one to two:
+/// then nothing overflows on the way, and the unit of time drops out exactly.
+struct Course<'m, 'a, N: Real, const D: usize> {
+    first: &'m Moving<'a, N, D>,
+    ordered: Ordered<'m, 'a, N, D>,
+    pair: Pair<'a, N, D>,
+    path: Path<N, D>,
+    /// The power of two.
+    scale: N,
+}
+
+impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
+    /// `None` if the solids certainly stay apart, or something is not finite.
+    #[inline(always)]
+    fn new(
+        moving1: &'m Moving<'a, N, D>,
+        moving2: &'m Moving<'a, N, D>,
+        options: &ImpactOptions<N>,
+    ) -> Option<Self> {
+        if are_parted(moving1, moving2, options) {
+            return None;
+        }
+        let mirrored = indistinguishable(&moving1.placed, &moving2.placed);
+        let swapped = if mirrored {
+            is_later(moving1, moving2)
+        } else {
+            Ordered::new(&moving1.placed, &moving2.placed).swapped
+        };
+        let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
+        let ordered = Ordered { first: &first.placed, second: &second.placed, swapped };
+        let (pair, velocity) = (ordered.pair(), second.velocity - first.velocity);
+        if !(pair.pose12.is_finite() && velocity.iter().all(|x| x.is_finite_number())) {
+            return None;
+        }
+        let scale = max_component(&velocity).power_of_two_below();
+        let path = Path {
+            velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
+            end: options.max_time * scale,
+            target: max(options.target_distance, N::ZERO),
+            mirrored,
+        };
+        Some(Self { first, ordered, pair, path, scale })
     }
-    let ordered = Ordered::new(placed1, placed2);
-    let mirrored = indistinguishable(placed1, placed2);
-    if mirrored && is_later(moving1, moving2) {
-        return impact_of_pair(moving2, moving1, options).map(|found| found.flipped());
+
+    /// The first touch, in the frame of the first part, and when that is.
+    #[inline(always)]
+    fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
+        let found = if self.ordered.has_composite() {
+            first_arrival(&Between::of_ordered(&self.ordered), &self.path)?
+        } else {
+            PartArrival { arrival: advance(&self.pair, &self.path)?, parts: [0, 0] }
+        };
+        let toi = found.arrival.along / self.scale;
+        toi.is_finite_number().then_some((found, toi))
     }
-    let (pair, swapped) = (ordered.pair(), ordered.swapped);
-    let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
-    let velocity = second.velocity - first.velocity;
-    let finite = pair.pose12.is_finite() && velocity.iter().all(|x| x.is_finite_number());
-    if !finite {
-        return None;
+
+    /// A touch seen from the world, for the solids in their canonical order.
+    #[inline(always)]
+    fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
+        let (found, features) = if self.ordered.has_composite() {
+            touch.seen_from(&Between::of_ordered(&self.ordered), &self.path)
+        } else {
+            (touch.arrival.separation, touch.arrival.features(&self.pair, &self.path))
+        };
+        let (pose, moved) = (&self.first.placed.pose, self.first.velocity * toi);
+        Impact {
+            toi,
+            world1: pose.point(&found.point1) + moved,
+            world2: pose.point(&found.point2) + moved,
+            normal: Unit::new_unchecked(pose.vector(&found.normal)),
+            part1: touch.parts[0],
+            part2: touch.parts[1],
+            feature1: features[0],
+            feature2: features[1],
+            status: touch.arrival.status,
+        }
     }
-    let scale = max_component(&velocity).power_of_two_below();
-    let path = Path {
-        velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
-        end: options.max_time * scale,
-        target: max(options.target_distance, N::ZERO),
-        mirrored,
-    };
-    let (arrival, parts) = if ordered.has_composite() {
-        let between = Between::of_ordered(&ordered);
-        first_arrival(&between, &path).map(|found| (found.arrival, found.parts))?
-    } else {
-        (advance(&pair, &path)?, [0, 0])
-    };
-    let toi = arrival.along / scale;
-    let found = toi.is_finite_number().then(|| first.impact(&arrival, toi))?;
-    let found = Impact { part1: parts[0], part2: parts[1], ..found };
-    Some(if swapped { found.flipped() } else { found })
 }
 
 /// The solids are certainly farther apart than the target distance, all the way.
@@ -298,23 +356,4 @@ fn is_later<N: Real, const D: usize>(
     let components = moving1.velocity.iter().zip(moving2.velocity.iter());
     let different = components.filter(|(x1, x2)| x1 != x2);
     different.map(|(x1, x2)| x1 > x2).next().unwrap_or(false)
-}
-
-impl<N: Real, const D: usize> Moving<'_, N, D> {
-    /// The arrival of another solid at this one, seen from the world.
-    fn impact(&self, arrival: &Arrival<N, D>, toi: N) -> Impact<N, D> {
-        let (found, pose) = (&arrival.separation, &self.placed.pose);
-        let moved = self.velocity * toi;
-        Impact {
-            toi,
-            world1: pose.point(&found.point1) + moved,
-            world2: pose.point(&found.point2) + moved,
-            normal: Unit::new_unchecked(pose.vector(&found.normal)),
-            part1: 0,
-            part2: 0,
-            feature1: arrival.features[0],
-            feature2: arrival.features[1],
-            status: arrival.status,
-        }
-    }
 }

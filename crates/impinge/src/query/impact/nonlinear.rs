@@ -126,7 +126,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
     /// The body at a time, seen from a point of the world.
     fn placed(&self, origin: &Vector<N, D>, time: N) -> Placed<'a, N, D> {
-        Placed { pose: self.motion.pose_about(origin, time), shape: self.shape }
+        Placed::of_pose(&self.motion.pose_about(origin, time), self.shape)
     }
 }
 
@@ -146,6 +146,8 @@ struct Sight<'b, 'a, N: Space<D>, const D: usize> {
     moment: Moment<'b, 'a, N, D>,
     between: Between<'a, N, D>,
     found: PartSeparation<N, D>,
+    /// The nearest points, seen from the origin of the search.
+    points: [Vector<N, D>; 2],
     /// The distance less the target distance.
     gap: N,
     /// A length in proportion to the bodies and their distance.
@@ -211,21 +213,23 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
 
     /// The bodies at a time; `None` if a pose is not finite, and for composites without parts.
     fn look(&self, time: N) -> Option<Sight<'_, 'a, N, D>> {
-        let [one, two] = self.bodies.each_ref().map(|body| body.placed(&self.origin, time));
-        let pose12 = Pose::relative(&one.pose, &two.pose);
-        let finite = one.pose.is_finite() && two.pose.is_finite() && pose12.is_finite();
-        let pair = Pair { first: one.shape.0, second: two.shape.0, pose12 };
+        let poses = self.bodies.each_ref().map(|body| body.motion.pose_about(&self.origin, time));
+        let [one, two] =
+            [0, 1].map(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
+        let pair = Pair::new([one.shape, two.shape], [&one.pose, &two.pose]);
+        let finite = one.pose.is_finite() && two.pose.is_finite() && pair.pose12.is_finite();
         let between = Between { pair, pose21: Pose::relative(&two.pose, &one.pose) };
         if !finite {
             return None;
         }
         let found = nearest_between(&between, N::INFINITY, Wanted::Deepest)?;
-        let poses = [one.pose, two.pose];
         let centers = [0, 1].map(|index| self.bodies[index].center_at(&poses[index]));
         let sizes = self.bodies[0].size() + self.bodies[1].size();
         Some(Sight {
             gap: found.separation.distance - self.target,
-            size: max_component(&pose12.translation) + sizes,
+            size: max_component(&pair.pose12.translation) + sizes,
+            points: [found.separation.point1, found.separation.point2]
+                .map(|point| one.pose.point(&point).coords),
             moment: Moment {
                 normal: one.pose.vector(&found.separation.normal),
                 bodies: self.bodies.each_ref(),
@@ -241,7 +245,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
     fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
-        let (closing, noise) = sight.moment.closing(&sight.points(), sight.size);
+        let (closing, noise) = sight.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         let deep = sight.gap < -sight.tolerance();
         closing > noise || (deep && closing >= -noise) || sight.gap == -N::INFINITY
@@ -251,7 +255,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     fn impact(&self, sight: &Sight<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
         let parts = sight.between.parts(sight.found.parts);
         let features = (N::tables().witness_features)(&parts.pair(), &sight.found.local);
-        let [point1, point2] = sight.points().map(|point| (point + self.origin).into());
+        let [point1, point2] = sight.points.map(|point| (point + self.origin).into());
         Impact {
             toi: sight.moment.time,
             world1: point1,
@@ -296,11 +300,5 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
             Mode::Apart => self.gap <= self.tolerance(),
             Mode::Contact(_) => self.excess(mode) <= self.slack() * N::HALF,
         }
-    }
-
-    /// The nearest points.
-    fn points(&self) -> [Vector<N, D>; 2] {
-        let (pose, found) = (&self.moment.poses[0], &self.found.separation);
-        [found.point1, found.point2].map(|point| pose.point(&point).coords)
     }
 }

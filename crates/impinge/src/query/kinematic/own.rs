@@ -53,6 +53,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             normal1,
             normal2: -normal2,
             rule: NormalRule::Geometry,
+            turns: [true; 2],
         };
         if !kinematic.reproduces(&Pose::relative(&pose1, &pose2)) {
             let lean1 = lean(&side1.geometry, &normal1);

@@ -152,16 +152,11 @@ pub(crate) fn contacts2<N: Real>(
     _: Option<&mut Certificate<N, 2>>,
     out: &mut RawManifold<N, 2>,
 ) {
-    let is_ball = matches!(pair.first, Kind::Ball(_));
-    // Of balls beside other solids the separation is as quick.
-    let may_be_direct = !is_ball || matches!(pair.second, Kind::Triangle(_));
-    let is_built = may_be_direct
-        && (box_sides::build(pair, request, out) || outlines::build(pair, request, out));
-    if is_built {
-        return;
-    }
-    if is_ball {
+    if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_plane(pair, request.prediction), out);
+    }
+    if box_sides::build(pair, request, out) || outlines::build(pair, request, out) {
+        return;
     }
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),

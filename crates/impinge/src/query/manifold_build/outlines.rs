@@ -68,15 +68,12 @@ enum Names {
     Clockwise,
     Box,
     Segment,
-    /// A ball is a point swollen by its radius.
-    Ball,
 }
 
 impl Names {
     /// `None` for solids without an outline, and for triangles that are hardly more than a line.
     fn of<N: Real>(kind: &Kind<'_, N, 2>) -> Option<Self> {
         Some(match kind {
-            Kind::Ball(_) => Self::Ball,
             Kind::Segment(_) | Kind::Capsule(_) => Self::Segment,
             Kind::Cuboid(_) => Self::Box,
             Kind::Polytope(_) => Self::Plain,
@@ -107,7 +104,6 @@ impl Names {
             Self::Plain | Self::Segment => FeatureId::Vertex(small(number)),
             Self::Box => FeatureId::Vertex(BOX[number & 3]),
             Self::Clockwise => FeatureId::Vertex(CLOCKWISE[number & 3]),
-            Self::Ball => FeatureId::Face(0),
         }
     }
 
@@ -117,7 +113,6 @@ impl Names {
         match self {
             Self::Plain => FeatureId::Face(small(number)),
             Self::Segment => FeatureId::Edge(0),
-            Self::Ball => FeatureId::Face(0),
             Self::Box => FeatureId::Face(BOX[number & 3]),
             Self::Clockwise => FeatureId::Face(CLOCKWISE[number & 3]),
         }
@@ -178,9 +173,6 @@ impl<N: Real> Part<N> {
         let corner = meeting.corners[which];
         let mut near = End::of(meeting, which, corner, names);
         near.height = if which == 0 { N::ZERO } else { meeting.gap };
-        if names == Names::Ball {
-            return Self { id: near.id, is_side: false, ends: [near; 2], near: 0 };
-        }
         let (next, before) = (meeting.next(which, corner), meeting.previous(which, corner));
         let far = [next, before].map(|corner| meeting.corner(which, corner) - near.point);
         let [(rise1, squared1), (rise2, squared2)] =

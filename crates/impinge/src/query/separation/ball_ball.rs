@@ -3,13 +3,13 @@
 use super::projection::first_axis;
 use super::wrong_kinds;
 use crate::convex::Separation;
-use crate::math::{Point, Real, unit};
+use crate::math::{Point, Real, Vector, unit};
 use crate::query::Pair;
 use crate::shape::Kind;
 
 /// The separation of two balls.
 ///
-/// Balls with a common centre are parted along the first axis of the first ball's frame.
+/// Balls with a common centre are parted along the first axis of the world, as they are not turned.
 pub(super) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -18,7 +18,7 @@ pub(super) fn separation<N: Real, const D: usize>(
         wrong_kinds(pair)
     };
     let center2 = pair.pose12.translation;
-    let (normal, apart) = unit(&center2).unwrap_or((first_axis(), center2.norm()));
+    let (normal, apart) = apart(&center2);
     let distance = apart - ball1.radius() - ball2.radius();
     (distance <= limit).then(|| Separation {
         distance,
@@ -26,4 +26,16 @@ pub(super) fn separation<N: Real, const D: usize>(
         point1: Point::from(normal * ball1.radius()),
         point2: Point::from(center2 - normal * ball2.radius()),
     })
+}
+
+/// The distance in [`separation`].
+#[inline]
+pub(super) fn distance<N: Real, const D: usize>(center2: &Vector<N, D>, radii: [N; 2]) -> N {
+    apart(center2).1 - radii[0] - radii[1]
+}
+
+/// The direction of a centre that is seen from another, and how far it is.
+#[inline]
+fn apart<N: Real, const D: usize>(center2: &Vector<N, D>) -> (Vector<N, D>, N) {
+    unit(center2).unwrap_or((first_axis(), center2.norm()))
 }

@@ -5,7 +5,7 @@ use super::projection::{
 };
 use super::segments::{core, nearest_on_segment};
 use crate::convex::Separation;
-use crate::math::{Point, Real, unit};
+use crate::math::{Point, Real, Vector, unit};
 use crate::query::Pair;
 use crate::shape::Kind;
 
@@ -19,11 +19,18 @@ pub(super) fn separation<N: Real, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let Kind::Ball(ball) = &pair.first else { super::wrong_kinds(pair) };
     let (ends, rounding) = core(pair, &pair.second);
-    let center = center_in_second(&pair.pose12);
-    let mut seen = project(&ends, &center);
+    let foot = Foot::new(ends, &center_in_second(&pair.pose12));
+    let is_within = foot.distance - rounding - ball.radius() <= limit;
+    let mut seen = is_within.then(|| foot.projection())?;
     seen.distance -= rounding;
     seen.point += seen.outward * rounding;
     seen.of_ball(ball.radius(), &pair.pose12, limit)
+}
+
+/// The distance in [`separation`], for which no direction is needed.
+pub(super) fn distance<N: Real, const D: usize>(pair: &Pair<'_, N, D>, radius: N) -> N {
+    let (ends, rounding) = core(pair, &pair.second);
+    Foot::new(ends, &center_in_second(&pair.pose12)).distance - rounding - radius
 }
 
 /// A point seen from a segment.
@@ -31,12 +38,40 @@ pub(super) fn project<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],
     center: &Point<N, D>,
 ) -> Projection<N, D> {
-    let (point, inside) = nearest_on_segment(ends, center);
-    let offset = center - point;
-    let axis = unit(&(ends[1] - ends[0])).map(|(axis, _)| axis);
-    let sideways = axis.filter(|_| inside).and_then(|axis| made_perpendicular(&offset, &axis));
-    let found = sideways.or_else(|| unit(&offset).filter(|_| !inside).map(|(along, _)| along));
-    let outward =
-        found.unwrap_or_else(|| axis.map_or_else(first_axis, |axis| perpendicular_to(&axis)));
-    Projection { distance: offset.norm(), outward, point }
+    Foot::new(*ends, center).projection()
+}
+
+/// Where a point is nearest to a segment.
+pub(super) struct Foot<N: Real, const D: usize> {
+    ends: [Point<N, D>; 2],
+    point: Point<N, D>,
+    /// From there to the point that sees it, and how long that is.
+    offset: Vector<N, D>,
+    pub(super) distance: N,
+    /// Between the ends.
+    is_inside: bool,
+}
+
+impl<N: Real, const D: usize> Foot<N, D> {
+    #[inline]
+    pub(super) fn new(ends: [Point<N, D>; 2], center: &Point<N, D>) -> Self {
+        let (point, is_inside) = nearest_on_segment(&ends, center);
+        let offset = center - point;
+        Self { ends, point, offset, distance: offset.norm(), is_inside }
+    }
+
+    /// With the direction, which takes longer to find than all else.
+    pub(super) fn projection(&self) -> Projection<N, D> {
+        Projection { distance: self.distance, outward: self.outward(), point: self.point }
+    }
+
+    fn outward(&self) -> Vector<N, D> {
+        let direct = if self.is_inside { None } else { unit(&self.offset) };
+        if let Some((outward, _)) = direct {
+            return outward;
+        }
+        let Some((axis, _)) = unit(&(self.ends[1] - self.ends[0])) else { return first_axis() };
+        let sideways = if self.is_inside { made_perpendicular(&self.offset, &axis) } else { None };
+        sideways.unwrap_or_else(|| perpendicular_to(&axis))
+    }
 }

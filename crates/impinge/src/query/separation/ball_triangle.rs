@@ -1,6 +1,6 @@
 //! Ball against triangle in space, where a triangle has no thickness.
 
-use super::ball_segment;
+use super::ball_segment::Foot;
 use super::projection::{Projection, center_in_second, made_perpendicular, noise};
 use super::wrong_kinds;
 use crate::convex::Separation;
@@ -20,33 +20,58 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     project(triangle.corners(), &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
+/// The distance in [`separation`].
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, radius: N) -> N {
+    let Kind::Triangle(triangle) = &pair.second else { wrong_kinds(pair) };
+    distance_from(triangle.corners(), &center_in_second(&pair.pose12)) - radius
+}
+
 /// A point seen from a triangle; the distance is never negative.
 pub(super) fn project<N: Real>(
     corners: &[Point<N, 3>; 3],
     center: &Point<N, 3>,
 ) -> Projection<N, 3> {
-    let front = front(corners);
-    let normal = front.map(|front| toward(&front, &(center - corners[0])));
-    if let (Some(front), Some(normal)) = (front, normal)
-        && lies_over(corners, &front, center)
-    {
-        let distance = max((center - corners[0]).dot(&normal), N::ZERO);
-        return Projection { distance, outward: normal, point: center - normal * distance };
+    let Some(front) = front(corners) else {
+        return on_longest_side(corners, center).projection();
+    };
+    if let Some((distance, outward)) = height_over(corners, &front, center) {
+        return Projection { distance, outward, point: center - outward * distance };
     }
-    if front.is_none() {
-        // The other sides lie on the longest one up to rounding; one that is a point has no direction.
-        let side = longest_side(corners);
-        return ball_segment::project(&[corners[side], corners[(side + 1) % 3]], center);
-    }
-    let mut seen = project_on_sides(corners, center);
+    let mut seen = on_nearest_side(corners, center).projection();
     // Close to a side the offset is mostly rounding: the triangle's own normal may be better.
-    if let Some(normal) = normal
-        && height(&normal, corners, center)
-            > height(&seen.outward, corners, center) + noise(reach(corners, center))
+    let normal = toward(&front, &(center - corners[0]));
+    if height(&normal, corners, center)
+        > height(&seen.outward, corners, center) + noise(reach(corners, center))
     {
         seen.outward = normal;
     }
     seen
+}
+
+/// The distance in [`project`].
+fn distance_from<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> N {
+    let Some(front) = front(corners) else { return on_longest_side(corners, center).distance };
+    let over = height_over(corners, &front, center);
+    over.map_or_else(|| on_nearest_side(corners, center).distance, |(distance, _)| distance)
+}
+
+/// How far a point is from the triangle that it projects into, whose front normal is `front`, and the normal
+/// on its side; `None` if it projects elsewhere.
+fn height_over<N: Real>(
+    corners: &[Point<N, 3>; 3],
+    front: &Vector<N, 3>,
+    center: &Point<N, 3>,
+) -> Option<(N, Vector<N, 3>)> {
+    let normal = toward(front, &(center - corners[0]));
+    let is_over = lies_over(corners, front, center);
+    is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
+}
+
+/// Where a triangle that is a segment up to rounding is nearest: the other sides lie on the longest one; one
+/// that is a point has no direction.
+fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
+    let side = longest_side(corners);
+    Foot::new([corners[side], corners[(side + 1) % 3]], center)
 }
 
 /// The unit normal on the side that sees the corners counter-clockwise; `None` for a triangle that is
@@ -72,13 +97,13 @@ fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
 }
 
 /// The nearest of the three sides, the first of equals.
-fn project_on_sides<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Projection<N, 3> {
+fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
-    let mut best = ball_segment::project(&[a, b], center);
+    let mut best = Foot::new([a, b], center);
     for side in [[b, c], [c, a]] {
-        let seen = ball_segment::project(&side, center);
-        if seen.distance < best.distance {
-            best = seen;
+        let foot = Foot::new(side, center);
+        if foot.distance < best.distance {
+            best = foot;
         }
     }
     best

@@ -1,7 +1,23 @@
-//! A point seen from a triangle of the plane.
+//! Ball against triangle in the plane: by the side or corner that is nearest to the centre.
 
-use super::projection::{Projection, noise};
+use super::projection::{Projection, center_in_second, noise};
+use super::{polygon_polygon, wrong_kinds};
+use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
+use crate::query::Pair;
+use crate::shape::Kind;
+
+/// The separation of a ball from a triangle of the plane; of one that is a segment up to rounding as of
+/// outlines.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+    let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    match project(triangle.corners(), &center_in_second(&pair.pose12)) {
+        Some(seen) => seen.of_ball(ball.radius(), &pair.pose12, limit),
+        None => polygon_polygon::separation(pair, limit),
+    }
+}
 
 /// A side of a triangle whose inside is on its left.
 #[derive(Clone, Copy)]
@@ -46,11 +62,13 @@ pub(super) fn project<N: Real>(
     &[a, b, c]: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
 ) -> Option<Projection<N, 2>> {
-    let turns_left = cross2(&(b - a), &(c - a)) >= N::ZERO;
+    // By a power of two, so that the product is a number of the type.
+    let size = max(max_component(&(b - a)), max_component(&(c - a))).power_of_two_below();
+    let turns_left = cross2(&((b - a) / size), &((c - a) / size)) >= N::ZERO;
     let [a, b, c] = if turns_left { [a, b, c] } else { [a, c, b] };
     let sides =
         [Side::new([a, b], center)?, Side::new([b, c], center)?, Side::new([c, a], center)?];
-    if is_thin(&sides) {
+    if !has_area(&sides) {
         return None;
     }
     if let Some(below) = sides.iter().find(|side| side.is_below(center)) {
@@ -65,12 +83,13 @@ pub(super) fn project<N: Real>(
     (highest.height <= N::ZERO).then(|| highest.projection(center))
 }
 
-/// All corners lie on the longest side, up to rounding.
-fn is_thin<N: Real>(sides: &[Side<N>; 3]) -> bool {
+/// Not all corners lie on the longest side, up to rounding; nothing that is not a number has an area.
+fn has_area<N: Real>(sides: &[Side<N>; 3]) -> bool {
     let [side, next, last] = sides;
     let longest = max(max(side.length, next.length), last.length);
-    let area = cross2(&(side.along * side.length), &(next.along * next.length));
-    !(area > N::lit(64.0) * N::EPSILON * longest * longest && area > N::MIN_POSITIVE)
+    let sine = cross2(&side.along, &next.along);
+    let area = sine * (side.length / longest) * (next.length / longest);
+    area > N::lit(64.0) * N::EPSILON
 }
 
 /// Seen from the nearest corner, the first of equals; where that is so close that the direction is mostly
@@ -80,7 +99,9 @@ fn from_corner<N: Real>(
     center: &Point<N, 2>,
     highest: &Side<N>,
 ) -> Projection<N, 2> {
-    let squared = |corner: &Point<N, 2>| (center - corner).norm_squared();
+    let far = corners.iter().fold(N::ZERO, |far, p| max(max_component(&(center - p)), far));
+    let size = far.power_of_two_below();
+    let squared = |corner: &Point<N, 2>| ((center - corner) / size).norm_squared();
     let [a, b, c] = corners;
     let nearer = |one, other| if squared(other) < squared(one) { other } else { one };
     let point = *nearer(nearer(a, b), c);
@@ -96,10 +117,8 @@ fn from_corner<N: Real>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::separation;
     use super::*;
     use crate::math::Pose;
-    use crate::query::Pair;
     use crate::shape::{Ball, Shape, Triangle};
 
     fn p(x: f64, y: f64) -> Point<f64, 2> {
@@ -145,7 +164,8 @@ mod tests {
             let pose12 = Pose::from_translation(-center);
             let first = Shape::<f64, 2>::geometry(&ball).0;
             let pair = Pair { first, second: triangle.geometry().0, pose12 };
-            let expected = separation(&pair, f64::INFINITY).expect("nothing is beyond infinity");
+            let expected = polygon_polygon::separation(&pair, f64::INFINITY);
+            let expected = expected.expect("nothing is beyond infinity");
             assert!((seen.distance - expected.distance).abs() < 1e-13, "{corners:?} {center}");
             assert!((seen.outward + expected.normal).norm() < 1e-9, "{corners:?} {center}");
             let point = seen.point - center - expected.point2;

@@ -1,7 +1,7 @@
 //! The distance of two solids, of which an overlap need not be measured.
 
 use super::flat_core::FlatCore;
-use super::{general, ridges};
+use super::{ball_ball, ball_segment, ball_triangle, general, ridges, segment_segment};
 use crate::convex::{self, Simplicial};
 use crate::math::{Real, Space};
 use crate::query::Pair;
@@ -30,6 +30,9 @@ enum Way {
 /// positive, so that clear overlaps need not be measured. Else it is that of the separation, to the bit; so
 /// pairs that are not in the order of kinds are left to that, which turns them round.
 pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    if let Some(known) = known_in_space(pair) {
+        return (known <= limit).then_some(known);
+    }
     let way = way_in_space(pair);
     if way == Way::Ridges && is_plain(pair, limit) && are_bare(pair) {
         return ridges::distance(pair, limit);
@@ -39,7 +42,35 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
 
 /// [`distance_in_space`], in the plane.
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+    if let Some(known) = known_of_ball(pair) {
+        return (known <= limit).then_some(known);
+    }
     distance(pair, limit, way_in_plane(pair))
+}
+
+/// The signed distance where the formula for it is a part of that for the separation.
+fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
+    use Kind::{Ball, Capsule, Segment, Triangle};
+    match (pair.first, pair.second) {
+        (Ball(ball), Triangle(_)) => Some(ball_triangle::distance(pair, ball.radius())),
+        (Segment(_), Segment(_) | Capsule(_)) | (Capsule(_), Capsule(_)) => {
+            Some(segment_segment::distance(pair))
+        }
+        _ => known_of_ball(pair),
+    }
+}
+
+/// [`known_in_space`], of what is the same in any dimension.
+fn known_of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> Option<N> {
+    let Kind::Ball(ball) = pair.first else { return None };
+    match pair.second {
+        Kind::Ball(other) => {
+            let radii = [ball.radius(), other.radius()];
+            Some(ball_ball::distance(&pair.pose12.translation, radii))
+        }
+        Kind::Segment(_) | Kind::Capsule(_) => Some(ball_segment::distance(pair, ball.radius())),
+        _ => None,
+    }
 }
 
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(

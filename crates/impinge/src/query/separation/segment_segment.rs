@@ -22,6 +22,14 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     })
 }
 
+/// The distance in [`separation`], for which no direction is needed.
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -> N {
+    let ((ends1, rounding1), (local2, rounding2)) =
+        (core(pair, &pair.first), core(pair, &pair.second));
+    let (point1, point2) = nearest_of_segments(&ends1, &local2.map(|end| pair.pose12.point(&end)));
+    (point2 - point1).norm() - rounding1 - rounding2
+}
+
 /// The unit vector along which the segments are farthest apart.
 ///
 /// Right is the direction between the nearest points. Where these are close that is mostly

@@ -2,7 +2,7 @@
 
 use super::{
     Algorithm, Table, ball_ball, ball_cuboid, ball_ellipsoid, ball_polygon, ball_segment,
-    ball_tapered, flipped, general, look_up, plane_any, polygon_polygon, rounded,
+    ball_tapered, ball_triangle2, flipped, general, look_up, plane_any, polygon_polygon, rounded,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -15,6 +15,7 @@ impl<N: Real> Plane<N> {
     const TABLE: Table<N, 2> = {
         let bb: Algorithm<N, 2> = ball_ball::separation;
         let bs: Algorithm<N, 2> = ball_segment::separation;
+        let b3: Algorithm<N, 2> = ball_triangle2::separation;
         let bc: Algorithm<N, 2> = ball_cuboid::separation;
         let bh: Algorithm<N, 2> = ball_polygon::separation;
         let oo: Algorithm<N, 2> = polygon_polygon::separation;
@@ -30,7 +31,7 @@ impl<N: Real> Plane<N> {
         // (neither occurs in the plane), ellipsoid, tapered capsule, rounded, support map, plane,
         // composite.
         [
-            [bb, bs, bs, oo, bc, bh, gg, gg, be, bt, rr, gg, gp, gx],
+            [bb, bs, bs, b3, bc, bh, gg, gg, be, bt, rr, gg, gp, gx],
             [__, oo, oo, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, oo, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],
             [__, __, __, oo, oo, oo, gg, gg, gg, gg, rr, gg, gp, gx],

@@ -118,7 +118,20 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         isometry: &Isometry<N, R, D>,
         shape: Geometry<'a, N, D>,
     ) -> Self {
-        Self { pose: Pose::from_isometry(isometry), shape }
+        let pose =
+            if shape.turns() { Pose::from_isometry(isometry) } else { Pose::unturned(isometry) };
+        Self { pose, shape }
+    }
+
+    /// A solid where an isometry of the scalar's own type puts it.
+    #[inline]
+    pub(crate) fn of_isometry(isometry: &N::Isometry, shape: Geometry<'a, N, D>) -> Self {
+        Self { pose: shape.pose_at(isometry), shape }
+    }
+
+    /// A solid at a pose, which may have a rotation that is none of the solid's.
+    pub(crate) fn of_pose(pose: &Pose<N, D>, shape: Geometry<'a, N, D>) -> Self {
+        Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
     }
 
     /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than

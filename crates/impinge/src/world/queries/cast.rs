@@ -112,7 +112,7 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
     ) -> Option<Self> {
         let aabb = around(position, shape)?;
         let reach = grown(&aabb, max(options.target_distance, N::ZERO));
-        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let placed = Placed::of_isometry(position, shape.geometry());
         let is_finite = velocity.iter().all(|x| x.is_finite_number());
         is_finite.then_some(Self {
             probe: Probe::Cast(reach, *velocity),
@@ -126,9 +126,10 @@ impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
     /// When the solid hits an object, and how; `None` if that is after `latest`.
     fn impact(&self, body: &Body<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
-        let (pose, at_rest) = (N::pose(&body.isometry), Vector::<N, D>::zeros());
+        let at_rest = Vector::<N, D>::zeros();
         let found = body.ask(|shape| {
-            let object = Moving { placed: Placed { pose, shape }, velocity: at_rest };
+            let placed = Placed::of_isometry(&body.isometry, shape);
+            let object = Moving { placed, velocity: at_rest };
             impact(&self.moving, &object, &options)
         })?;
         Some((found.toi, found))

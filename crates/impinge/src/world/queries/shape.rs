@@ -71,7 +71,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: &'s dyn Shape<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
-        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let placed = Placed::of_isometry(position, shape.geometry());
         let near = around(position, shape).map(|aabb| self.meeting(&aabb, filter));
         near.into_iter().flatten().filter(move |object| touches(&placed, &object.body))
     }
@@ -152,7 +152,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<Neighbor<'_, N, D, T>> {
         let Some(aabb) = around(position, shape) else { return Vec::new() };
-        let placed = Placed { pose: N::pose(position), shape: shape.geometry() };
+        let placed = Placed::of_isometry(position, shape.geometry());
         let room = Room { count, limit: max_distance };
         let found = self.rank(&Probe::Near(aabb), room, filter, &|body, farthest| {
             let found = separation(&placed, body, farthest)?;
@@ -179,9 +179,8 @@ pub(super) fn around<N: Space<D>, const D: usize>(
 
 /// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
 fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &Body<N, D>) -> bool {
-    let pose = N::pose(&body.isometry);
     body.ask(|shape| {
-        let object = Placed { pose, shape };
+        let object = Placed::of_isometry(&body.isometry, shape);
         (N::tables().distance_in_world)(placed, &object, N::ZERO).is_some()
     })
 }
@@ -192,6 +191,8 @@ fn separation<N: Space<D>, const D: usize>(
     body: &Body<N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let pose = N::pose(&body.isometry);
-    body.ask(|shape| (N::tables().separation_in_world)(placed, &Placed { pose, shape }, limit))
+    body.ask(|shape| {
+        let object = Placed::of_isometry(&body.isometry, shape);
+        (N::tables().separation_in_world)(placed, &object, limit)
+    })
 }

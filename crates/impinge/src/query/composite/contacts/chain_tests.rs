@@ -111,8 +111,8 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
         let pose = under.compose(&pose_of(place, angle));
-        let placed1 = Placed { pose, shape: solid.geometry() };
-        let placed2 = Placed { pose: under, shape: ground.geometry() };
+        let placed1 = Placed::of_pose(&pose, solid.geometry());
+        let placed2 = Placed::of_pose(&under, ground.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
         let is_done = update_chain(&mut quick, &between, &request);
         if !is_done {

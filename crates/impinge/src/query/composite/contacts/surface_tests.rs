@@ -138,8 +138,8 @@ fn follow<N: Space<3>>(
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
         let pose = under.compose(&Pose { translation: place, ..lean });
-        let placed1 = Placed { pose, shape: solid.geometry() };
-        let placed2 = Placed { pose: under, shape: ground.geometry() };
+        let placed1 = Placed::of_pose(&pose, solid.geometry());
+        let placed2 = Placed::of_pose(&under, ground.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
         let is_done = update_on_surface(&mut quick, &between, &request);
         if !is_done {

@@ -77,7 +77,7 @@ fn kinematic<N: Space<D>, const D: usize>(
         Some(is_second) => kinematic.turning_with(is_second),
         None => kinematic,
     };
-    kinematic.seen_from(&pose1, &pose2)
+    kinematic.seen_from([&pose1, &pose2], [Geometry(pair.first), Geometry(pair.second)])
 }
 
 /// Whether the normal is that of the second surface's face, or of the first's; `None` if of neither.

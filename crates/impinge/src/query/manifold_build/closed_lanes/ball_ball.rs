@@ -27,7 +27,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallBall {
         inputs: &Inputs<N, D>,
         found: &mut Found<N, D>,
     ) {
-        let (normal, apart, is_usual) = unit(simd, &inputs.center2::<S, V>(simd));
+        let (normal, apart, is_usual) = unit(simd, &inputs.away::<S, V>(simd));
         let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
         let distance = apart - radius1 - radius2;
         let point1 = times(&normal, radius1);

@@ -17,7 +17,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
         let Solid::Ball(ball) = pair.solids[0] else { return false };
         inputs.put_radius(lane, 0, ball.radius());
-        inputs.put_poses(lane, pair);
+        inputs.put_beside_ball(lane, pair);
         inputs.put_core(lane, 1, pair.solids[1])
     }
 
@@ -27,7 +27,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         inputs: &Inputs<N, D>,
         found: &mut Found<N, D>,
     ) {
-        let pose12 = inputs.pose12::<S, V>(simd);
+        let pose12 = inputs.beside_ball::<S, V>(simd);
         let ends = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
         let (radius, rounding) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
         let center = pose12.inverse_origin(simd);

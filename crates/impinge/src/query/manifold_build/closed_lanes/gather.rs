@@ -65,19 +65,25 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         index
     }
 
-    /// Where both solids are, but not how the second is turned.
+    /// Where two balls are.
     #[inline(always)]
     pub(super) fn put_centers(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
-        put_all(&mut self.rotations[0], lane, &pair.poses[0].rotation);
         put(&mut self.translations[0], lane, &pair.poses[0].translation);
         put(&mut self.translations[1], lane, &pair.poses[1].translation);
+    }
+
+    /// Where a ball and another solid are.
+    #[inline(always)]
+    pub(super) fn put_beside_ball(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
+        self.put_centers(lane, pair);
+        put_all(&mut self.rotations[1], lane, &pair.poses[1].rotation);
     }
 
     /// Where both solids are.
     #[inline(always)]
     pub(super) fn put_poses(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
-        self.put_centers(lane, pair);
-        put_all(&mut self.rotations[1], lane, &pair.poses[1].rotation);
+        self.put_beside_ball(lane, pair);
+        put_all(&mut self.rotations[0], lane, &pair.poses[0].rotation);
     }
 
     /// The radius of one of the solids.
@@ -122,17 +128,21 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         load(simd, &self.ends[which][end])
     }
 
-    /// The second solid's place in the frame of the first, as `Pose::relative` has it.
+    /// The second solid's place seen from the first, which is its place in the frame of a ball.
     #[inline(always)]
-    pub(super) fn center2<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
-        let axes = load_all::<S, N, V, D>(simd, &self.rotations[0]);
+    pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         let from = load::<S, N, V, D>(simd, &self.translations[0]);
         let to = load::<S, N, V, D>(simd, &self.translations[1]);
-        let away = by_axis(
+        by_axis(
             #[inline(always)]
             |axis| to[axis] - from[axis],
-        );
-        seen_from(&axes, &away)
+        )
+    }
+
+    /// The second solid's pose in the frame of a ball, as `Pair::new` has it.
+    #[inline(always)]
+    pub(super) fn beside_ball<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
+        LanePose { rotation: load_all(simd, &self.rotations[1]), translation: self.away(simd) }
     }
 
     /// The second solid's pose in the frame of the first, as `Pose::relative` has it.
@@ -144,7 +154,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
             #[inline(always)]
             |column| seen_from(&axes, &turned[column]),
         );
-        LanePose { rotation, translation: self.center2(simd) }
+        LanePose { rotation, translation: seen_from(&axes, &self.away(simd)) }
     }
 }
 

@@ -37,7 +37,7 @@ use crate::convex::Separation;
 use crate::math::lanes::with_lanes;
 use crate::math::{Point, Pose, Real, Space, Vector, Wide};
 use crate::query::{ManifoldRequest, RawManifold};
-use crate::shape::FeatureId;
+use crate::shape::{FeatureId, Geometry};
 
 /// How many pairs are treated at once.
 const LANES: usize = 8;
@@ -113,8 +113,7 @@ fn update_with_ball<N: Space<D>, const D: usize>(
 
 impl<'a, N: Real, const D: usize> PairQuestion<'a, N, D> {
     fn pair(&self) -> Pair<'a, N, D> {
-        let [first, second] = self.solids.map(Solid::kind);
-        Pair { first, second, pose12: Pose::relative(self.poses[0], self.poses[1]) }
+        Pair::new(self.solids.map(|solid| Geometry(solid.kind())), self.poses)
     }
 }
 
