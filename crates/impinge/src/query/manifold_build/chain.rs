@@ -14,7 +14,7 @@ use crate::math::{Real, Space};
 use crate::query::RawPoint;
 use crate::shape::{FeatureId, Kind};
 
-/// A segment and a solid that is no half-space, in the order of kinds.
+/// A segment of a chain and a solid that is no half-space, in the order of kinds: behind another segment.
 pub(in crate::query) struct SegmentPair<'a, N: Real> {
     pub(in crate::query) pair: Pair<'a, N, 2>,
     /// Lengths below this are rounding errors.
@@ -24,13 +24,17 @@ pub(in crate::query) struct SegmentPair<'a, N: Real> {
 }
 
 impl<N: Real> SegmentPair<'_, N> {
-    /// The part of the segment that a separation's point lies on.
+    /// The part of the chain's segment that a separation's point lies on.
     pub(in crate::query) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
             return ball::known_part(&self.pair, found);
         }
         let frame = self.frame(found);
-        Some(self.first(&frame)?.at_witness(&frame))
+        let own = match self.pair.second {
+            Kind::Segment(_) => self.second(&frame)?,
+            _ => self.first(&frame)?,
+        };
+        Some(own.at_witness(&frame))
     }
 
     /// The contacts that belong to a separation; `None` of solids that show more than a side.

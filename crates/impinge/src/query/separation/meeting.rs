@@ -6,10 +6,10 @@
 //! both sides of the other are the nearest points, however they were found. What is neither, within rounding,
 //! is left to others.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
+use fearless_simd::{Select, Simd, SimdMask};
 
 use super::polygon_lanes::{LANES, Outline, Row, gaps};
-use crate::math::lanes::{dot, with_lanes};
+use crate::math::lanes::{dot, minus};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, unit};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
@@ -25,69 +25,11 @@ pub(in crate::query) struct Meeting<N: Real> {
     pub(in crate::query) corners: [usize; 2],
     /// The corners of both, counter-clockwise; the last one fills the rest.
     pub(in crate::query) rows: [[Row<N>; 2]; 2],
+    /// The same corners as seen along the normal; see [`Self::place`] and [`Self::height`].
+    seen: [[Row<N>; 2]; 2],
     pub(in crate::query) counts: [usize; 2],
     /// The radii by which the cores are swollen.
     pub(in crate::query) radii: [N; 2],
-}
-
-/// How two solids meet that have outlines of up to eight corners, not both of them balls; `None` for others and
-/// where lengths up to `noise` would decide.
-pub(in crate::query) fn meeting<N: Real>(
-    level: Level,
-    kinds: [&Kind<'_, N, 2>; 2],
-    pose12: &Pose<N, 2>,
-    noise: N,
-) -> Option<Meeting<N>> {
-    with_lanes!(level, simd => meet::<_, N, N::Lanes<_>>(simd, kinds, pose12, noise), else None)
-}
-
-#[inline(always)]
-fn meet<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    [kind1, kind2]: [&Kind<'_, N, 2>; 2],
-    pose12: &Pose<N, 2>,
-    noise: N,
-) -> Option<Meeting<N>> {
-    let own = outline::<S, N, V>(simd, kind1)?;
-    let other = outline::<S, N, V>(simd, kind2)?.placed(simd, pose12);
-    let (gap1, side1) = best_side(simd, &own, &other);
-    let (gap2, side2) = best_side(simd, &other, &own);
-    let mut meeting = Meeting {
-        normal: Vector::<N, 2>::zeros(),
-        gap: gap1,
-        best: None,
-        corners: [0; 2],
-        rows: [own.rows, other.rows],
-        counts: [own.count, other.count],
-        radii: [own.rounding, other.rounding],
-    };
-    if gap2 > gap1 {
-        meeting.gap = gap2;
-        let outward = settle(simd, &mut meeting, (1, side2), (&other, &own));
-        meeting.normal = -outward;
-    } else {
-        meeting.normal = settle(simd, &mut meeting, (0, side1), (&own, &other));
-    }
-    meeting.is_settled(noise).then_some(meeting)
-}
-
-/// Notes the best side, of a given solid, and the corner of the other one; answers the side's normal.
-#[inline(always)]
-fn settle<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    meeting: &mut Meeting<N>,
-    (which, side): (usize, usize),
-    (own, other): (&Outline<N, V>, &Outline<N, V>),
-) -> Vector<N, 2> {
-    let mut normals = [[N::ZERO; LANES]; 2];
-    own.normals[0].store(&mut normals[0]);
-    own.normals[1].store(&mut normals[1]);
-    let outward = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
-    let back = [V::all(simd, -outward.x), V::all(simd, -outward.y)];
-    let (_, corner) = farthest(simd, dot(&back, &other.vertices));
-    meeting.best = Some((which, side));
-    (meeting.corners[which], meeting.corners[1 - which]) = (side, corner);
-    outward
 }
 
 /// The largest gap that the normal of a side leaves to another outline, and that side, the first of equals.
@@ -114,11 +56,115 @@ fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, numbers: V) -> (N
 }
 
 impl<N: Real> Meeting<N> {
+    /// Nothing is known yet.
+    pub(in crate::query) fn unknown() -> Self {
+        Self {
+            normal: Vector::<N, 2>::zeros(),
+            gap: N::ZERO,
+            best: None,
+            corners: [0; 2],
+            rows: [[[N::ZERO; LANES]; 2]; 2],
+            seen: [[[N::ZERO; LANES]; 2]; 2],
+            counts: [0; 2],
+            radii: [N::ZERO; 2],
+        }
+    }
+
+    /// Finds how two solids meet that have outlines of up to eight corners, not both of them balls; answers
+    /// false for others and where lengths up to `noise` would decide.
+    #[inline(always)]
+    pub(in crate::query) fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        [kind1, kind2]: [&Kind<'_, N, 2>; 2],
+        pose12: &Pose<N, 2>,
+        noise: N,
+    ) -> bool {
+        let Some(own) = outline::<S, N, V>(simd, kind1) else { return false };
+        let Some(other) = outline::<S, N, V>(simd, kind2) else { return false };
+        let other = other.placed(simd, pose12);
+        self.rows = [own.rows, other.rows];
+        self.counts = [own.count, other.count];
+        self.radii = [own.rounding, other.rounding];
+        let (gap1, side1) = best_side(simd, &own, &other);
+        let (gap2, side2) = best_side(simd, &other, &own);
+        if gap2 > gap1 {
+            self.settle(simd, (1, side2, gap2), (&other, &own));
+            self.normal = -self.normal;
+        } else {
+            self.settle(simd, (0, side1, gap1), (&own, &other));
+        }
+        if !self.is_settled(noise) {
+            return false;
+        }
+        self.see::<S, V>(simd, [&own, &other]);
+        true
+    }
+
+    /// Notes the best side, of a given solid, its normal, and the corner of the other one.
+    #[inline(always)]
+    fn settle<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        (which, side, gap): (usize, usize, N),
+        (own, other): (&Outline<N, V>, &Outline<N, V>),
+    ) {
+        let mut normals = [[N::ZERO; LANES]; 2];
+        own.normals[0].store(&mut normals[0]);
+        own.normals[1].store(&mut normals[1]);
+        let lane = side & (LANES - 1);
+        let outward = Vector::<N, 2>::new(normals[0][lane], normals[1][lane]);
+        let back = [V::all(simd, -outward.x), V::all(simd, -outward.y)];
+        let (_, corner) = farthest(simd, dot(&back, &other.vertices));
+        (self.best, self.gap, self.normal) = (Some((which, side)), gap, outward);
+        self.corners = if which == 0 { [side, corner] } else { [corner, side] };
+    }
+
     /// A corner, in the frame of the first solid.
     #[inline(always)]
     pub(in crate::query) fn corner(&self, which: usize, corner: usize) -> Point<N, 2> {
         let [xs, ys] = &self.rows[which & 1];
         Point::<N, 2>::new(xs[corner & (LANES - 1)], ys[corner & (LANES - 1)])
+    }
+
+    /// How far a corner is along the line of contact, from the nearest corner of the first solid.
+    #[inline(always)]
+    pub(in crate::query) fn place(&self, which: usize, corner: usize) -> N {
+        self.seen[which & 1][0][corner & (LANES - 1)]
+    }
+
+    /// How far a corner is along the normal, from the nearest corner of the first solid.
+    #[inline(always)]
+    pub(in crate::query) fn height(&self, which: usize, corner: usize) -> N {
+        self.seen[which & 1][1][corner & (LANES - 1)]
+    }
+
+    /// The height of the nearest corner of a solid.
+    #[inline(always)]
+    pub(in crate::query) fn level(&self, which: usize) -> N {
+        if which == 0 { N::ZERO } else { self.gap }
+    }
+
+    /// Of the way from one corner to another the square of what it rises along the normal, and of its length.
+    #[inline(always)]
+    pub(in crate::query) fn lean(&self, which: usize, (from, to): (usize, usize)) -> (N, N) {
+        let way = self.corner(which, to) - self.corner(which, from);
+        let rise = way.dot(&self.normal);
+        (rise * rise, way.norm_squared())
+    }
+
+    /// Looks at all corners along the normal.
+    #[inline(always)]
+    fn see<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, outlines: [&Outline<N, V>; 2]) {
+        let (from, normal) = (self.corner(0, self.corners[0]), self.normal);
+        let from = [V::all(simd, from.x), V::all(simd, from.y)];
+        let up = [V::all(simd, normal.x), V::all(simd, normal.y)];
+        let along = [up[1], V::all(simd, -normal.x)];
+        for (seen, outline) in self.seen.iter_mut().zip(outlines) {
+            let arm = minus(&outline.vertices, &from);
+            dot(&along, &arm).store(&mut seen[0]);
+            dot(&up, &arm).store(&mut seen[1]);
+        }
     }
 
     #[inline(always)]
@@ -198,10 +244,6 @@ fn bare<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     kind: &Kind<'_, N, 2>,
 ) -> Option<Outline<N, V>> {
     match kind {
-        Kind::Ball(ball) => {
-            let zero = V::all(simd, N::ZERO);
-            Some(Outline::of_sides(([zero; 2], [zero; 2]), (1, ball.radius())))
-        }
         Kind::Segment(segment) => of_segment(simd, segment, N::ZERO),
         Kind::Capsule(capsule) => of_segment(simd, capsule.segment(), capsule.radius()),
         Kind::Triangle(triangle) => of_triangle(simd, triangle),

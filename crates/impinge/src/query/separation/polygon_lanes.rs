@@ -302,9 +302,14 @@ impl<N: Real, V> Outline<N, V> {
         V: Wide<S, Scalar = N>,
     {
         let mut most = V::all(simd, -N::INFINITY);
-        for vertex in 0..self.count.min(LANES) {
-            let at = [V::all(simd, self.rows[0][vertex]), V::all(simd, self.rows[1][vertex])];
-            most = dot(directions, &at).larger(most);
+        // The last vertex fills the rest.
+        let halves = if self.count > LANES / 2 { 2 } else { 1 };
+        for half in 0..halves {
+            for lane in 0..LANES / 2 {
+                let vertex = (half * LANES / 2 + lane) & (LANES - 1);
+                let at = [V::all(simd, self.rows[0][vertex]), V::all(simd, self.rows[1][vertex])];
+                most = dot(directions, &at).larger(most);
+            }
         }
         most
     }

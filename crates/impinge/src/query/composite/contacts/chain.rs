@@ -65,9 +65,10 @@ struct Chain<'b, 'a, N: Real> {
     siding: Option<Siding>,
     /// The chain's frame in that of the solid, put through one point.
     turn: Pose<N, 2>,
-    /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it is a ball.
+    /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it comes first.
     pose12: Pose<N, 2>,
-    is_ball: bool,
+    /// In pairs with a segment, by the order of kinds: balls do, and segments, as the part of the first shape.
+    comes_first: bool,
     /// The point that the pairs are seen from, in the chain's frame.
     origin: Point<N, 2>,
     /// The middle of the solid, and where it comes from, in the chain's frame.
@@ -131,19 +132,19 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     /// `None` of solids that are not treated here, and of what is no surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
-        let is_ball = matches!(solid, Kind::Ball(_));
+        let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
         let is_polygon = matches!(
             solid,
             Kind::Capsule(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_)
         );
-        if !(is_ball || is_polygon) {
+        if !(comes_first || is_polygon) {
             return None;
         }
         let [_, parts] = between.composites();
         let (parts, map) = (parts?, Geometry(solid).as_support_map()?);
         let surface = parts.surface()?;
         let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
-        let pose12 = if is_ball { turn } else { Pose::relative(&turn, &Pose::identity()) };
+        let pose12 = if comes_first { turn } else { Pose::relative(&turn, &Pose::identity()) };
         let center = middle_of_first(between)?;
         Some(Self {
             between,
@@ -154,7 +155,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             siding: surface.siding(),
             turn,
             pose12,
-            is_ball,
+            comes_first,
             origin: Point::from(between.pose21.translation),
             center,
             from: center,
@@ -234,17 +235,17 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 
     /// A direction from the first of a pair to the second, from the solid to the chain in the solid's frame.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
-        if self.is_ball { *normal } else { -self.turn.vector(normal) }
+        if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
     /// The opposite of [`Self::outward`].
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
-        if self.is_ball { *normal } else { -self.turn.inverse_vector(normal) }
+        if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }
 
     /// A point of a pair's manifold with a normal, in the frame of the solid.
     fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
-        if self.is_ball {
+        if self.comes_first {
             return point;
         }
         let point1 = self.turn.point(&(point.point1 + normal * point.distance));
@@ -296,9 +297,9 @@ impl<N: Real> Link<'_, '_, '_, N> {
 
     /// The segment and the solid, in the order of kinds.
     fn pair(&self) -> SegmentPair<'_, N> {
-        let Chain { solid, pose12, is_ball, request, .. } = *self.chain;
+        let Chain { solid, pose12, comes_first, request, .. } = *self.chain;
         let segment = Kind::Segment(&self.segment);
-        let (first, second) = if is_ball { (solid, segment) } else { (segment, solid) };
+        let (first, second) = if comes_first { (solid, segment) } else { (segment, solid) };
         let pair = Pair { first, second, pose12 };
         SegmentPair { pair, tolerance: self.tolerance, prediction: request.prediction }
     }

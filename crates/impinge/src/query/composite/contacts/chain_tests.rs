@@ -7,7 +7,9 @@ use crate::query::ManifoldRequest;
 use crate::query::composite::Between;
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::hulls::tests::Random;
-use crate::shape::{Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Shape, Triangle};
+use crate::shape::{
+    Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, Triangle,
+};
 
 const STEPS: usize = 6;
 
@@ -61,8 +63,9 @@ fn solid_of<N: Real>(random: &mut Random) -> Box<dyn Shape<N, 2>> {
     let half = random.vector::<N>().xy().abs() * N::HALF + Vector::<N, 2>::repeat(N::lit(0.05));
     let mut point = || Point::from(random.vector::<N>().xy() * N::lit(0.6));
     let points: Vec<_> = (0..7).map(|_| point()).collect();
-    match random.pick(6) {
+    match random.pick(7) {
         0 | 1 => Box::new(Ball::new(half.x)),
+        6 => Box::new(Segment::new(points[0], points[1])),
         2 => Box::new(Capsule::<N, 2>::new(half.x, half.y)),
         3 => Box::new(Triangle::new(points[0], points[1], points[2])),
         4 => Box::new(Cuboid::new(half)),

@@ -27,7 +27,8 @@ pub(crate) struct ChainQuestion<'a, N: Real> {
     /// Where pairs of a segment and the solid are seen from.
     pub(crate) origin: Vector<N, 2>,
     pub(crate) solid: Kind<'a, N, 2>,
-    /// That of the pairs: of the solid in the frame of the segments, but of these in the frame of a ball.
+    /// That of the pairs: of the solid in the frame of the segments, but of these in the frame of a ball or
+    /// segment, which comes first.
     pub(crate) pose12: Pose<N, 2>,
     /// The solid's middle, in the frame of the segments.
     pub(crate) center: Point<N, 2>,
@@ -70,6 +71,11 @@ fn links_at<N: Real>(
 }
 
 impl<N: Real> ChainQuestion<'_, N> {
+    /// The pose of the solid, not a ball, in the frame of the segments.
+    fn solid_pose(&self) -> Pose<N, 2> {
+        if let Kind::Segment(_) = self.solid { self.pose12.inverse() } else { self.pose12 }
+    }
+
     /// A bit for each segment of some tiles.
     fn lanes_of(&self, block: usize) -> u8 {
         u8::MAX >> (LANES - (self.count - block * LANES).min(LANES))

@@ -3,12 +3,14 @@
 use fearless_simd::{Level, Select, Simd, SimdMask};
 
 use super::super::polygon_lanes::{Outline, Polygon, of_axis};
-use super::super::polygon_polygon::Axis;
+use super::super::polygon_polygon::{self, Axis};
 use super::{ChainQuestion, Eight, Links};
+use crate::convex::Separation;
 use crate::math::lanes::{dot, either, negated, over, with_lanes};
 use crate::math::{Real, Vector, Wide, min};
+use crate::query::Pair;
 use crate::query::tiles::LANES;
-use crate::shape::Segment;
+use crate::shape::{Kind, Segment};
 
 /// A number for each lane.
 type Row<N> = [N; LANES];
@@ -31,7 +33,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     links: &mut Links<N>,
 ) -> Option<()> {
     let solid = Outline::<N, V>::of(simd, polygon)?;
-    let solid = Facing::new(simd, solid.placed(simd, &question.pose12));
+    let solid = Facing::new(simd, solid.placed(simd, &question.solid_pose()));
     for (block, tiles) in question.tiles.iter().enumerate() {
         let eight = Eight::<V>::of(simd, tiles, question)?;
         links.from_middle = min(links.from_middle, eight.least());
@@ -42,6 +44,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             within &= within - 1;
             let [a, b, _] = tiles.corners(lane);
             let segment = Segment::of_finite(a - question.origin, b - question.origin);
+            if let Kind::Segment(_) = question.solid {
+                let found = from_segment(question, &segment);
+                links.found.extend(found.map(|found| (block * LANES + lane, found)));
+                continue;
+            }
             let own = Outline::<N, V>::of(simd, &Polygon::of_segment(&segment, N::ZERO))?;
             let outlines = [&own, &solid.outline];
             let found = of_axis(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
@@ -51,6 +58,16 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         }
     }
     Some(())
+}
+
+/// The separation of a segment of the chain from another, which comes first.
+#[inline(never)]
+fn from_segment<N: Real>(
+    question: &ChainQuestion<'_, N>,
+    segment: &Segment<N, 2>,
+) -> Option<Separation<N, 2>> {
+    let (first, second) = (question.solid, Kind::Segment(segment));
+    polygon_polygon::separation(&Pair { first, second, pose12: question.pose12 }, question.limit)
 }
 
 /// A polygon in the frame of the segments, and how far it reaches along its own directions.

@@ -31,10 +31,10 @@ fn compare<N: Real>(seed: u64) {
     let random = &mut Random(seed);
     let (mut found, mut decided, mut count) = (0, 0, 0);
     for round in 0..1500 {
-        let kind = [0, 2, 3, 4, 5][random.pick(5)];
+        let kind = random.pick(6);
         let solid = solid_of::<N>(random, kind);
         let kind = solid.geometry().0;
-        let is_ball = matches!(kind, Kind::Ball(_));
+        let comes_first = matches!(kind, Kind::Ball(_) | Kind::Segment(_));
         let turn = random.turn::<N>().rotation;
         let across = Vector::<N, 2>::new(turn.m11, turn.m21).normalize();
         let rotation = crate::math::Matrix::<N, 2>::new(across.x, -across.y, across.y, across.x);
@@ -56,7 +56,7 @@ fn compare<N: Real>(seed: u64) {
         let mut expected = Vec::new();
         for (index, segment) in segments.iter().enumerate() {
             let segment = Kind::Segment(segment);
-            let (first, second) = if is_ball { (kind, segment) } else { (segment, kind) };
+            let (first, second) = if comes_first { (kind, segment) } else { (segment, kind) };
             let answer = separation_in_plane(&Pair { first, second, pose12 }, limit);
             expected.extend(answer.map(|answer| (index, answer)));
         }
