@@ -38,7 +38,7 @@ impl<N: Real> Space<N> {
         let hh: Algorithm<N, 3> = hulls::separation;
         let cy: Algorithm<N, 3> = cuboid_cylinder::separation;
         let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
-        let fr: Algorithm<N, 3> = revolved::separation;
+        let re: Algorithm<N, 3> = revolved::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -47,13 +47,13 @@ impl<N: Real> Space<N> {
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
-            [__, ss, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, ff, tc, th, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, cy, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, hh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, yy, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, __, fr, gg, gg, rr, gg, gp, gx],
+            [__, ss, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, ff, tc, th, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, cy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, __, rr, rr, rr, gx],

@@ -12,6 +12,7 @@
 //! not proved like that, an edge across a rim above all, is left to the arcs of [`ridges`].
 
 mod chord;
+mod faces;
 mod profile;
 mod rounds;
 #[cfg(test)]
@@ -138,7 +139,8 @@ impl<N: Real> Meeting<'_, N> {
                 None => break,
             }
         }
-        Verdict::Undecided
+        let found = self.by_face();
+        found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true))
     }
 
     /// A point of the flat solid, given in its own frame and length.

@@ -36,7 +36,7 @@ impl<N: Real> Round<N> {
     }
 
     /// The heights of the caps in parts of the half height.
-    pub(super) fn caps(&self) -> &'static [f64] {
+    pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
 
