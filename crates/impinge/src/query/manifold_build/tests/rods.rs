@@ -1,5 +1,5 @@
-//! Segments and capsules against solids with flat faces: closed forms and faces in one go against the general
-//! algorithm and the general builder.
+//! Segments and capsules against solids with flat faces, cylinders and cones: closed forms and faces in one go
+//! against the general algorithm and the general builder.
 
 use super::super::along::frame;
 use super::super::{build, rod_face};
@@ -9,7 +9,8 @@ use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::query::separation::separation_in_space;
 use crate::query::{Pair, RawManifold};
 use crate::shape::{
-    Capsule, ConvexHull, Cuboid, FeatureId, Geometry, Rounded, Segment, Shape, Triangle,
+    Capsule, Cone, ConvexHull, Cuboid, Cylinder, FeatureId, Geometry, Kind, Rounded, Segment,
+    Shape, Triangle,
 };
 
 type Solid<N> = Box<dyn Shape<N, 3>>;
@@ -45,8 +46,15 @@ fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
             half[1] = N::ZERO;
             Box::new(Cuboid::new(half))
         }
+        5 => Box::new(Cylinder::new(length(random), length(random))),
+        6 => Box::new(Cone::new(length(random), length(random))),
         _ => Box::new(Cuboid::new(Vector::<N, 3>::repeat(N::lit(0.5 * scale)))),
     }
+}
+
+/// Whether it is one of the curved solids above, which the general algorithm knows to 2⁻⁴⁰ of their size.
+fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
+    matches!(pair.second, Kind::Cylinder(..) | Kind::Cone(..))
 }
 
 /// Turns: any, none, hardly any, along a face.
@@ -75,7 +83,7 @@ fn visit<N: Scene<3>>(
     let random = &mut Random(seed);
     for round in 0..2400_usize {
         let one = rod::<N>(round % 4, scale, random);
-        let other = solid::<N>(round / 4 % 6, scale, random);
+        let other = solid::<N>(round / 4 % 8, scale, random);
         let turn = turn(round / 24, random);
         let direction = random.vector::<N, 3>(scale);
         let mut pair = Pair {
@@ -94,8 +102,9 @@ fn visit<N: Scene<3>>(
 
 /// The distances agree, and the answer says what it means.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
-    let room = N::lit(256.0 * scale) * N::EPSILON;
     visit::<N>((seed, scale), |pair, round, _| {
+        let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
+        let room = max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale);
         let truth = truth(pair);
         let found = separation_in_space(pair, N::INFINITY).expect("no limit");
         let what = describe(pair);

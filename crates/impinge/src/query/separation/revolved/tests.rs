@@ -21,8 +21,8 @@ fn agree<N: Real>(seed: u64, rounds: usize, accuracy: f64) {
         };
     }
     of!(
-        segment cylinder, capsule cylinder, triangle cylinder, cuboid cylinder, hull cylinder, blade cylinder,
-        segment cone, capsule cone, triangle cone, cuboid cone, hull cone, blade cone
+        segment cylinder, triangle cylinder, cuboid cylinder, hull cylinder, blade cylinder,
+        segment cone, triangle cone, cuboid cone, hull cone, blade cone, cylinder cone, cone cone
     );
 }
 
@@ -51,7 +51,7 @@ fn placed<'a, N: Real>(
 /// How many of a hundred pairs are decided, of each two solids.
 fn decided<N: Real>(distance: f64) -> usize {
     let random = &mut Random(7);
-    let solids: [(Make<N>, Make<N>); 10] = [
+    let solids: [(Make<N>, Make<N>); 12] = [
         (segment, cylinder),
         (segment, cone),
         (capsule, cylinder),
@@ -62,8 +62,10 @@ fn decided<N: Real>(distance: f64) -> usize {
         (cuboid, cone),
         (hull, cylinder),
         (hull, cone),
+        (cylinder, cone),
+        (cone, cone),
     ];
-    let mut decided = [0; 10];
+    let mut decided = [0; 12];
     for (count, (first, second)) in decided.iter_mut().zip(solids) {
         for _ in 0..100 {
             let [size1, size2] =
@@ -73,13 +75,12 @@ fn decided<N: Real>(distance: f64) -> usize {
             *count += usize::from(attempt(&pair, N::INFINITY).is_some());
         }
     }
-    println!("{distance}: {decided:?}");
     decided.into_iter().fold(100, usize::min)
 }
 
 #[test]
 fn most_pairs_are_decided() {
-    for (distance, least) in [(1.0, 98), (0.05, 98), (0.001, 95), (-0.01, 20), (-0.2, 20)] {
+    for (distance, least) in [(1.0, 90), (0.05, 90), (0.001, 90), (-0.01, 30), (-0.2, 15)] {
         let [single, double] = [decided::<f32>(distance), decided::<f64>(distance)];
         assert!(single >= least && double >= least, "{single} and {double} of 100 at {distance}");
     }
@@ -88,8 +89,15 @@ fn most_pairs_are_decided() {
 /// No direction of many has a depth of less than what is decided.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(9);
-    let solids: [(Make<N>, Make<N>); 5] =
-        [(segment, cone), (cuboid, cylinder), (cuboid, cone), (hull, cylinder), (hull, cone)];
+    let solids: [(Make<N>, Make<N>); 7] = [
+        (segment, cone),
+        (cuboid, cylinder),
+        (cuboid, cone),
+        (hull, cylinder),
+        (hull, cone),
+        (cylinder, cone),
+        (cone, cone),
+    ];
     let mut decided = 0;
     for round in 0..500 {
         let (first, second) = solids[round % solids.len()];
