@@ -52,9 +52,11 @@ fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
     }
 }
 
-/// Whether it is one of the curved solids above, which the general algorithm knows to 2⁻⁴⁰ of their size.
-fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
-    matches!(pair.second, Kind::Cylinder(..) | Kind::Cone(..))
+/// What counts as rounding; the general algorithm knows curved solids to 2⁻⁴⁰ of their size.
+fn room<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
+    let is_round = matches!(pair.second, Kind::Cylinder(..) | Kind::Cone(..));
+    let least = if is_round { N::lit(8.0e-12) } else { N::ZERO };
+    max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
 }
 
 /// Turns: any, none, hardly any, along a face.
@@ -103,8 +105,7 @@ fn visit<N: Scene<3>>(
 /// The distances agree, and the answer says what it means.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
-        let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
-        let room = max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale);
+        let room = room(pair, scale);
         let truth = truth(pair);
         let found = separation_in_space(pair, N::INFINITY).expect("no limit");
         let what = describe(pair);
@@ -140,7 +141,6 @@ fn told<N: Real>(raw: &RawManifold<N, 3>) -> Vec<Told<N>> {
 /// From the same separation; answers how often there was a manifold in one go, and how many points.
 fn manifolds<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
     let (mut built, mut points) = (0, 0);
-    let room = N::lit(256.0 * scale) * N::EPSILON;
     let asked = request::<N>(0.05 * scale, 0.0);
     visit::<N>((seed, scale), |pair, round, random| {
         let (mut quick, mut general) = (RawManifold::default(), RawManifold::default());
@@ -155,6 +155,7 @@ fn manifolds<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
             built += 1;
             points += quick.points.len();
             let ids = |raw: &RawManifold<N, 3>| raw.points.iter().map(|p| p.id).collect::<Vec<_>>();
+            let room = room(pair, scale);
             let are_alike = quick.points.len() == general.points.len()
                 && ids(&quick) == ids(&general)
                 && told(&quick).iter().zip(told(&general)).all(|(a, b)| {

@@ -85,7 +85,7 @@ impl<N: Real> Profile<N> {
             let is_end =
                 share <= N::ZERO && slope >= N::ZERO || share >= N::ONE && slope <= N::ZERO;
             if is_end {
-                return Some((Hull::Point(seen.point), Place::of(&seen)));
+                return Some((Hull::Point(seen.point), Place::of(self, &seen)));
             }
             let is_level = slope.abs() <= still::<N>() * search.length;
             if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {

@@ -155,7 +155,7 @@ impl<N: Real> Meeting<'_, N> {
     }
 
     fn at_point(&self, point: Vector<N, 3>) -> (Hull<N>, Place<N>) {
-        (Hull::Point(point), Place::of(&self.profile.seen_from(point)))
+        (Hull::Point(point), Place::of(&self.profile, &self.profile.seen_from(point)))
     }
 
     /// The nearest place over a hull and one more vertex, which is lower than all of it.
@@ -229,9 +229,11 @@ impl<N: Real> Meeting<'_, N> {
 }
 
 impl<N: Real> Place<N> {
-    fn of(seen: &Seen<N>) -> Self {
-        let (outward, nearest) = (seen.outward, seen.nearest());
-        Self { point: seen.point, nearest, outward, level: outward.dot(&nearest) }
+    /// Of a point that is on a corner, but for rounding, the direction may be none that the corner is farthest along:
+    /// the level tells.
+    fn of(profile: &Profile<N>, seen: &Seen<N>) -> Self {
+        let level = profile.level(&seen.outward);
+        Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
     }
 
     /// Where a way, a unit vector, is about level, with a direction that is across it to the last bits.

@@ -82,7 +82,7 @@ impl<N: Real> View<N> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
         if is_up && round.is_cone {
-            return Some(Place::of(&self.own.seen_from(*low)));
+            return Some(Place::of(&self.own, &self.own.seen_from(*low)));
         }
         let end = if is_up { round.half } else { -round.half };
         let middle = self.center + self.axis * end;
