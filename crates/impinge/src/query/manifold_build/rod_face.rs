@@ -120,10 +120,13 @@ fn beside<N: Real>(
     true
 }
 
+/// The ends of a line by their names.
+type Ends<N> = [(FeatureId, Point<N, 3>); 2];
+
 /// The part of a line that the witness lies on; `None` of one that runs along the core, which share more
 /// than a point.
 fn on_line<N: Real>(
-    (core, part, ends): (&Core<N>, FeatureId, &[(FeatureId, Point<N, 3>); 2]),
+    (core, part, ends): (&Core<N>, FeatureId, &Ends<N>),
     (pair, radius): (&Pair<'_, N, 3>, N),
     frame: &Frame<N, 3>,
 ) -> Option<FeatureId> {
