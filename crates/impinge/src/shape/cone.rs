@@ -1,7 +1,7 @@
 //! Cones, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, axial_on, radial_of};
+use super::round::{Disk, RoundPart, axial_on, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -99,6 +99,26 @@ impl<N: Real> Cone<N> {
     }
 }
 
+impl<N: Real> Cone<N> {
+    /// What it shows to a unit vector; `None` for the base, and for both sides of a cone of no height.
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
+        if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {
+            return None;
+        }
+        let (apex, rim) = (FeatureId::Vertex(0), FeatureId::Edge(0));
+        let lean = self.lean(direction).unwrap_or(N::ZERO);
+        Some(if Tilt::usual().admits(lean * lean) && self.half_height > N::ZERO {
+            let ends = [(rim, self.base().rim_toward(direction)), (apex, self.apex())];
+            RoundPart::Line(FeatureId::Face(1), ends)
+        } else if lean > N::ZERO {
+            RoundPart::Point(apex, self.apex())
+        } else {
+            RoundPart::Point(rim, self.base().rim_toward(direction))
+        })
+    }
+}
+
 impl<N: Real> SupportMap<N, 3> for Cone<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
         let rim = self.base().rim_toward(direction);
@@ -123,19 +143,13 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        let (base, apex, rim) = (self.base(), FeatureId::Vertex(0), FeatureId::Edge(0));
-        let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
-        let is_below = direction.y < N::ZERO;
-        let lean = self.lean(direction).unwrap_or(N::ZERO);
-        if is_axial && (is_below || self.half_height == N::ZERO) {
-            base.fill_polygon(FeatureId::Face(u32::from(!is_below)), rim, direction, out);
-        } else if Tilt::usual().admits(lean * lean) && self.half_height > N::ZERO {
-            let ends = [(rim, base.rim_toward(direction)), (apex, self.apex())];
-            out.set_segment(FeatureId::Face(1), ends);
-        } else if lean > N::ZERO {
-            out.set_point(apex, self.apex());
-        } else {
-            out.set_point(rim, base.rim_toward(direction));
+        match self.part_shown(direction) {
+            Some(part) => part.fill(out),
+            None => {
+                let is_below = direction.y < N::ZERO;
+                let face = FeatureId::Face(u32::from(!is_below));
+                self.base().fill_polygon(face, FeatureId::Edge(0), direction, out);
+            }
         }
     }
 }

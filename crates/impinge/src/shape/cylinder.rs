@@ -1,7 +1,7 @@
 //! Cylinders, in space.
 
 use super::error::{or_panic, size};
-use super::round::{Disk, axial_on, radial_of};
+use super::round::{Disk, RoundPart, axial_on, radial_of};
 use super::scale::Scale;
 use super::segment::length_of;
 use super::tilt::Tilt;
@@ -86,6 +86,29 @@ impl<N: Real> Cylinder<N> {
     }
 }
 
+impl<N: Real> Cylinder<N> {
+    /// The number and the height of the cap on the side that a direction leads to.
+    fn end_toward(&self, direction: &Vector<N, 3>) -> (u32, N) {
+        if direction.y < N::ZERO { (1, -self.half_height) } else { (0, self.half_height) }
+    }
+
+    /// What it shows to a unit vector; `None` for a cap.
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        if Tilt::usual().admits(radial_of(direction).norm_squared()) {
+            return None;
+        }
+        let (side, y) = self.end_toward(direction);
+        let (rim, near) = (FeatureId::Edge(side), self.disk(y).rim_toward(direction));
+        let is_line = Tilt::usual().admits(direction.y * direction.y) && self.half_height > N::ZERO;
+        Some(if is_line {
+            let far = Point::<N, 3>::new(near.x, -y, near.z);
+            RoundPart::Line(FeatureId::Face(2), [(FeatureId::Edge(1 - side), far), (rim, near)])
+        } else {
+            RoundPart::Point(rim, near)
+        })
+    }
+}
+
 impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     fn core_support(&self, direction: &Vector<N, 3>) -> Point<N, 3> {
         let y = if direction.y < N::ZERO { -self.half_height } else { self.half_height };
@@ -111,18 +134,13 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        let (side, y) =
-            if direction.y < N::ZERO { (1, -self.half_height) } else { (0, self.half_height) };
-        let (disk, rim) = (self.disk(y), FeatureId::Edge(side));
-        if Tilt::usual().admits(radial_of(direction).norm_squared()) {
-            disk.fill_polygon(FeatureId::Face(side), rim, direction, out);
-        } else if Tilt::usual().admits(direction.y * direction.y) && self.half_height > N::ZERO {
-            let other = FeatureId::Edge(1 - side);
-            let ends =
-                [(other, self.disk(-y).rim_toward(direction)), (rim, disk.rim_toward(direction))];
-            out.set_segment(FeatureId::Face(2), ends);
-        } else {
-            out.set_point(rim, disk.rim_toward(direction));
+        match self.part_shown(direction) {
+            Some(part) => part.fill(out),
+            None => {
+                let (side, y) = self.end_toward(direction);
+                let names = [FeatureId::Face(side), FeatureId::Edge(side)];
+                self.disk(y).fill_polygon(names[0], names[1], direction, out);
+            }
         }
     }
 }

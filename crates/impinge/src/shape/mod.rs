@@ -82,6 +82,7 @@ pub use plane::Plane;
 pub use polyline::Polyline;
 pub(crate) use polytope::Planes;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
+pub(crate) use round::RoundPart;
 pub use rounded::Rounded;
 pub(crate) use rounded::RoundedSolid;
 pub use scale::ScaleError;

@@ -21,6 +21,25 @@ pub(super) fn axial_on<N: Real, const D: usize>(
     (half_height > least && radius > least).then(|| axial(point))
 }
 
+/// What a cylinder or a cone shows to a direction, if that is no cap.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum RoundPart<N: Real> {
+    /// A point of a rim, or the apex.
+    Point(FeatureId, Point<N, 3>),
+    /// The line of the side that faces the direction, and its ends.
+    Line(FeatureId, [(FeatureId, Point<N, 3>); 2]),
+}
+
+impl<N: Real> RoundPart<N> {
+    /// Gives it as a feature.
+    pub(super) fn fill(self, out: &mut Feature<N, 3>) {
+        match self {
+            Self::Point(id, point) => out.set_point(id, point),
+            Self::Line(id, ends) => out.set_segment(id, ends),
+        }
+    }
+}
+
 /// The points within `radius` of the y axis at height `y`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disk<N: Real> {

@@ -1,4 +1,4 @@
-//! Segments and capsules against boxes, hulls and triangles: the ends of what they share, in one go.
+//! Segments and capsules against boxes, hulls, triangles, cylinders and cones: the ends of what they share, in one go.
 //!
 //! Seen along the normal the core is a point or a segment, and the other solid shows a face of few corners, an
 //! edge or a vertex. Over a face those ends of the core count that are inside of all sides, and the places
@@ -18,7 +18,7 @@ use super::{ManifoldRequest, Pair, RawManifold, choose, names};
 use crate::math::lanes::{load, spread, with_lanes};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component};
 use crate::query::separation::bare;
-use crate::shape::{ConvexPolyhedron, FaceRing, FeatureId, Kind};
+use crate::shape::{ConvexPolyhedron, FaceRing, FeatureId, Kind, RoundPart};
 
 /// Builds the manifold of a segment or capsule, the first of a pair, whose nearest points to the other solid
 /// are known; answers whether it did.
@@ -36,11 +36,26 @@ pub(super) fn build<N: Real>(
     let (bare, radius) = bare(pair.second);
     let toward = pair.pose12.inverse_vector(&-frame.normal());
     let mut ring = FaceRing::blank();
-    match shown(&bare, (&toward, None), &mut ring) {
-        Ok(_) => over_face((&core, &ring, radius), &pair.pose12, (frame, limit), out),
-        Err(Some(part)) => beside((&core, &bare, part), (pair, radius), frame, out),
-        Err(None) => false,
-    }
+    let part = match bare {
+        Kind::Cylinder(cylinder, _) => cylinder.part_shown(&toward),
+        Kind::Cone(cone, _) => cone.part_shown(&toward),
+        _ => match shown(&bare, (&toward, None), &mut ring) {
+            Ok(_) => return over_face((&core, &ring, radius), &pair.pose12, (frame, limit), out),
+            Err(part) => part.and_then(|part| flat_part(&bare, part)),
+        },
+    };
+    part.is_some_and(|part| beside((&core, &part), (pair, radius), frame, out))
+}
+
+/// An edge or a vertex as what a round solid might show.
+fn flat_part<N: Real>(solid: &Kind<'_, N, 3>, part: FeatureId) -> Option<RoundPart<N>> {
+    Some(match (part, solid) {
+        (FeatureId::Vertex(_), Kind::Cuboid(cuboid)) => RoundPart::Point(part, cuboid.vertex(part)),
+        (FeatureId::Vertex(_), Kind::Polytope(hull)) => RoundPart::Point(part, hull.vertex(part)),
+        (FeatureId::Edge(_), Kind::Cuboid(cuboid)) => RoundPart::Line(part, cuboid.edge(part)),
+        (FeatureId::Edge(_), Kind::Polytope(hull)) => RoundPart::Line(part, hull.edge(part)),
+        _ => return None,
+    })
 }
 
 /// The core of the first solid as seen along the normal.
@@ -87,17 +102,16 @@ impl<N: Real> Core<N> {
     }
 }
 
-/// The one point of a core and an edge or a vertex, by the names of the parts it is on.
+/// The one point of a core and a line or a corner, by the names of the parts it is on.
 fn beside<N: Real>(
-    (core, solid, part): (&Core<N>, &Kind<'_, N, 3>, FeatureId),
+    (core, part): (&Core<N>, &RoundPart<N>),
     (pair, radius): (&Pair<'_, N, 3>, N),
     frame: &Frame<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
     let on = match part {
-        FeatureId::Vertex(_) => Some(part),
-        FeatureId::Edge(_) => on_edge((core, solid, part), (pair, radius), frame),
-        FeatureId::Face(_) => None,
+        RoundPart::Point(id, _) => Some(*id),
+        RoundPart::Line(id, ends) => on_line((core, *id, ends), (pair, radius), frame),
     };
     let Some(on) = on else { return false };
     out.normal = frame.normal();
@@ -106,18 +120,16 @@ fn beside<N: Real>(
     true
 }
 
-/// The part of an edge that the witness lies on; `None` of one that runs along the core, which share more
+/// The ends of a line by their names.
+type Ends<N> = [(FeatureId, Point<N, 3>); 2];
+
+/// The part of a line that the witness lies on; `None` of one that runs along the core, which share more
 /// than a point.
-fn on_edge<N: Real>(
-    (core, solid, part): (&Core<N>, &Kind<'_, N, 3>, FeatureId),
+fn on_line<N: Real>(
+    (core, part, ends): (&Core<N>, FeatureId, &Ends<N>),
     (pair, radius): (&Pair<'_, N, 3>, N),
     frame: &Frame<N, 3>,
 ) -> Option<FeatureId> {
-    let ends = match solid {
-        Kind::Cuboid(cuboid) => cuboid.edge(part),
-        Kind::Polytope(hull) => hull.edge(part),
-        _ => return None,
-    };
     let points = ends.map(|(_, end)| pair.pose12.point(&end));
     let along = frame.flat(&points[1]) - frame.flat(&points[0]);
     let turn = cross2(&core.along, &along);

@@ -8,7 +8,7 @@
 
 use super::cylinder_cylinder::{Attempt, Found, Tried, Verdict, radial};
 use super::hulls::{noise, out_of_reach};
-use super::{ridges, wrong_kinds};
+use super::{revolved, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::{Matrix, Real, Vector, cross, max, min, unit};
 use crate::query::Pair;
@@ -48,7 +48,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     Verdict::of(&tries, out_of_reach(&units, limit)).answer(
         &units,
         (pair, limit),
-        ridges::separation,
+        revolved::separation,
     )
 }
 

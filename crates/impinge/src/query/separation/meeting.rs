@@ -70,7 +70,7 @@ impl<N: Real> Meeting<N> {
         }
     }
 
-    /// Finds how two solids meet that have outlines of up to eight corners, not both of them balls; answers
+    /// Finds how two solids meet that have outlines of up to eight corners; answers
     /// false for others and where lengths up to `noise` would decide.
     #[inline(always)]
     pub(in crate::query) fn find<S: Simd, V: Wide<S, Scalar = N>>(

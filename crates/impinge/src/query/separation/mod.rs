@@ -37,6 +37,7 @@ mod polygon_nearest;
 mod polygon_polygon;
 pub(super) mod projection;
 pub(super) mod rectangle_axes;
+mod revolved;
 mod ridges;
 mod rod;
 mod rounded;

@@ -1,7 +1,7 @@
 //! The distance of two solids, of which an overlap need not be measured.
 
 use super::flat_core::FlatCore;
-use super::{ball_ball, ball_segment, ball_triangle, general, ridges, segment_segment};
+use super::{ball_ball, ball_segment, ball_triangle, general, revolved, segment_segment};
 use crate::convex::{self, Simplicial};
 use crate::math::{Real, Space};
 use crate::query::Pair;
@@ -20,8 +20,8 @@ enum Way {
     Features,
     /// The same by separating axes.
     Axes,
-    /// By the general algorithm, which is told where the depth can lie.
-    Ridges,
+    /// By formulas for features; what these leave is left to an algorithm that can do without depths.
+    Revolved,
     /// By the general algorithm.
     Search,
 }
@@ -34,8 +34,8 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
         return (known <= limit).then_some(known);
     }
     let way = way_in_space(pair);
-    if way == Way::Ridges && is_plain(pair, limit) && are_bare(pair) {
-        return ridges::distance(pair, limit);
+    if way == Way::Revolved && is_plain(pair, limit) && are_bare(pair) {
+        return revolved::distance(pair, limit);
     }
     distance(pair, limit, way)
 }
@@ -141,7 +141,8 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
         (
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
             Cylinder(..) | Cone(..),
-        ) => Way::Ridges,
+        )
+        | (Cylinder(..) | Cone(..), Cone(..)) => Way::Revolved,
         _ => Way::Search,
     }
 }

@@ -3,7 +3,7 @@
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cuboid_cylinder,
-    cylinder_cylinder, flipped, general, hulls, look_up, plane_any, ridges, rounded,
+    cylinder_cylinder, flipped, general, hulls, look_up, plane_any, revolved, rounded,
     segment_cuboid, segment_segment, segment_triangle, triangle_cuboid, triangle_polytope,
 };
 use crate::convex::Separation;
@@ -38,7 +38,7 @@ impl<N: Real> Space<N> {
         let hh: Algorithm<N, 3> = hulls::separation;
         let cy: Algorithm<N, 3> = cuboid_cylinder::separation;
         let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
-        let fr: Algorithm<N, 3> = ridges::separation;
+        let re: Algorithm<N, 3> = revolved::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
         let pp: Algorithm<N, 3> = plane_any::plane_plane;
         let gx: Algorithm<N, 3> = composite::separation;
@@ -47,13 +47,13 @@ impl<N: Real> Space<N> {
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
-            [__, ss, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, ss, st, sc, sh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, ff, tc, th, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, cy, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, hh, fr, fr, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, yy, gg, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, __, __, gg, gg, gg, rr, gg, gp, gx],
+            [__, ss, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, ff, tc, th, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, cy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, __, __, rr, rr, rr, gx],

@@ -26,7 +26,7 @@ use smallvec::SmallVec;
 
 use self::arc::{Arc, Line, Search};
 use self::flat::Flat;
-use self::round::Round;
+pub(super) use self::round::Round;
 use super::flat_core::FlatCore;
 use super::{general, wrong_kinds};
 use crate::convex::{self, Peak, Peaks, Separation};
@@ -264,4 +264,4 @@ fn across<N: Real>(edge: &Vector<N, 3>, [from, to]: [&Vector<N, 3>; 2]) -> Optio
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

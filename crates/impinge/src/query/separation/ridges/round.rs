@@ -16,15 +16,16 @@ pub(super) struct Slope<N> {
 }
 
 /// A cylinder or a cone with its apex up, in units of the pair.
-pub(super) struct Round<N: Real> {
-    pub(super) half: N,
-    radius: N,
-    is_cone: bool,
+#[derive(Clone, Copy)]
+pub(in super::super) struct Round<N: Real> {
+    pub(in super::super) half: N,
+    pub(in super::super) radius: N,
+    pub(in super::super) is_cone: bool,
 }
 
 impl<N: Real> Round<N> {
     /// `None` for another kind, or one without a size.
-    pub(super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
+    pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
         let (half, radius, is_cone) = match kind {
             Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
             Kind::Cone(cone, _) => (cone.half_height(), cone.radius(), true),
@@ -35,12 +36,12 @@ impl<N: Real> Round<N> {
     }
 
     /// The heights of the caps in parts of the half height.
-    pub(super) fn caps(&self) -> &'static [f64] {
+    pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
 
     /// A point farthest along a direction.
-    pub(super) fn support(&self, direction: &Vector<N, 3>) -> Vector<N, 3> {
+    pub(in super::super) fn support(&self, direction: &Vector<N, 3>) -> Vector<N, 3> {
         let aside = radial(direction);
         let squared = aside.norm_squared();
         let is_aside = squared > N::EPSILON * N::EPSILON;
@@ -70,7 +71,7 @@ impl<N: Real> Round<N> {
     }
 
     /// Points of which mixes may touch others along a direction, which lie at or about `below`.
-    pub(super) fn touched<'a>(
+    pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,
         below: impl Iterator<Item = &'a Vector<N, 3>>,

@@ -6,34 +6,34 @@ use crate::query::separation::cylinder_cylinder::tests::compare;
 use crate::query::separation::hulls::tests::Random;
 use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
-type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
+pub(in super::super) type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
 /// A solid of about a size.
-type Make<N> = fn(Vector<N, 3>) -> Box<dyn Shape<N, 3>>;
+pub(in super::super) type Make<N> = fn(Vector<N, 3>) -> Box<dyn Shape<N, 3>>;
 
-fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Segment::new(Point::from(-size), Point::from(size * N::lit(0.7))))
 }
 
-fn capsule<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn capsule<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Capsule::<N, 3>::new(size.x, size.y * N::lit(0.2)))
 }
 
-fn triangle<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn triangle<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     let corner = |x: N, y: N, z: N| Point::<N, 3>::new(x, y, z);
     let one = corner(-size.x, size.z, N::ZERO);
     Box::new(Triangle::new(one, corner(size.y, -size.x, size.x), corner(size.z, size.y, -size.y)))
 }
 
-fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Cuboid::new(size))
 }
 
 /// The same, hardly thicker than a sheet of paper.
-fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     octahedron(Vector::<N, 3>::new(size.x + N::lit(0.1), N::lit(0.002), size.z + N::lit(0.1)))
 }
 
-fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     octahedron(size.map(|x| x + N::lit(0.1)))
 }
 
@@ -53,11 +53,11 @@ fn octahedron<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     ]))
 }
 
-fn cylinder<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn cylinder<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Cylinder::new(size.x, size.y))
 }
 
-fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
+pub(in super::super) fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     Box::new(Cone::new(size.x, size.y))
 }
 
@@ -85,7 +85,7 @@ fn answers_are_those_of_the_general_algorithm() {
 }
 
 /// The depth along a direction from the first solid to the second.
-fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>) -> N {
+pub(in super::super) fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>) -> N {
     let [first, second] = [pair.first, pair.second].map(|kind| {
         let map = Geometry(kind).as_support_map();
         map.expect("a convex solid")

@@ -1,0 +1,54 @@
+//! Overlaps out of which a face of the flat solid or a cap of the round one leads.
+
+use super::{FlatCore, Found, Hull, Meeting, Place, still};
+use crate::math::{Real, Vector};
+
+impl<N: Real> Meeting<'_, N> {
+    /// The answer along the normal of the face or cap that the solids reach least below, if balls prove it.
+    pub(super) fn by_face(&self) -> Option<Found<N>> {
+        self.by_own_face().or_else(|| self.by_cap())
+    }
+
+    /// Along the normal of a face of the flat solid, which holds the ball about the point that is deepest below.
+    fn by_own_face(&self) -> Option<Found<N>> {
+        let mut best: Option<(N, Place<N>)> = None;
+        let mut try_face = |normal: &Vector<N, 3>, offset: N| {
+            let outward = -self.pose12.rotation.tr_mul(normal);
+            let nearest = self.profile.round.support(&outward);
+            let level = outward.dot(&nearest);
+            let height = normal.dot(&self.shift) - offset * self.shrink - level;
+            if best.as_ref().is_none_or(|(most, _)| height > *most) {
+                let point = nearest + outward * height;
+                best = Some((height, Place { point, nearest, outward, level }));
+            }
+        };
+        match self.flat {
+            FlatCore::Cuboid(cuboid) => {
+                for axis in 0..3 {
+                    let normal = Vector::<N, 3>::ith(axis, N::ONE);
+                    try_face(&normal, cuboid.half_extents()[axis]);
+                    try_face(&-normal, cuboid.half_extents()[axis]);
+                }
+            }
+            FlatCore::Polytope(hull) => {
+                hull.faces().iter().for_each(|face| try_face(&face.normal, face.offset));
+            }
+            _ => {}
+        }
+        let (height, place) = best?;
+        let is_proved = height <= N::ZERO && self.holds(&place.nearest, -height);
+        is_proved.then(|| place.proved(height)).flatten()
+    }
+
+    /// Along the normal of a cap, below which the ball about the lowest vertex is in the round solid.
+    fn by_cap(&self) -> Option<Found<N>> {
+        self.profile.round.caps().iter().find_map(|&up| {
+            let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));
+            let (_, place): (Hull<N>, _) = self.at_point(vertex);
+            let low = self.lowest(&place.outward);
+            let is_lowest = place.outward.dot(&(place.point - low)) <= still();
+            let height = place.outward.dot(&low) - place.level;
+            is_lowest.then(|| place.proved(height)).flatten()
+        })
+    }
+}
