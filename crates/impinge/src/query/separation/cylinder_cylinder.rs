@@ -9,7 +9,7 @@
 //! that overlap.
 
 use super::hulls::{in_first_frame, noise, out_of_reach};
-use super::{Algorithm, general, wrong_kinds};
+use super::{general, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::query::Pair;
@@ -31,7 +31,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
     let meeting = Meeting::new(first, second, &pair.pose12, units.shrink);
     let verdict = meeting.resolve(out_of_reach(&units, limit));
-    verdict.answer(&units, (pair, limit), general::separation)
+    match verdict.answer(&units, &pair.pose12) {
+        Some(found) => found.filter(|found| found.distance <= limit),
+        None => general::separation(pair, limit),
+    }
 }
 
 /// How the search ended.
@@ -46,7 +49,7 @@ pub(super) enum Verdict<N: Real> {
 impl<N: Real> Verdict<N> {
     /// Tries one direction after the other until one is the answer, or parts the solids by more than
     /// `beyond`; with each goes whether it is seen from the second solid.
-    pub(super) fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
+    fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
         for (attempt, is_second) in tries {
             let Some(tried) = attempt() else { continue };
             if tried.height > beyond {
@@ -59,21 +62,21 @@ impl<N: Real> Verdict<N> {
         Self::Undecided
     }
 
-    /// The answer in the frame of the first solid and the lengths of the pair; what is not decided is left
-    /// to another algorithm.
+    /// The answer in the frame of the first solid and the lengths of the pair, which may be that there is none
+    /// within the limit; `None` if the search is undecided.
     pub(super) fn answer(
         &self,
         units: &Units<N>,
-        (pair, limit): (&Pair<'_, N, 3>, N),
-        otherwise: Algorithm<N, 3>,
-    ) -> Option<Separation<N, 3>> {
-        let found = match self {
-            Self::Beyond => return None,
-            Self::Undecided => return otherwise(pair, limit),
-            Self::Found(found, false) => found.restored(units.scale),
-            Self::Found(found, true) => in_first_frame(&found.restored(units.scale), &pair.pose12),
-        };
-        Some(found).filter(|found| found.distance <= limit)
+        pose12: &Pose<N, 3>,
+    ) -> Option<Option<Separation<N, 3>>> {
+        match self {
+            Self::Beyond => Some(None),
+            Self::Undecided => None,
+            Self::Found(found, false) => Some(Some(found.restored(units.scale))),
+            Self::Found(found, true) => {
+                Some(Some(in_first_frame(&found.restored(units.scale), pose12)))
+            }
+        }
     }
 }
 
@@ -87,7 +90,7 @@ pub(super) struct Found<N: Real> {
 }
 
 impl<N: Real> Found<N> {
-    pub(super) fn restored(&self, scale: N) -> Separation<N, 3> {
+    fn restored(&self, scale: N) -> Separation<N, 3> {
         let on_own = self.on_other - self.normal * self.distance;
         Separation {
             distance: self.distance * scale,
@@ -115,13 +118,13 @@ struct View<N: Real> {
 }
 
 /// A direction from one solid to the other: how far it parts them, and the answer if that is it.
-pub(super) struct Tried<N: Real> {
-    pub(super) height: N,
-    pub(super) found: Option<Found<N>>,
+struct Tried<N: Real> {
+    height: N,
+    found: Option<Found<N>>,
 }
 
 /// A direction that is looked for when it is its turn.
-pub(super) type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
+type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
 
 /// Two cylinders, seen from each.
 struct Meeting<N: Real> {

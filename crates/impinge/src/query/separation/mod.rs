@@ -23,7 +23,6 @@ mod ball_triangle2;
 mod chain;
 pub(super) mod cuboid_axes;
 mod cuboid_cuboid;
-mod cuboid_cylinder;
 mod cylinder_cylinder;
 mod flat_core;
 mod general;

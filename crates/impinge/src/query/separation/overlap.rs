@@ -137,7 +137,7 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
         (Cuboid(_), Cuboid(_)) => Way::Formula,
         (Triangle(_), Triangle(_)) => Way::Search,
         (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,
-        (Cuboid(_) | Cylinder(..), Cylinder(..)) => Way::Features,
+        (Cylinder(..), Cylinder(..)) => Way::Features,
         (
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
             Cylinder(..) | Cone(..),

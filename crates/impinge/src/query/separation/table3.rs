@@ -2,9 +2,9 @@
 
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
-    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cuboid_cylinder,
-    cylinder_cylinder, flipped, general, hulls, look_up, plane_any, revolved, rounded,
-    segment_cuboid, segment_segment, segment_triangle, triangle_cuboid, triangle_polytope,
+    ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cylinder_cylinder,
+    flipped, general, hulls, look_up, plane_any, revolved, rounded, segment_cuboid,
+    segment_segment, segment_triangle, triangle_cuboid, triangle_polytope,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -36,7 +36,6 @@ impl<N: Real> Space<N> {
         let gg: Algorithm<N, 3> = general::separation;
         let ff: Algorithm<N, 3> = general::of_flat_cores;
         let hh: Algorithm<N, 3> = hulls::separation;
-        let cy: Algorithm<N, 3> = cuboid_cylinder::separation;
         let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
         let re: Algorithm<N, 3> = revolved::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
@@ -50,7 +49,7 @@ impl<N: Real> Space<N> {
             [__, ss, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, ff, tc, th, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, cy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, re, gg, gg, rr, gg, gp, gx],

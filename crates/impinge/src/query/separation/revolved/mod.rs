@@ -22,7 +22,7 @@ use self::profile::{Part, Profile, Seen};
 use super::cylinder_cylinder::{Found, Verdict};
 use super::flat_core::FlatCore;
 use super::general;
-use super::hulls::{in_first_frame, noise, out_of_reach};
+use super::hulls::{noise, out_of_reach};
 use super::ridges::{self, Round};
 use super::wrong_kinds;
 use crate::convex::{Separation, Units};
@@ -82,13 +82,9 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
             rounds::resolve([first, profile], (pose12, shift), beyond)
         }
     };
-    let found = match verdict {
-        Verdict::Beyond => return Some(None),
-        Verdict::Undecided => return None,
-        Verdict::Found(found, false) => found.restored(units.scale),
-        Verdict::Found(found, true) => in_first_frame(&found.restored(units.scale), pose12),
-    };
-    Some(Some(found.rounded(map1.rounding(), N::ZERO)).filter(|found| found.distance <= limit))
+    let found = verdict.answer(&units, pose12)?;
+    let rounded = found.map(|found| found.rounded(map1.rounding(), N::ZERO));
+    Some(rounded.filter(|found| found.distance <= limit))
 }
 
 /// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
