@@ -44,10 +44,19 @@ pub(super) fn core<'a, N: Real>(kind: Kind<'a, N, 3>) -> Option<(&'a Segment<N, 
 }
 
 /// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.
-pub(super) fn part_at<N: Real>(
-    point: &Point<N, 3>,
-    from: &Point<N, 3>,
-    along: &Vector<N, 3>,
+pub(super) fn part_of<N: Real, const D: usize>(
+    segment: &Segment<N, D>,
+    point: &Point<N, D>,
+    noise: N,
+) -> Option<FeatureId> {
+    part_at(point, segment.a(), &(segment.b() - segment.a()), noise)
+}
+
+/// [`part_of`], of a segment given by an end and the way to the other.
+pub(super) fn part_at<N: Real, const D: usize>(
+    point: &Point<N, D>,
+    from: &Point<N, D>,
+    along: &Vector<N, D>,
     noise: N,
 ) -> Option<FeatureId> {
     let (squared, reached) = (along.norm_squared(), (point - from).dot(along));

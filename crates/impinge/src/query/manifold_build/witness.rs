@@ -1,10 +1,10 @@
 //! What the nearest points of two convex solids lie on.
 
 use super::facet::{Facet, Which};
-use super::frame::Frame;
-use super::{ManifoldRequest, Pair, at_witness, ball, face, tangents2, tangents3};
+use super::frame::{Frame, rounding};
+use super::{ManifoldRequest, Pair, at_witness, ball, face, segments, tangents2, tangents3};
 use crate::convex::Separation;
-use crate::math::{Real, Vector};
+use crate::math::{Point, Real, Vector};
 use crate::shape::{FeatureId, Kind};
 
 /// The features of two solids of the plane that the points of their separation lie on.
@@ -12,7 +12,7 @@ pub(crate) fn features2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, tangents2(&separation.normal))
+    features(pair, separation, tangents2)
 }
 
 /// The features of two solids of space that the points of their separation lie on.
@@ -20,7 +20,7 @@ pub(crate) fn features3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, tangents3(&separation.normal))
+    features(pair, separation, tangents3)
 }
 
 /// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
@@ -54,13 +54,45 @@ pub(super) fn frame<N: Real, const D: usize>(
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    tangents: [Vector<N, D>; 2],
+    tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
 ) -> [FeatureId; 2] {
     if let Some(touched) = known(pair, separation) {
         return [FeatureId::Face(0), touched];
     }
-    let frame = frame(pair, separation, tangents);
-    [false, true].map(|is_second| shown(pair, &frame, is_second))
+    let (noise, normal) = (rounding(pair), separation.normal);
+    let shown = |is_second| shown(pair, &frame(pair, separation, tangents(&normal)), is_second);
+    let first = by_place(pair.first, (&separation.point1, &normal), noise);
+    let second = || {
+        let point = pair.pose12.inverse_point(&separation.point2);
+        by_place(pair.second, (&point, &-pair.pose12.inverse_vector(&normal)), noise)
+    };
+    [first.unwrap_or_else(|| shown(false)), second().unwrap_or_else(|| shown(true))]
+}
+
+/// The part of a solid with flat faces, of a segment or of what is rounded of these that holds a point of the
+/// surface, seen from where a unit vector points: the point tells, without what the solid shows there. `None` of
+/// other kinds, and where rounding does not let it tell.
+fn by_place<N: Real, const D: usize>(
+    kind: Kind<'_, N, D>,
+    (point, outward): (&Point<N, D>, &Vector<N, D>),
+    noise: N,
+) -> Option<FeatureId> {
+    match kind {
+        Kind::Plane(_) => Some(FeatureId::Face(0)),
+        Kind::Cuboid(cuboid) => cuboid.part_at(point, noise),
+        Kind::Triangle(triangle) => triangle.part_at(point, outward, noise),
+        Kind::Polytope(solid) => Some(solid.part_at(point, outward, noise)),
+        Kind::Segment(segment) => segments::part_of(segment, point, N::TWO * noise),
+        Kind::Capsule(capsule) => {
+            let core = point - outward * capsule.radius();
+            segments::part_of(capsule.segment(), &core, N::TWO * noise)
+        }
+        Kind::Rounded(solid) => {
+            let core = point - outward * solid.swelling();
+            by_place(solid.inner().0, (&core, outward), noise)
+        }
+        _ => None,
+    }
 }
 
 fn feature<N: Real, const D: usize>(
