@@ -87,6 +87,11 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     Some(rounded.filter(|found| found.distance <= limit))
 }
 
+/// The verdict where the answer, if there is one, is in the frame of the second solid.
+fn seen_from_second<N: Real>(found: Option<Found<N>>) -> Verdict<N> {
+    found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true))
+}
+
 /// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
 struct Meeting<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
@@ -122,21 +127,15 @@ impl<N: Real> Meeting<'_, N> {
         let (mut hull, mut place) = self.at_point(first);
         for _ in 0..ROUNDS {
             let low = self.lowest(&place.outward);
-            let height = place.outward.dot(&low) - place.level;
-            if height > beyond {
-                return Verdict::Beyond;
-            }
-            if place.outward.dot(&(place.point - low)) <= still() {
-                let found = place.proved(height);
-                return found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true));
+            if let Some(verdict) = place.verdict(&low, beyond) {
+                return verdict;
             }
             match self.nearer(&hull, &place, low) {
                 Some(next) => (hull, place) = next,
                 None => break,
             }
         }
-        let found = self.by_face();
-        found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true))
+        seen_from_second(self.by_face())
     }
 
     /// A point of the flat solid, given in its own frame and length.
@@ -250,6 +249,17 @@ impl<N: Real> Place<N> {
 
     fn distance(&self) -> N {
         self.outward.dot(&self.point) - self.level
+    }
+
+    /// What the place is told by the point that is lowest along its direction: that the solids are farther apart than
+    /// `beyond`, or, if nothing is lower than the place, whether that is the answer. `None` if something is.
+    fn verdict(&self, low: &Vector<N, 3>, beyond: N) -> Option<Verdict<N>> {
+        let height = self.outward.dot(low) - self.level;
+        if height > beyond {
+            return Some(Verdict::Beyond);
+        }
+        let is_lowest = self.outward.dot(&(self.point - low)) <= still();
+        is_lowest.then(|| seen_from_second(self.proved(height)))
     }
 
     /// The answer, if the two points lie across from each other as far apart as supporting planes.

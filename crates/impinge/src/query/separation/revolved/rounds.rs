@@ -6,7 +6,7 @@
 //! depth: each in one of the solids.
 
 use super::profile::Profile;
-use super::{Found, Place, Verdict, noise, still};
+use super::{Found, Place, Verdict, noise, seen_from_second, still};
 use crate::math::{Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 use crate::query::separation::segments::nearest_of_segments;
 
@@ -34,8 +34,7 @@ pub(super) fn resolve<N: Real>(
             Verdict::Beyond => return Verdict::Beyond,
         }
     }
-    let found = views[0].sides();
-    found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true))
+    seen_from_second(views[0].sides())
 }
 
 /// A solid in the frame of another.
@@ -65,13 +64,8 @@ impl<N: Real> View<N> {
         for _ in 0..TURNS {
             let Some(place) = self.at_corner(&low) else { break };
             low = self.lowest(&place.outward);
-            let height = place.outward.dot(&low) - place.level;
-            if height > beyond {
-                return Verdict::Beyond;
-            }
-            if place.outward.dot(&(place.point - low)) <= still() {
-                let found = place.proved(height);
-                return found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true));
+            if let Some(verdict) = place.verdict(&low, beyond) {
+                return verdict;
             }
         }
         Verdict::Undecided

@@ -5,22 +5,14 @@ use crate::query::separation as whole;
 use crate::query::separation::cylinder_cylinder::tests::compare;
 use crate::query::separation::hulls::tests::Random;
 use crate::query::separation::ridges::tests::{
-    Make, Solids, blade, capsule, cone, cuboid, cylinder, depth, hull, segment, triangle,
+    Make, Solids, blade, capsule, compare_each, cone, cuboid, cylinder, depth, hull, segment,
+    triangle,
 };
 use crate::shape::Ball;
 
 fn agree<N: Real>(seed: u64, rounds: usize, accuracy: f64) {
-    macro_rules! of {
-        ($($first:ident $second:ident),*) => {
-            $({
-                fn solids<N: Real>([size1, size2]: [Vector<N, 3>; 2]) -> Solids<N> {
-                    [$first(size1), $second(size2)]
-                }
-                compare::<N>((seed, rounds, accuracy), solids, separation);
-            })*
-        };
-    }
-    of!(
+    compare_each!(
+        separation, (seed, rounds, accuracy),
         segment cylinder, triangle cylinder, cuboid cylinder, hull cylinder, blade cylinder,
         segment cone, triangle cone, cuboid cone, hull cone, blade cone, cylinder cone, cone cone
     );

@@ -61,18 +61,22 @@ pub(in super::super) fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
     Box::new(Cone::new(size.x, size.y))
 }
 
+/// Compares the separations of pairs of solids with those of the general algorithm.
+macro_rules! compare_each {
+    ($separation:path, $asked:expr, $($first:ident $second:ident),*) => {
+        $({
+            fn solids<N: Real>([size1, size2]: [Vector<N, 3>; 2]) -> Solids<N> {
+                [$first(size1), $second(size2)]
+            }
+            compare::<N>($asked, solids, $separation);
+        })*
+    };
+}
+pub(in super::super) use compare_each;
+
 fn agree<N: Real>(seed: u64, rounds: usize, accuracy: f64) {
-    macro_rules! of {
-        ($($first:ident $second:ident),*) => {
-            $({
-                fn solids<N: Real>([size1, size2]: [Vector<N, 3>; 2]) -> Solids<N> {
-                    [$first(size1), $second(size2)]
-                }
-                compare::<N>((seed, rounds, accuracy), solids, separation);
-            })*
-        };
-    }
-    of!(
+    compare_each!(
+        separation, (seed, rounds, accuracy),
         segment cylinder, triangle cylinder, cuboid cylinder, hull cylinder,
         segment cone, triangle cone, cuboid cone, hull cone
     );
