@@ -1,5 +1,7 @@
 // The rest, for both crates; included by `ncollide.rs`.
 
+use std::time::{Duration, Instant};
+
 use ncollide::math::{Isometry, Point, Translation, Vector};
 use ncollide::na::Unit;
 use ncollide::narrow_phase::{
@@ -17,6 +19,12 @@ use super::super::question::{
     Answer, Contender, LONGEST_TIME, PREDICTION, Question, Stand, stand,
 };
 use super::super::regime::{Pair, Poses};
+
+/// A round of impacts that takes longer is given up: of two grounds ncollide takes minutes for it.
+const PATIENCE: Duration = Duration::from_secs(4);
+
+/// So many impacts are told from one look at the clock to the next.
+const AT_A_LOOK: usize = 16;
 
 /// What ncollide keeps of a pair.
 struct Kept {
@@ -91,11 +99,22 @@ impl Ncollide {
         self.answers.extend(placed.map(|(at1, at2)| ask(at1, &**shape1, at2, &**shape2)));
     }
 
+    /// All of them, unless that takes so long that it is left out.
     fn impacts(&mut self) {
+        let begun = Instant::now();
+        self.answers.clear();
+        while self.answers.len() < self.first.len() && begun.elapsed() < PATIENCE {
+            self.next_impacts();
+        }
+        self.answers.resize(self.first.len(), Answer::UNSUPPORTED);
+    }
+
+    /// The next few, so that looking at the clock takes none of the time.
+    fn next_impacts(&mut self) {
         let (g1, g2) = (&*self.shapes[0], &*self.shapes[1]);
         let (still, by) = (Vector::zeros(), &DefaultTOIDispatcher);
-        self.answers.clear();
-        for ((at1, at2), velocity) in self.first.iter().zip(&self.second[0]).zip(&self.velocities) {
+        let placed = self.first.iter().zip(&self.second[0]).zip(&self.velocities);
+        for ((at1, at2), velocity) in placed.skip(self.answers.len()).take(AT_A_LOOK) {
             let longest = LONGEST_TIME;
             let found = time_of_impact(by, at1, &still, g1, at2, velocity, g2, longest, 0.0);
             let time = found.map(|hit| hit.map_or(Answer::NONE, |hit| Answer(hit.toi)));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::question::Question;
+use super::regime::PAIRS;
 use crate::measure::Times;
 use crate::table::Row;
 
@@ -63,6 +64,12 @@ fn is_ours(row: &Row) -> bool {
     row.contender.starts_with("impinge")
 }
 
+/// Whether it is somebody else's, who answers as we do for at least half of the pairs: nothing at all is
+/// quickly found.
+fn is_rival(row: &&Row) -> bool {
+    !is_ours(row) && row.contender != "target" && 2 * row.differ <= PAIRS
+}
+
 fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
     rows.min_by(|a, b| a.times.median().total_cmp(&b.times.median()))
 }
@@ -71,7 +78,6 @@ impl Verdicts {
     /// Looks at the rows of one case. Manifolds of a world are held against rivals by what its narrow phase
     /// takes.
     pub fn add(&mut self, question: Question, rows: &[Row]) {
-        let is_rival = |row: &&Row| !is_ours(row) && row.contender != "target";
         let Some(rival) = least(rows.iter().filter(is_rival)) else { return };
         let named = |name: &str| rows.iter().find(|row| row.contender == name);
         let best = || least(rows.iter().filter(|row| is_ours(row)));
