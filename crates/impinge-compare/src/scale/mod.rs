@@ -1,10 +1,11 @@
 //! The suite of growth: the time of a step against the number of boxes, for broad phases and for whole
-//! worlds, all boxes moving. Beside the table it writes `bench/<machine>/scale-series.csv`, one number of
-//! boxes per line, for plots with logarithmic axes.
+//! worlds, all boxes moving. Beside the table it writes `scale-series.csv` and `scale.svg`, which draws it with
+//! logarithmic axes, below `bench/<machine>/`.
 //!
 //! With the feature `parallel` it also compares one thread with two, by the clock on the wall. Without
 //! it all contenders have one thread, and times are those of the processor.
 
+mod growth;
 #[cfg(feature = "parallel")]
 mod threads;
 
@@ -16,18 +17,16 @@ use crate::broad::{Contenders, FAST, Impinge, Ncollide, Parry, Rapier, race};
 use crate::build::world::{self, World, certainly_touching};
 use crate::measure::{Times, timed};
 use crate::table::{Row, Table};
+use growth::Measured;
 
 /// Runs all sizes up to so many boxes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("scale", "ms");
-    let mut lines = "subject,contender,boxes,median_ms,minimum_ms\n".to_owned();
+    let mut measured = Vec::new();
     let sizes = [100, 316, 1_000, 3_162, 10_000, 31_623, 100_000, 316_228, 1_000_000];
     let sizes = || sizes.into_iter().filter(|size| arguments.includes(*size));
-    let mut add = |subject: &str, count: usize, rows: Vec<Row>| {
-        for Row { contender, times, .. } in &rows {
-            let [median, minimum] = [50, 0].map(|percent| times.quantile(percent));
-            lines += &format!("{subject},{contender},{count},{median:.5},{minimum:.5}\n");
-        }
+    let mut add = |subject: &str, boxes: usize, rows: Vec<Row>| {
+        measured.extend(rows.iter().map(|row| growth(subject, boxes, row)));
         table.add(rows);
     };
     for count in sizes() {
@@ -36,14 +35,21 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     for count in sizes() {
         add("world", count, whole_world(count, arguments));
     }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bench").join(&arguments.machine);
-    let written = std::fs::create_dir_all(&folder)
-        .and_then(|()| std::fs::write(folder.join("scale-series.csv"), lines));
-    written.unwrap_or_else(|error| eprintln!("the series could not be written: {error}"));
+    if arguments.is_whole() {
+        let bench = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bench");
+        let written = growth::write(&measured, &bench.join(&arguments.machine));
+        written.unwrap_or_else(|error| eprintln!("growth could not be written: {error}"));
+    }
     #[cfg(feature = "parallel")]
     return vec![table, threads::run(arguments)];
     #[cfg(not(feature = "parallel"))]
     vec![table]
+}
+
+fn growth(subject: &str, boxes: usize, row: &Row) -> Measured {
+    let [median, minimum] = [50, 0].map(|percent| row.times.quantile(percent));
+    let (subject, contender) = (subject.to_owned(), row.contender.clone());
+    Measured { subject, contender, boxes, median, minimum }
 }
 
 /// Few steps of many boxes, many of few.
