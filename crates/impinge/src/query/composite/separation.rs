@@ -180,7 +180,7 @@ impl<N: Real, const D: usize> Ground<N, D> {
         match &part.solid {
             PartSolid::Triangle(triangle) => triangle.corners().iter().for_each(&mut add),
             PartSolid::Segment(segment) => {
-                [segment.a(), segment.b()].into_iter().for_each(&mut add)
+                [segment.a(), segment.b()].into_iter().for_each(&mut add);
             }
             PartSolid::Shape(_) => return None,
         }
