@@ -11,7 +11,7 @@
 //! 2¹⁵ rounding errors of `f32`.
 
 use crate::math::{Pose, Real, Vector, max, max_component, min};
-use crate::shape::{Geometry, Shape};
+use crate::shape::{Geometry, Kind, Shape};
 
 /// By how much the square of a distance must exceed that of the lengths it is held against.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
@@ -24,6 +24,26 @@ pub(crate) struct Apart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Apart<'_, N, D> {
+    /// A ball is known around both shapes.
+    #[inline]
+    pub(crate) fn has_balls(&self) -> bool {
+        let is_without = |shape: &Geometry<'_, N, D>| {
+            matches!(shape.0, Kind::Plane(_) | Kind::Composite(_) | Kind::SupportMap(_))
+        };
+        !self.shapes.iter().any(is_without)
+    }
+
+    /// [`Self::is_beyond`], where to ask for that would cost more than the answer: of what has no balls, and of
+    /// what is one.
+    #[inline]
+    pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
+        if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.map(|shape| shape.0) {
+            let extents = one.radius() + other.radius();
+            return Some(exceeds(self.between.norm_squared(), reach(extents, limit)));
+        }
+        (!self.has_balls()).then_some(false)
+    }
+
     /// The shapes are certainly farther apart than `limit`; a negative limit and NaN count as zero.
     ///
     /// `false` says nothing; it is the answer for half-spaces, composites and support maps of users, of

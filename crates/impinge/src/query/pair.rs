@@ -118,12 +118,13 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
 
-/// The solids are the same at the same place, as far as [`canonical`] can tell.
-pub(crate) fn indistinguishable<N: Real, const D: usize>(
+/// The order of [`canonical`]: equal if the solids are the same at the same place, as far as that can tell.
+#[inline]
+pub(crate) fn order<N: Real, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
-) -> bool {
-    compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape) == Ordering::Equal
+) -> Ordering {
+    compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape)
 }
 
 /// The order of [`canonical`]. Nearly always the first coordinates of solids of one kind tell.

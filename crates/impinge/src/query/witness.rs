@@ -106,7 +106,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     }
     let features = features(&between.parts(found.parts), &found.local);
     let first = if swapped { placed2 } else { placed1 };
-    let witness = joined(&placed(&found.separation, &first.pose, false), &found, features);
+    let witness = joined(&placed(&found.separation, first, false), &found, features);
     Some(if swapped { witness.flipped() } else { witness })
 }
 

@@ -73,6 +73,11 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].map(|kind| Geometry(kind).as_composite())
     }
 
+    /// The first shape is a half-space.
+    pub(super) fn is_half_space_first(&self) -> bool {
+        matches!(self.pair.first, Kind::Plane(_))
+    }
+
     /// The pair of two parts; 0 is the only part of a convex solid.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();

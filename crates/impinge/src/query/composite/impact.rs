@@ -2,6 +2,7 @@
 
 use super::between::{Between, PartPair, by_number};
 use super::bounds::loosened;
+use super::separation::{Wanted, nearest_between};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
@@ -28,6 +29,7 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     match between.composites() {
         [None, None] => search.hold([0, 0]),
         [Some(parts1), None] => search.each_on_way(1, 0, parts1),
+        [None, Some(parts2)] if between.is_half_space_first() => search.of_half_space(parts2),
         [None, Some(parts2)] => search.each_on_way(0, 0, parts2),
         [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
     }
@@ -49,6 +51,17 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
             self.each_on_way(which, part, more);
             self.end()
         });
+    }
+
+    /// A half-space comes nearer to all parts alike, so that the nearest is the first: unless there are some that
+    /// it touches from the start, of which each counts for itself.
+    fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
+        let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest);
+        let Some(nearest) = nearest else { return };
+        self.hold(nearest.parts);
+        if self.first.is_some_and(|first| first.arrival.along <= N::ZERO) {
+            self.each_on_way(0, 0, others);
+        }
     }
 
     /// One part of one shape and those of the other that its box meets.

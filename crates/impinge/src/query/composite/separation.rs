@@ -3,10 +3,13 @@
 use super::between::{Between, by_number};
 use super::bounds::loosened;
 use crate::convex::Separation;
-use crate::math::{Real, Space, max};
+use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;
 use crate::query::separation::separation as of_convex;
-use crate::shape::CompositeShape;
+use crate::shape::{CompositeShape, Kind, Part, PartSolid, Plane};
+
+/// Heights over a half-space are loosened by so many rounding units of all lengths.
+const ROUNDING: f64 = 128.0;
 
 /// The separation of two parts, in the frame of the first shape, and which parts they are.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +54,10 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     match between.composites() {
         [None, None] => search.of_convex(),
         [Some(parts1), None] => search.of_one(1, 0, parts1),
-        [None, Some(parts2)] => search.of_one(0, 0, parts2),
+        [None, Some(parts2)] => match between.pair.first {
+            Kind::Plane(plane) => search.of_half_space(plane, parts2),
+            _ => search.of_one(0, 0, parts2),
+        },
         [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
     }
 }
@@ -78,6 +84,24 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
         others: &dyn CompositeShape<N, D>,
     ) -> Option<PartSeparation<N, D>> {
         self.each_near(which, part, others);
+        self.best
+    }
+
+    /// A half-space against all parts, but for those that their corners tell to be farther than one before.
+    fn of_half_space(
+        mut self,
+        plane: &Plane<N, D>,
+        others: &dyn CompositeShape<N, D>,
+    ) -> Option<PartSeparation<N, D>> {
+        let ground = Ground::new(self.between, plane);
+        let (aabb, bound) = (self.between.aabb_in_other(0, 0), self.bound());
+        others.search().nearest(&aabb, bound, &mut |other, _| {
+            let is_farther = ground.gap(&others.part(other)).is_some_and(|gap| gap > self.reach());
+            if !is_farther {
+                self.hold([0, other]);
+            }
+            self.bound()
+        });
         self.best
     }
 
@@ -112,20 +136,57 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
 
     /// Holds two parts against each other.
     fn hold(&mut self, parts: [u32; 2]) {
-        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
         let placed = self.between.parts(parts);
-        let Some(found) = of_convex(&placed.pair(), reach) else { return };
+        let Some(found) = of_convex(&placed.pair(), self.reach()) else { return };
         let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
         if self.best.is_none_or(|best| found.is_before(&best)) {
             self.best = Some(found);
         }
     }
 
+    /// How near parts must be to matter.
+    fn reach(&self) -> N {
+        self.best.map_or(self.limit, |best| best.separation.distance)
+    }
+
     /// How near boxes must be for their parts to matter; negative if none does any more.
     fn bound(&self) -> N {
-        let reach = self.best.map_or(self.limit, |best| best.separation.distance);
+        let reach = self.reach();
         let is_known = self.best.is_some() && reach <= N::ZERO && self.wanted == Wanted::Touching;
         if is_known { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+    }
+}
+
+/// The plane of a half-space, in the frame of the composite.
+struct Ground<N: Real, const D: usize> {
+    normal: Vector<N, D>,
+    origin: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Ground<N, D> {
+    fn new(between: &Between<'_, N, D>, plane: &Plane<N, D>) -> Self {
+        let Pose { translation: origin, .. } = between.pose21;
+        Self { normal: between.pose21.vector(plane.normal()), origin }
+    }
+
+    /// A part is at least so far from the half-space; `None` of what is not given by its corners.
+    fn gap(&self, part: &Part<'_, N, D>) -> Option<N> {
+        let (mut least, mut size) = (N::INFINITY, N::ZERO);
+        let mut add = |corner: &Point<N, D>| {
+            let arm = part.pose.point(corner).coords - self.origin;
+            least = min(self.normal.dot(&arm), least);
+            size = max(max_component(&arm), size);
+        };
+        match &part.solid {
+            PartSolid::Triangle(triangle) => triangle.corners().iter().for_each(&mut add),
+            PartSolid::Segment(segment) => {
+                [segment.a(), segment.b()].into_iter().for_each(&mut add);
+            }
+            PartSolid::Shape(_) => return None,
+        }
+        // Lengths that are subnormal numbers are not precise.
+        let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
+        is_precise.then(|| least - size * N::lit(ROUNDING) * N::EPSILON)
     }
 }
 

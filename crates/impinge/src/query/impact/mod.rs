@@ -17,7 +17,7 @@ pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::composite::{Between, PartArrival, first_arrival};
 use super::far::Apart;
-use super::pair::{Ordered, Pair, Placed, indistinguishable};
+use super::pair::{Ordered, Pair, Placed, order};
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };
@@ -278,12 +278,9 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         if are_parted(moving1, moving2, options) {
             return None;
         }
-        let mirrored = indistinguishable(&moving1.placed, &moving2.placed);
-        let swapped = if mirrored {
-            is_later(moving1, moving2)
-        } else {
-            Ordered::new(&moving1.placed, &moving2.placed).swapped
-        };
+        let order = order(&moving1.placed, &moving2.placed);
+        let mirrored = order.is_eq();
+        let swapped = if mirrored { is_later(moving1, moving2) } else { order.is_gt() };
         let (first, second) = if swapped { (moving2, moving1) } else { (moving1, moving2) };
         let ordered = Ordered { first: &first.placed, second: &second.placed, swapped };
         let (pair, velocity) = (ordered.pair(), second.velocity - first.velocity);
@@ -344,6 +341,9 @@ fn are_parted<N: Real, const D: usize>(
     let (placed1, placed2) = (&moving1.placed, &moving2.placed);
     let between = placed2.pose.translation - placed1.pose.translation;
     let apart = Apart { shapes: [placed1.shape, placed2.shape], between };
+    if !apart.has_balls() {
+        return false;
+    }
     let velocity = moving2.velocity - moving1.velocity;
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }

@@ -2,12 +2,13 @@
 
 use super::bounds::{Body, Moment, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion};
+use core::cmp::Ordering;
 use core::iter;
 
 use crate::math::{Pose, Space, Unit, Vector, max, max_component};
 use crate::query::Pair;
 use crate::query::composite::{Between, PartSeparation, Wanted, nearest_between};
-use crate::query::pair::{Placed, canonical, indistinguishable};
+use crate::query::pair::{Placed, order};
 use crate::shape::Shape;
 
 /// At most so many steps are made.
@@ -85,9 +86,9 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     let [one, two] = [0, 1].map(|index| Body::new(flight.motions[index], flight.shapes[index]));
     let world = Vector::<N, D>::zeros();
     let [start1, start2] = [&one, &two].map(|body| body.placed(&world, N::ZERO));
-    let swapped = canonical(&start1.pose, start1.shape, &start2.pose, start2.shape).1;
-    let mirrored = indistinguishable(&start1, &start2);
-    let swapped = swapped || (mirrored && two_leads(&one, &two, options));
+    let order = order(&start1, &start2);
+    let mirrored = order.is_eq();
+    let swapped = if mirrored { two_leads(&one, &two, options) } else { order.is_gt() };
     let (bodies, origin) = if swapped {
         ([two, one], start2.pose.translation)
     } else {
@@ -117,10 +118,8 @@ fn two_leads<N: Space<D>, const D: usize>(
     let next = |time: &N| (first != options.max_time).then(|| *time * N::lit(65536.0));
     // 64 times at most, when the numbers end.
     let times = iter::successors(Some(first), next).take_while(|time| time.is_finite_number());
-    let apart = times.map(later).find(|[later1, later2]| !indistinguishable(later1, later2));
-    apart.is_some_and(|[later1, later2]| {
-        canonical(&later1.pose, later1.shape, &later2.pose, later2.shape).1
-    })
+    let mut orders = times.map(later).map(|[later1, later2]| order(&later1, &later2));
+    orders.find(|order| order.is_ne()).is_some_and(Ordering::is_gt)
 }
 
 impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {

@@ -23,6 +23,7 @@ pub(super) fn separation<N: Real, const D: usize>(
 }
 
 /// A point seen from a box.
+#[inline]
 pub(super) fn project<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
     center: &Point<N, D>,

@@ -52,6 +52,7 @@ impl<N: Real> HalfPlane<N> {
 }
 
 /// A point seen from a cylinder.
+#[inline]
 pub(super) fn project<N: Real>(cylinder: &Cylinder<N>, center: &Point<N, 3>) -> Projection<N, 3> {
     let (h, r) = (cylinder.half_height(), cylinder.radius());
     let plane = HalfPlane::of(center);

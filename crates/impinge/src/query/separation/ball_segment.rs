@@ -7,7 +7,7 @@ use super::segments::{core, nearest_on_segment};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::query::Pair;
-use crate::shape::Kind;
+use crate::shape::{Kind, Segment};
 
 /// The separation of a ball from a segment or capsule.
 ///
@@ -27,10 +27,13 @@ pub(super) fn separation<N: Real, const D: usize>(
     seen.of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// The distance in [`separation`], for which no direction is needed.
-pub(super) fn distance<N: Real, const D: usize>(pair: &Pair<'_, N, D>, radius: N) -> N {
-    let (ends, rounding) = core(pair, &pair.second);
-    Foot::new(ends, &center_in_second(&pair.pose12)).distance - rounding - radius
+/// How far a point is from a segment, for which no direction is needed.
+#[inline]
+pub(super) fn distance_from<N: Real, const D: usize>(
+    segment: &Segment<N, D>,
+    center: &Point<N, D>,
+) -> N {
+    Foot::new([*segment.a(), *segment.b()], center).distance
 }
 
 /// A point seen from a segment.

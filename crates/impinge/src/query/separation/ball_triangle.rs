@@ -20,12 +20,6 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     project(triangle.corners(), &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// The distance in [`separation`].
-pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, radius: N) -> N {
-    let Kind::Triangle(triangle) = &pair.second else { wrong_kinds(pair) };
-    distance_from(triangle.corners(), &center_in_second(&pair.pose12)) - radius
-}
-
 /// A point seen from a triangle; the distance is never negative.
 pub(super) fn project<N: Real>(
     corners: &[Point<N, 3>; 3],
@@ -49,7 +43,7 @@ pub(super) fn project<N: Real>(
 }
 
 /// The distance in [`project`].
-fn distance_from<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> N {
+pub(super) fn distance_from<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> N {
     let Some(front) = front(corners) else { return on_longest_side(corners, center).distance };
     let over = height_over(corners, &front, center);
     over.map_or_else(|| on_nearest_side(corners, center).distance, |(distance, _)| distance)

@@ -1,9 +1,13 @@
 //! The distance of two solids, of which an overlap need not be measured.
 
 use super::flat_core::FlatCore;
-use super::{ball_ball, ball_segment, ball_triangle, general, revolved, segment_segment};
+use super::projection::center_in_second;
+use super::{
+    ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
+    ball_triangle, ball_triangle2, general, plane_any, revolved, segment_segment,
+};
 use crate::convex::{self, Simplicial};
-use crate::math::{Real, Space};
+use crate::math::{Point, Real, Space};
 use crate::query::Pair;
 use crate::shape::{Geometry, Kind};
 
@@ -42,7 +46,7 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
 
 /// [`distance_in_space`], in the plane.
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
-    if let Some(known) = known_of_ball(pair) {
+    if let Some(known) = known(pair, beside_ball_in_plane) {
         return (known <= limit).then_some(known);
     }
     distance(pair, limit, way_in_plane(pair))
@@ -50,27 +54,90 @@ pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: 
 
 /// The signed distance where the formula for it is a part of that for the separation.
 fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
-    use Kind::{Ball, Capsule, Segment, Triangle};
+    use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
-        (Ball(ball), Triangle(_)) => Some(ball_triangle::distance(pair, ball.radius())),
         (Segment(_), Segment(_) | Capsule(_)) | (Capsule(_), Capsule(_)) => {
             Some(segment_segment::distance(pair))
         }
-        _ => known_of_ball(pair),
+        _ => known(pair, beside_ball_in_space),
     }
 }
 
-/// [`known_in_space`], of what is the same in any dimension.
-fn known_of_ball<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> Option<N> {
-    let Kind::Ball(ball) = pair.first else { return None };
-    match pair.second {
-        Kind::Ball(other) => {
-            let radii = [ball.radius(), other.radius()];
+/// [`known_in_space`], of what is the same in any dimension; of balls that is told by how a solid is seen from
+/// their middle.
+#[inline(always)]
+fn known<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    beside_ball: fn(N, Kind<'_, N, D>, &Point<N, D>) -> Option<N>,
+) -> Option<N> {
+    match (pair.first, pair.second) {
+        (Kind::Ball(ball1), Kind::Ball(ball2)) => {
+            let radii = [ball1.radius(), ball2.radius()];
             Some(ball_ball::distance(&pair.pose12.translation, radii))
         }
-        Kind::Segment(_) | Kind::Capsule(_) => Some(ball_segment::distance(pair, ball.radius())),
+        (solid, Kind::Plane(plane)) => plane_any::distance(solid, plane, &pair.pose12),
+        (Kind::Ball(ball), other) => {
+            beside_ball(ball.radius(), other, &center_in_second(&pair.pose12))
+        }
         _ => None,
     }
+}
+
+/// The distance of a ball around a point from a solid of space, in the frame of that: the projection of the
+/// point without its direction, taken off in the order of the separation.
+fn beside_ball_in_space<N: Real>(
+    radius: N,
+    kind: Kind<'_, N, 3>,
+    center: &Point<N, 3>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
+        Kind::Polytope(hull) => ball_polytope::project(hull, center).distance,
+        Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, center).distance,
+        Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
+        Kind::Rounded(solid) => {
+            let core = beside_ball_in_space(radius, solid.inner().0, center)?;
+            return Some(core - solid.swelling());
+        }
+        other => return beside_ball(radius, other, center),
+    };
+    Some(apart - radius)
+}
+
+/// [`beside_ball_in_space`], in the plane.
+fn beside_ball_in_plane<N: Real>(
+    radius: N,
+    kind: Kind<'_, N, 2>,
+    center: &Point<N, 2>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
+        Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
+        Kind::Rounded(solid) => {
+            let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
+            return Some(core - solid.swelling());
+        }
+        other => return beside_ball(radius, other, center),
+    };
+    Some(apart - radius)
+}
+
+/// What is the same in any dimension.
+#[inline]
+fn beside_ball<N: Real, const D: usize>(
+    radius: N,
+    kind: Kind<'_, N, D>,
+    center: &Point<N, D>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Segment(segment) => ball_segment::distance_from(segment, center),
+        Kind::Capsule(capsule) => {
+            ball_segment::distance_from(capsule.segment(), center) - capsule.radius()
+        }
+        Kind::Cuboid(cuboid) => ball_cuboid::project(cuboid.half_extents(), center).distance,
+        _ => return None,
+    };
+    Some(apart - radius)
 }
 
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
@@ -165,9 +232,11 @@ mod tests {
     use super::*;
     use crate::math::na::{Quaternion, UnitQuaternion};
     use crate::math::{Point, Pose, Space, Vector};
+    use crate::query::separation::hulls::tests::Random;
     use crate::query::separation::separation;
     use crate::shape::{
-        Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Shape, Triangle,
+        Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Plane,
+        Rounded, Segment, Shape, Triangle,
     };
 
     /// How many of the poses were found to overlap, of how many that do; all of these must do.
@@ -262,6 +331,60 @@ mod tests {
             .collect();
         let (found, overlapping) = found(&solids, &poses, way_in_plane);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in the plane");
+    }
+
+    /// Distances that are a part of the separation are so to the bit, however the solids lie.
+    fn are_parts<N: Space<D>, const D: usize>(
+        (firsts, seconds): (&[Box<dyn Shape<N, D>>], &[Box<dyn Shape<N, D>>]),
+        pose_of: impl Fn(&mut Random) -> Pose<N, D>,
+        known: impl Fn(&Pair<'_, N, D>) -> Option<N>,
+    ) {
+        let random = &mut Random(5);
+        for _ in 0..400 {
+            let pose12 = pose_of(random);
+            for (first, second) in firsts.iter().flat_map(|a| seconds.iter().map(move |b| (a, b))) {
+                let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
+                let expected = separation(&pair, N::INFINITY).expect("finite").distance;
+                let found = known(&pair).expect("a formula");
+                assert_eq!(found, expected, "{first:?} and {second:?} at {pose12:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_from_balls_and_half_spaces_are_those_of_the_separation() {
+        let p = |x: f32, y: f32, z: f32| Point::<f32, 3>::new(x, y, z);
+        let corners = [p(0.0, -1.0, 0.2), p(1.0, 0.0, 0.1), p(0.0, 1.0, -0.3), p(0.2, 0.1, 1.0)];
+        let half = Vector::<f32, 3>::new(1.0, 0.5, 0.75);
+        let solids = || -> Vec<Box<dyn Shape<f32, 3>>> {
+            vec![
+                Box::new(Segment::new(corners[0], corners[1])),
+                Box::new(Capsule::new(0.5, 0.25)),
+                Box::new(Triangle::new(corners[0], corners[1], corners[3])),
+                Box::new(Cuboid::new(half)),
+                Box::new(ConvexHull::from_points(&corners)),
+                Box::new(Cylinder::new(0.5, 0.75)),
+                Box::new(Cone::new(0.75, 0.5)),
+                Box::new(Rounded::new(Rounded::new(Cuboid::new(half), 0.125), 0.3)),
+                Box::new(Rounded::new(Capsule::new(0.5, 0.3), 0.1)),
+                Box::new(Plane::new(Vector::<f32, 3>::y_axis())),
+            ]
+        };
+        let ball: [Box<dyn Shape<f32, 3>>; 1] = [Box::new(Ball::new(0.3))];
+        let pose_of = |random: &mut Random| random.turn::<f32>();
+        are_parts((&ball, &solids()), pose_of, known_in_space);
+        let plane: [Box<dyn Shape<f32, 3>>; 1] =
+            [Box::new(Plane::new(-Vector::<f32, 3>::x_axis()))];
+        are_parts((&solids()[..9], &plane), pose_of, known_in_space);
+        let flat: [Box<dyn Shape<f32, 2>>; 4] = [
+            Box::new(Triangle::new(corners[0].xy(), corners[1].xy(), corners[3].xy())),
+            Box::new(ConvexPolygon::from_points(&corners.map(|corner| corner.xy()))),
+            Box::new(Rounded::new(Cuboid::new(half.xy()), 0.1)),
+            Box::new(Plane::new(Vector::<f32, 2>::y_axis())),
+        ];
+        let ball: [Box<dyn Shape<f32, 2>>; 1] = [Box::new(Ball::new(0.3))];
+        let pose_of = |random: &mut Random| Pose::from_translation(random.vector::<f32>().xy());
+        are_parts((&ball, &flat), pose_of, |pair| known(pair, beside_ball_in_plane));
     }
 
     #[test]

@@ -3,9 +3,9 @@
 use super::projection::first_axis;
 use super::wrong_kinds;
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, unit_or};
+use crate::math::{Point, Pose, Real, Vector, unit_or};
 use crate::query::Pair;
-use crate::shape::{Geometry, Kind};
+use crate::shape::{Geometry, Kind, Plane, SupportMap};
 
 /// The separation of any convex solid from a half-space: of its point deepest in it.
 ///
@@ -19,13 +19,41 @@ pub(super) fn separation<N: Real, const D: usize>(
     else {
         wrong_kinds(pair)
     };
-    let normal = -pair.pose12.vector(plane.normal());
-    let core = solid.core_support(&normal);
-    let beyond = normal.dot(&(core.coords - pair.pose12.translation));
-    let distance = -beyond - solid.rounding();
+    let Deepest { normal, core, distance } = Deepest::of(solid, plane, &pair.pose12);
     let point1 = core + normal * solid.rounding();
     let point2 = point1 + normal * distance;
     (distance <= limit).then_some(Separation { distance, normal, point1, point2 })
+}
+
+/// The distance of a convex solid from a half-space, which has the given pose in the frame of the solid, as
+/// [`separation`] and what is rounded have it; `None` of two half-spaces.
+#[inline]
+pub(super) fn distance<N: Real, const D: usize>(
+    kind: Kind<'_, N, D>,
+    plane: &Plane<N, D>,
+    pose12: &Pose<N, D>,
+) -> Option<N> {
+    if let Kind::Rounded(solid) = kind {
+        return distance(solid.inner().0, plane, pose12).map(|core| core - solid.swelling());
+    }
+    Some(Deepest::of(Geometry(kind).as_support_map()?, plane, pose12).distance)
+}
+
+/// The point of a core that is deepest in a half-space, and how far the solid is from that.
+struct Deepest<N: Real, const D: usize> {
+    normal: Vector<N, D>,
+    core: Point<N, D>,
+    distance: N,
+}
+
+impl<N: Real, const D: usize> Deepest<N, D> {
+    #[inline]
+    fn of(solid: &dyn SupportMap<N, D>, plane: &Plane<N, D>, pose12: &Pose<N, D>) -> Self {
+        let normal = -pose12.vector(plane.normal());
+        let core = solid.core_support(&normal);
+        let beyond = normal.dot(&(core.coords - pose12.translation));
+        Self { normal, core, distance: -beyond - solid.rounding() }
+    }
 }
 
 /// The separation of two half-spaces.
@@ -63,8 +91,8 @@ pub(super) fn plane_plane<N: Real, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Pose, Unit};
-    use crate::shape::{Capsule, Plane, Shape};
+    use crate::math::Unit;
+    use crate::shape::{Capsule, Shape};
 
     fn up() -> Plane<f64, 3> {
         Plane::new(Unit::new_unchecked(Vector::<f64, 3>::y()))

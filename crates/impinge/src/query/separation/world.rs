@@ -27,7 +27,7 @@ pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<Separation<N, D>> {
     let found = in_first(ordered, limit, Wanted::Deepest)?;
-    Some(placed(&found, &ordered.first.pose, ordered.swapped))
+    Some(placed(&found, ordered.first, ordered.swapped))
 }
 
 /// [`in_world`], but of composites that overlap the separation of any two parts that do.
@@ -38,7 +38,7 @@ pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let ordered = Ordered::new(placed1, placed2);
     let found = in_first(&ordered, limit, Wanted::Touching)?;
-    Some(placed(&found, &ordered.first.pose, ordered.swapped))
+    Some(placed(&found, ordered.first, ordered.swapped))
 }
 
 /// The distance in [`touching_in_world`], a number that is the same in every frame; of two convex solids
@@ -90,16 +90,22 @@ fn of_composites<N: Space<D>, const D: usize>(
 #[inline]
 pub(crate) fn placed<N: Real, const D: usize>(
     found: &Separation<N, D>,
-    first: &Pose<N, D>,
+    first: &Placed<'_, N, D>,
     swapped: bool,
 ) -> Separation<N, D> {
-    let (normal, point1, point2) =
-        (first.vector(&found.normal), first.point(&found.point1), first.point(&found.point2));
-    let distance = found.distance;
-    if swapped {
-        Separation { distance, normal: -normal, point1: point2, point2: point1 }
+    let found = if first.shape.turns() {
+        let Placed { pose, .. } = first;
+        let (normal, point1) = (pose.vector(&found.normal), pose.point(&found.point1));
+        Separation { normal, point1, point2: pose.point(&found.point2), ..*found }
     } else {
-        Separation { distance, normal, point1, point2 }
+        let at = &first.pose.translation;
+        Separation { point1: found.point1 + at, point2: found.point2 + at, ..*found }
+    };
+    if swapped {
+        let Separation { normal, point1, point2, .. } = found;
+        Separation { normal: -normal, point1: point2, point2: point1, ..found }
+    } else {
+        found
     }
 }
 
@@ -144,7 +150,9 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     ) -> Option<[Self; 2]> {
         let shapes = [shape1.geometry(), shape2.geometry()];
         let between = isometry2.translation.vector - isometry1.translation.vector;
-        if (N::tables().are_beyond)(&Apart { shapes, between }, limit) {
+        let apart = Apart { shapes, between };
+        let known = apart.is_known_beyond(limit);
+        if known.unwrap_or_else(|| (N::tables().are_beyond)(&apart, limit)) {
             return None;
         }
         Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])

@@ -1,12 +1,16 @@
 //! Contacts of chains against the general way, which defines them: the same bits, step after step.
 
-use super::CompositeContacts;
 use super::chain::update_chain;
+use super::{
+    CompositeContacts, PART_POINTS, contact_in_world, deepest, deepest_in_general, deepest_within,
+};
+use crate::convex::Separation;
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector};
 use crate::query::ManifoldRequest;
 use crate::query::composite::Between;
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::hulls::tests::Random;
+use crate::query::separation::{of_ordered, placed};
 use crate::shape::{
     Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, Triangle,
 };
@@ -98,6 +102,27 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
+/// The contact within a limit is the same whether the nearest part was looked for before or not, and whichever
+/// way it is found.
+pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
+    [placed1, placed2]: [&Placed<'_, N, D>; 2],
+    limit: N,
+    what: impl Fn() -> String,
+) {
+    let ordered = Ordered::new(placed1, placed2);
+    let between = Between::of_ordered(&ordered);
+    let nearest = of_ordered(&ordered, limit);
+    let expected = nearest.and_then(|nearest| deepest(&between, nearest.distance, limit));
+    let at_once = deepest_within(&between, limit);
+    let found = at_once.map(|found| placed(&found, ordered.first, ordered.swapped));
+    assert_eq!(contact_in_world(placed1, placed2, limit).is_some(), found.is_some(), "{}", what());
+    let request = ManifoldRequest::new(limit, N::ZERO, PART_POINTS);
+    let general = deepest_in_general(&between, &request);
+    let distance = |found: Option<Separation<N, D>>| found.map(|found| found.distance);
+    assert_eq!(distance(at_once), distance(general), "{}", what());
+    assert_eq!(distance(at_once), distance(expected), "{}", what());
+}
+
 /// What two ways say of one solid that moves; how many updates the quick one did, and what it found.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, ground) = (solid_of::<N>(random), ground_of::<N>(random, round));
@@ -124,6 +149,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
         slow.update_in_general(&between, false, &request);
         let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
         assert_same(&quick, &slow, what);
+        assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
         place += random.vector::<N>().xy() * N::lit(0.04);
         angle += random.vector::<N>().x * N::lit(0.02);

@@ -48,8 +48,8 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, Piece, merge};
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::{of_ordered, placed};
-use crate::query::{ManifoldRequest, Pair, PairIds};
-use crate::shape::{Geometry, Kind, SupportMap};
+use crate::query::{ManifoldRequest, Pair, PairIds, RawPoint};
+use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 
 /// So many points of two parts are kept before they are merged with those of others: all that two
 /// facets of usual solids have.
@@ -58,6 +58,9 @@ const PART_POINTS: usize = 16;
 /// Parts that are farther than the nearest by no more than this part of its distance are looked at
 /// too.
 const NEARLY: f64 = 1.0 / 64.0;
+
+/// Lengths up to this part of a solid's size are small beside it.
+const SMALL: f64 = 1.0 / 4.0;
 
 /// The contacts of two shapes of which one at least is a composite, kept from update to update; in
 /// the frame of the first.
@@ -99,6 +102,15 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
                 each(normal, &mut point.raw.distance, &point.raw.point1);
             });
         }
+    }
+
+    /// The deepest contact, the first of equals.
+    fn deepest(&self) -> Option<Separation<N, D>> {
+        let patches = self.patches.iter();
+        let points =
+            patches.flat_map(|patch| patch.points.iter().map(|point| (patch.normal, point.raw)));
+        let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+        deepest.map(|(normal, point)| separation_at(&normal, &point))
     }
 
     /// The two shapes change places.
@@ -311,13 +323,36 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<Separation<N, D>> {
     let ordered = Ordered::new(placed1, placed2);
-    let nearest = of_ordered(&ordered, limit)?;
     if !ordered.has_composite() {
-        return Some(nearest);
+        return of_ordered(&ordered, limit);
     }
     let between = Between::of_ordered(&ordered);
-    let found = deepest(&between, nearest.distance, limit)?;
-    Some(placed(&found, &ordered.first.pose, ordered.swapped))
+    let in_world = |found| placed(&found, ordered.first, ordered.swapped);
+    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
+    {
+        return deepest_within(&between, limit).map(in_world);
+    }
+    let nearest = of_ordered(&ordered, limit)?;
+    // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
+    let is_half_space = matches!(ordered.first.shape.0, Kind::Plane(_));
+    if is_half_space && nearest.distance.is_finite_number() {
+        return Some(nearest);
+    }
+    deepest(&between, nearest.distance, limit).map(in_world)
+}
+
+/// A length is small beside a convex first shape: to look for the nearest part before those within it is
+/// dearer than to look at all of these.
+fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, limit: N) -> bool {
+    let map = Geometry(between.pair.first).as_support_map();
+    limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
+}
+
+/// Contacts are mostly found without the general way: of balls and surfaces, and of chains.
+fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
+    let [None, Some(parts)] = between.composites() else { return false };
+    let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));
+    matches!(between.pair.first, Kind::Ball(_)) || is_chain()
 }
 
 /// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
@@ -345,13 +380,28 @@ fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
 }
 
+/// The deepest contact of what is within reach, by the way that it has of its own if there is one.
 fn deepest_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
 ) -> Option<Separation<N, D>> {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
+    if has_own_way(between) {
+        let mut contacts = CompositeContacts::default();
+        if (N::tables().update_quickly)(&mut contacts, between, &request) {
+            return contacts.deepest();
+        }
+    }
+    deepest_in_general(between, &request)
+}
+
+/// [`deepest_within`], of any two shapes.
+fn deepest_in_general<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    request: &ManifoldRequest<N>,
+) -> Option<Separation<N, D>> {
     let reference = middle_of_first(between);
-    let query = Query { between, around: None, reference: &reference, request: &request };
+    let query = Query { between, around: None, reference: &reference, request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
     let mut notes = Notes::default();
     let findings = query.findings(&nearby, &mut notes);
@@ -360,10 +410,16 @@ fn deepest_within<N: Space<D>, const D: usize>(
         notes.points[piece.points.clone()].iter().map(|point| (piece.normal, *point))
     });
     let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
-    deepest.map(|(normal, point)| {
-        let (distance, point1) = (point.distance, point.point1);
-        Separation { distance, normal, point1, point2: point1 + normal * distance }
-    })
+    deepest.map(|(normal, point)| separation_at(&normal, &point))
+}
+
+/// What a contact point says of two shapes.
+fn separation_at<N: Real, const D: usize>(
+    normal: &Vector<N, D>,
+    point: &RawPoint<N, D>,
+) -> Separation<N, D> {
+    let (distance, point1) = (point.distance, point.point1);
+    Separation { distance, normal: *normal, point1, point2: point1 + normal * distance }
 }
 
 /// How far those parts of one composite are apart that do not hang together; negative where they

@@ -2,7 +2,7 @@
 //! after step.
 
 use super::CompositeContacts;
-use super::chain_tests::assert_same;
+use super::chain_tests::{assert_one_contact, assert_same};
 use super::surface_ball::update_on_surface;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::ManifoldRequest;
@@ -148,6 +148,7 @@ fn follow<N: Space<3>>(
         slow.update_in_general(&between, false, &request);
         let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
         assert_same(&quick, &slow, what);
+        assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
         place += random.vector::<N>() * N::lit(0.04);
         if random.pick(8) == 0 {
