@@ -9,10 +9,29 @@ use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangl
 
 /// More parts than this are not kept.
 const MOST_KEPT: usize = 64;
-/// The room that is searched around a box to find parts for later, as a share of its half extents.
-const ROOM: f64 = 0.25;
-/// The same where so much room holds no more parts than are looked at side by side.
-const LARGE_ROOM: f64 = 0.5;
+
+/// The room that is searched around a box to find parts for later.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Room {
+    /// Where it holds no more parts than are looked at side by side.
+    #[default]
+    Large,
+    /// There were too many in a large room.
+    Small,
+    /// There is no later.
+    None,
+}
+
+impl Room {
+    /// As a share of the half extents of the box.
+    fn share(self) -> f64 {
+        match self {
+            Self::Large => 0.5,
+            Self::Small => 0.25,
+            Self::None => 0.0,
+        }
+    }
+}
 
 /// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
 /// stays in that.
@@ -31,8 +50,14 @@ pub(super) struct Around<N: Real, const D: usize> {
     half: Option<Vector<N, D>>,
     /// There are too many to keep.
     is_crowded: bool,
-    /// There were too many in a large room.
-    is_dense: bool,
+    room: Room,
+}
+
+impl<N: Real, const D: usize> Around<N, D> {
+    /// For one update alone.
+    pub(super) fn for_once() -> Self {
+        Self { room: Room::None, ..Self::default() }
+    }
 }
 
 impl<N: Real, const D: usize> Around<N, D> {
@@ -77,14 +102,13 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
 
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let mut roomy = aabb.loosened(half * N::lit(LARGE_ROOM));
-        if !self.is_dense {
-            self.search(composite, &roomy);
-            self.is_dense = self.parts.len() > most;
-        }
-        if self.is_dense {
-            roomy = aabb.loosened(half * N::lit(ROOM));
-            self.search(composite, &roomy);
+        let with_room = |room: Room| aabb.loosened(half * N::lit(room.share()));
+        let mut within = with_room(self.room);
+        self.search(composite, &within);
+        if self.room == Room::Large && self.parts.len() > most {
+            self.room = Room::Small;
+            within = with_room(self.room);
+            self.search(composite, &within);
         }
         self.tiles.clear();
         self.is_crowded = self.parts.len() > MOST_KEPT;
@@ -92,7 +116,7 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
             self.parts = SmallVec::new();
         }
         self.parts.sort_unstable();
-        self.within = Some(roomy);
+        self.within = Some(within);
         self.fill_tiles(composite);
     }
 

@@ -387,7 +387,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
     if has_own_way(between) {
-        let mut contacts = CompositeContacts::default();
+        let mut contacts = CompositeContacts { around: Around::for_once(), ..Default::default() };
         if (N::tables().update_quickly)(&mut contacts, between, &request) {
             return contacts.deepest();
         }
