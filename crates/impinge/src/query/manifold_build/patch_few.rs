@@ -164,3 +164,64 @@ impl<N: Real> Row<N> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Point;
+    use crate::math::noise::Noise;
+    use crate::query::ManifoldRequest;
+    use crate::query::manifold_build::patch::Kept;
+    use crate::query::manifold_build::patch_outline::Members;
+    use crate::shape::FeatureId;
+
+    /// Some points at one place or on a line, some beyond reach, some with numbers.
+    #[test]
+    fn few_points_are_outlined_as_many() {
+        let (mut noise, mut built) = (Noise(7), [0; MOST + 1]);
+        for round in 0..20_000_usize {
+            let count = 1 + round % (MOST + 1);
+            let points: Vec<_> = (0..count).map(|at| point(&mut noise, at, round)).collect();
+            let normal = noise.vector::<f64>(1.0).normalize();
+            let pieces = [Piece { normal, parts: [0, 3], points: 0..count }];
+            let sine = [0.0, 0.02][round / 9 % 2];
+            let request = ManifoldRequest { prediction: 0.1, sine, max_points: 1 + round / 18 % 8 };
+            let merging =
+                Merging { request: &request, tolerance: 1e-12, pieces: &pieces, points: &points };
+            let numbers = (0..count).map(|at| (noise.next() > 0.3).then_some(9 - at as u32));
+            let kept: Kept = numbers.collect();
+            let choosing = Choosing { merging: &merging, kept: &kept };
+            let deepest = merging.deepest_of(&pieces[0]).expect("there are points");
+            let (mut quick, mut general) = (SmallVec::new(), SmallVec::new());
+            let (mut ids, mut others) = (PairIds::default(), PairIds::default());
+            if !choosing.fill_alone((&pieces[0], deepest), (&mut quick, &mut ids)) {
+                assert!(quick.is_empty(), "in round {round} nothing is done");
+                continue;
+            }
+            let (members, all) = (&mut Members::new(), core::iter::once(0));
+            choosing.fill_from_all((0, deepest), all, members, (&mut general, &mut others));
+            assert_eq!(format!("{quick:?}"), format!("{general:?}"), "in round {round}");
+            assert_eq!(ids, others, "in round {round}");
+            built[quick.len()] += 1;
+        }
+        assert!(built[1..6].iter().all(|&count| count > 100), "points: {built:?}");
+    }
+
+    fn point(noise: &mut Noise, at: usize, round: usize) -> RawPoint<f64, 3> {
+        let place = noise.vector::<f64>(1.0);
+        let place = match round / 100 % 8 {
+            0 => place.map(|x| x.signum()),
+            1 => Vector::<f64, 3>::new(place.x, 0.0, 0.0),
+            _ => place,
+        };
+        let name = u32::try_from(at).expect("few points");
+        RawPoint {
+            point1: Point::from(place),
+            distance: 0.1 * noise.next() - if round % 3 == 0 { 0.0 } else { 0.05 },
+            feature1: FeatureId::Vertex(name),
+            feature2: FeatureId::Face(0),
+            id: 0,
+            code: 0,
+        }
+    }
+}
