@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn rings_are_the_faces_that_solids_show() {
-        let (mut faces, mut feature) = (0, Feature::default());
+        let (mut faces, mut parts, mut feature) = (0, [0; 3], Feature::default());
         let solids = [[1.0, 2.0, 3.0], [1.0, 0.0, 3.0], [0.0, 0.0, 1.0]];
         let corner = |at: usize| {
             let sign = |axis: usize| if at >> axis & 1 == 0 { -1.0 } else { 1.0 };
@@ -141,7 +141,16 @@ mod tests {
             let triangle = Triangle::new(a, b, c);
             triangle.core_feature(&way, &mut feature);
             faces += usize::from(same(triangle.face_ring(&way), &feature, "a triangle"));
+            if let Some(part) = triangle.part_shown(&way) {
+                assert_eq!(part, feature.id, "a triangle shows {feature:?} to {way}");
+                parts[match part {
+                    FeatureId::Vertex(_) => 0,
+                    FeatureId::Edge(_) => 1,
+                    FeatureId::Face(_) => 2,
+                }] += 1;
+            }
         }
         assert!(faces > 500, "{faces} faces");
+        assert!(parts.iter().all(|&count| count > 50), "parts of triangles: {parts:?}");
     }
 }

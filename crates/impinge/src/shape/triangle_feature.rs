@@ -1,9 +1,9 @@
 //! The features of triangles, in any dimension: what faces a direction, and which way it runs.
 
 use super::segment::length_of;
-use super::tilt::Tilt;
+use super::tilt::{FACING_SINE_SQUARED, Tilt};
 use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, Triangle};
-use crate::math::{Matrix, Point, Real, Vector, cross, unit, unit_or};
+use crate::math::{Matrix, Point, Real, Vector, cross, max, unit, unit_or};
 
 /// The plane (in two dimensions: the space) that a triangle spans.
 struct Span<N: Real, const D: usize> {
@@ -266,7 +266,51 @@ fn side_between(from: usize, to: usize) -> usize {
     if (from + 1) % 3 == to { from } else { to }
 }
 
+/// A triangle of less height than the root of this part of its longest side is thin.
+const THIN_SQUARED: f64 = 1.0 / 1024.0;
+/// By this part of a number another one is clearly larger.
+const CLEAR: f64 = 1.0 / 1024.0;
+
 impl<N: Real> Triangle<N, 3> {
+    /// The name of what [`SupportMap::core_feature`] answers to a unit vector, by products alone; `None` of
+    /// triangles that are thin, and where rounding decides.
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
+        let [a, b, c] = self.corners();
+        let ways = [b - a, c - b, a - c];
+        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
+        let longest = max(max(squared[0], squared[1]), squared[2]);
+        let across = cross(&ways[0], &ways[1]);
+        let (area, rise) = (across.norm_squared(), across.dot(direction));
+        // Written so that what is no number is thin.
+        let is_wide = area > N::lit(THIN_SQUARED) * longest * longest && area < N::INFINITY;
+        if !is_wide {
+            return None;
+        }
+        let limit = N::lit(FACING_SINE_SQUARED);
+        let is_less = |small: N, large: N| small < large * (N::ONE - N::lit(CLEAR));
+        let upright = (N::ONE - limit) * area;
+        if is_less(upright, rise * rise) {
+            return Some(FeatureId::Face(u32::from(rise < N::ZERO)));
+        }
+        if !is_less(rise * rise, upright) {
+            return None;
+        }
+        let climbs = ways.map(|way| way.dot(direction));
+        // The highest corner, by which of the sides climb.
+        let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
+        let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
+        let top = higher(higher(0, 1), 2);
+        let slope = |side: usize| climbs[side] * climbs[side] / squared[side];
+        let (out, back) = (slope(top), slope((top + 2) % 3));
+        let (side, least, other) =
+            if back < out { ((top + 2) % 3, back, out) } else { (top, out, back) };
+        if is_less(limit, least) {
+            return Some(vertex_id(top));
+        }
+        let is_side = is_less(least, limit) && is_less(least, other);
+        is_side.then(|| side_id::<3>(side))
+    }
+
     /// What [`SupportMap::core_feature`] answers, if it is the face.
     pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
         let span = Span::of(self.corners())?;

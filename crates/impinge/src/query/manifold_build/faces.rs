@@ -63,7 +63,7 @@ pub(super) fn build<N: Real>(
 }
 
 /// Makes a blank ring the face that a solid shows to a direction, if that has few corners and an area.
-/// Either way gives the name of what it shows, where that is known of a box or a hull.
+/// Either way gives the name of what it shows, where that is known.
 pub(super) fn shown<N: Real>(
     kind: &Kind<'_, N, 3>,
     (direction, likely): (&Vector<N, 3>, Option<u32>),
@@ -73,6 +73,11 @@ pub(super) fn shown<N: Real>(
         Kind::Cuboid(_) => Cuboid::part_shown(direction),
         Kind::Polytope(hull) => hull.part_shown(direction, likely),
         Kind::Triangle(triangle) => {
+            if let Some(part @ (FeatureId::Vertex(_) | FeatureId::Edge(_))) =
+                triangle.part_shown(direction)
+            {
+                return Err(Some(part));
+            }
             *ring = triangle.face_ring(direction).ok_or(None)?;
             return Ok(None);
         }

@@ -29,6 +29,7 @@ mod names;
 mod outlines;
 mod overlap;
 mod patch;
+mod patch_few;
 mod patch_line;
 mod patch_outline;
 mod reduce;

@@ -146,30 +146,39 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         let mut kept = Kept::from_elem(None, self.points.len());
         let mut at = 0;
         for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
-            // The points of one pair of parts come together, as a rule.
-            if self.pieces.get(at).is_none_or(|piece| piece.parts != *parts) {
-                let Ok(found) = self.pieces.binary_search_by(|piece| piece.parts.cmp(parts)) else {
-                    continue;
-                };
-                at = found;
-            }
+            let Some(found) = self.piece_of(*parts, at) else { continue };
+            at = found;
+            let range = self.pieces[at].points.clone();
             let (mut heir, mut nearest) = (None, N::INFINITY);
-            for index in self.pieces[at].points.clone() {
-                let new = &self.points[index];
-                let is_heir = (new.feature1, new.feature2) == (raw.feature1, raw.feature2);
-                if !is_heir || kept[index].is_some() {
+            for (new, id) in self.points[range.clone()].iter().zip(&mut kept[range]) {
+                let is_heir = new.feature1 == raw.feature1 && new.feature2 == raw.feature2;
+                if !is_heir || id.is_some() {
                     continue;
                 }
                 let away = (new.point1 - raw.point1).norm_squared();
                 if heir.is_none() || away < nearest {
-                    (heir, nearest) = (Some(index), away);
+                    (heir, nearest) = (Some(id), away);
                 }
             }
             if let Some(heir) = heir {
-                kept[heir] = Some(raw.id);
+                *heir = Some(raw.id);
             }
         }
         kept
+    }
+
+    /// The piece of two parts, most often that at a place or the next: the points of one pair of parts come
+    /// together, and patches in the order of their parts.
+    #[inline]
+    fn piece_of(&self, parts: [u32; 2], place: usize) -> Option<usize> {
+        let is_at = |at: usize| self.pieces.get(at).is_some_and(|piece| piece.parts == parts);
+        if is_at(place) {
+            return Some(place);
+        }
+        if is_at(place + 1) {
+            return Some(place + 1);
+        }
+        self.pieces.binary_search_by(|piece| piece.parts.cmp(&parts)).ok()
     }
 
     /// The index of the deepest point of a piece, by the order of [`by_depth`].

@@ -52,6 +52,12 @@ fn flat_part<N: Real>(solid: &Kind<'_, N, 3>, part: FeatureId) -> Option<RoundPa
     Some(match (part, solid) {
         (FeatureId::Vertex(_), Kind::Cuboid(cuboid)) => RoundPart::Point(part, cuboid.vertex(part)),
         (FeatureId::Vertex(_), Kind::Polytope(hull)) => RoundPart::Point(part, hull.vertex(part)),
+        (FeatureId::Vertex(_), Kind::Triangle(triangle)) => {
+            RoundPart::Point(part, triangle.vertex(part))
+        }
+        (FeatureId::Edge(_), Kind::Triangle(triangle)) => {
+            RoundPart::Line(part, triangle.edge(part))
+        }
         (FeatureId::Edge(_), Kind::Cuboid(cuboid)) => RoundPart::Line(part, cuboid.edge(part)),
         (FeatureId::Edge(_), Kind::Polytope(hull)) => RoundPart::Line(part, hull.edge(part)),
         _ => return None,

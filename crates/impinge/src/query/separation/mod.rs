@@ -54,6 +54,7 @@ mod triangle_cuboid;
 mod triangle_polytope;
 #[cfg(test)]
 mod triangle_tests;
+mod triangle_triangle;
 mod triangles;
 mod world;
 

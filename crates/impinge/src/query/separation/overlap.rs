@@ -202,7 +202,6 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
         ) => Way::Formula,
         (Cuboid(_), Cuboid(_)) => Way::Formula,
-        (Triangle(_), Triangle(_)) => Way::Search,
         (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,
         (Cylinder(..), Cylinder(..)) => Way::Features,
         (

@@ -9,7 +9,7 @@ use super::rod::{Parting, Rod, Verdict, noise, settled};
 use super::segments::nearest_of_segments;
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, cross, max};
+use crate::math::{Point, Real, Vector, cross, max, min};
 use crate::query::Pair;
 use crate::shape::{Kind, SupportMap, Triangle};
 
@@ -35,6 +35,8 @@ struct Sheet<'a, N: Real> {
     normal: Vector<N, 3>,
     /// How high the ends of the segment are over the plane.
     heights: [N; 2],
+    /// How far they are inside of each side as seen along the normal, times its length.
+    insides: [[N; 2]; 3],
 }
 
 impl<'a, N: Real> Sheet<'a, N> {
@@ -54,7 +56,22 @@ impl<'a, N: Real> Sheet<'a, N> {
         let normal = across / area;
         let corners = [a, b, c].map(|corner| corner.coords * rod.shrink);
         let heights = rod.ends.map(|end| normal.dot(&(end - corners[0])));
-        Some(Self { rod, corners, sides, normal, heights })
+        let mut insides = [[N::ZERO; 2]; 3];
+        for at in 0..3 {
+            let inward = cross(&normal, &sides[at]);
+            insides[at] = rod.ends.map(|end| inward.dot(&(end - corners[at])));
+        }
+        Some(Self { rod, corners, sides, normal, heights, insides })
+    }
+
+    /// Both ends are farther beyond one side than that.
+    fn is_beside(&self, most: N) -> bool {
+        // The normal of a triangle that is almost thin is off by some noise.
+        let room = most + N::lit(128.0) * noise();
+        (0..3).any(|at| {
+            let outside = -max(self.insides[at][0], self.insides[at][1]);
+            outside > N::ZERO && outside * outside > room * room * self.sides[at].norm_squared()
+        })
     }
 
     fn verdict(&self, most: N) -> Verdict<N> {
@@ -63,7 +80,7 @@ impl<'a, N: Real> Sheet<'a, N> {
         let sign = if is_below { -N::ONE } else { N::ONE };
         let low = usize::from(b * sign < a * sign);
         let height = self.heights[low] * sign;
-        if height > most {
+        if height > most || self.is_beside(max(most, N::ZERO)) {
             return Verdict::Beyond;
         }
         let found = if height > N::ZERO {
@@ -83,12 +100,11 @@ impl<'a, N: Real> Sheet<'a, N> {
         max(max(along.dot(a), along.dot(b)), along.dot(c))
     }
 
-    /// A place is seen inside of all sides along the normal, but for rounding.
-    fn is_over(&self, place: &Vector<N, 3>) -> bool {
-        (0..3).all(|at| {
-            let inward = cross(&self.normal, &self.sides[at]);
-            inward.dot(&(place - self.corners[at])) >= -noise::<N>() * noise()
-        })
+    /// The place at a share of the way along the segment is seen inside of all sides, but for rounding.
+    fn is_over(&self, share: N) -> bool {
+        self.insides
+            .iter()
+            .all(|&[from, to]| from * (N::ONE - share) + to * share >= -noise::<N>() * noise())
     }
 
     /// The segment crosses the plane within the triangle.
@@ -96,7 +112,7 @@ impl<'a, N: Real> Sheet<'a, N> {
         let [a, b] = self.heights;
         let share = a / (a - b);
         // One that lies in the plane is not said to cross it.
-        share >= N::ZERO && share <= N::ONE && self.is_over(&self.rod.at(share))
+        share >= N::ZERO && share <= N::ONE && self.is_over(share)
     }
 
     /// The answer along the normal, at an end that is over the triangle or below it.
@@ -104,12 +120,8 @@ impl<'a, N: Real> Sheet<'a, N> {
         let (on_rod, height) = (self.rod.ends[end], self.heights[end]);
         let on_solid = on_rod - self.normal * height;
         let outward = self.normal * sign;
-        self.is_over(&on_rod).then_some(Parting {
-            outward,
-            on_rod,
-            on_solid,
-            distance: height * sign,
-        })
+        let is_over = self.insides.iter().all(|ends| ends[end] >= -noise::<N>() * noise());
+        is_over.then_some(Parting { outward, on_rod, on_solid, distance: height * sign })
     }
 
     /// The shortest way out of a triangle that is pierced; the end that is nearest to the plane is given.
@@ -142,10 +154,16 @@ impl<'a, N: Real> Sheet<'a, N> {
 
     /// The nearest points of the two, which are apart, if they lie on a side. A `level` segment lies along the
     /// plane, on the side of this sign; of one that does not it is zero.
+    ///
+    /// The way from the nearest point of a side leads out of the triangle: a side that all of the segment is
+    /// inside of has none, but at a corner, which is that of another side too.
     fn nearest(&self, level: N) -> Option<Parting<N>> {
         let (mut best, mut least) = (0, N::INFINITY);
         let mut points = [Vector::<N, 3>::zeros(); 2];
-        for side in 0..3 {
+        let clear = N::lit(4.0) * noise();
+        for side in (0..3)
+            .filter(|&side: &usize| min(self.insides[side][0], self.insides[side][1]) <= clear)
+        {
             let candidate = self.points_beside(side);
             let squared = (candidate[0] - candidate[1]).norm_squared();
             if squared < least {

@@ -4,7 +4,7 @@ use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cylinder_cylinder,
     flipped, general, hulls, look_up, plane_any, revolved, rounded, segment_cuboid,
-    segment_segment, segment_triangle, triangle_cuboid, triangle_polytope,
+    segment_segment, segment_triangle, triangle_cuboid, triangle_polytope, triangle_triangle,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -28,13 +28,13 @@ impl<N: Real> Space<N> {
         let sh: Algorithm<N, 3> = hulls::segment::separation;
         let sc: Algorithm<N, 3> = segment_cuboid::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
+        let tt: Algorithm<N, 3> = triangle_triangle::separation;
         let tc: Algorithm<N, 3> = triangle_cuboid::separation;
         let th: Algorithm<N, 3> = triangle_polytope::separation;
         let be: Algorithm<N, 3> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 3> = ball_tapered::separation;
         let rr: Algorithm<N, 3> = rounded::separation;
         let gg: Algorithm<N, 3> = general::separation;
-        let ff: Algorithm<N, 3> = general::of_flat_cores;
         let hh: Algorithm<N, 3> = hulls::separation;
         let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
         let re: Algorithm<N, 3> = revolved::separation;
@@ -48,7 +48,7 @@ impl<N: Real> Space<N> {
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
             [__, ss, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, ff, tc, th, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, tt, tc, th, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],

@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 
 use super::segments::nearest_of_segments;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, cross, max, max_component, min};
+use crate::math::{Matrix, Point, Pose, Real, Vector, cross, max, max_component, min};
 use crate::query::Pair;
 use crate::shape::{
     ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Kind, Polytope, Triangle,
@@ -113,20 +113,7 @@ impl<'a, N: Real> Fin<'a, N> {
     /// the way between the origins.
     #[inline]
     pub(super) fn edging(&self) -> Edging<N> {
-        let [a, b, c] = self.triangle.corners();
-        let ways = [(b - a) * self.shrink, (c - b) * self.shrink, (a - c) * self.shrink];
-        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
-        let turn = &self.pose12.rotation;
-        let front = front_of(&ways, &squared).map(|front| turn.tr_mul(&front));
-        let mut sides = ways;
-        let longest = longest_of(&squared);
-        for (at, (side, squared)) in sides.iter_mut().zip(squared).enumerate() {
-            let is_border = front.is_some() || at == longest;
-            let has_length = is_border && squared > N::MIN_POSITIVE / N::EPSILON;
-            let share = if has_length { N::ONE / squared.sqrt() } else { N::ZERO };
-            *side = turn.tr_mul(&(*side * share));
-        }
-        Edging { sides, front }
+        Edging::of(self.triangle, self.shrink, &self.pose12.rotation)
     }
 
     /// The triangle and the solid.
@@ -230,6 +217,26 @@ impl<'a, N: Real> Fin<'a, N> {
         fill(&mut part);
         polygon.extend(part.vertices.iter().map(|vertex| vertex.coords * self.shrink));
         polygon
+    }
+}
+
+impl<N: Real> Edging<N> {
+    /// Of a triangle in units and in a frame that its own is turned from.
+    #[inline]
+    pub(super) fn of(triangle: &Triangle<N, 3>, shrink: N, turn: &Matrix<N, 3>) -> Self {
+        let [a, b, c] = triangle.corners();
+        let ways = [(b - a) * shrink, (c - b) * shrink, (a - c) * shrink];
+        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
+        let front = front_of(&ways, &squared).map(|front| turn.tr_mul(&front));
+        let mut sides = ways;
+        let longest = longest_of(&squared);
+        for (at, (side, squared)) in sides.iter_mut().zip(squared).enumerate() {
+            let is_border = front.is_some() || at == longest;
+            let has_length = is_border && squared > N::MIN_POSITIVE / N::EPSILON;
+            let share = if has_length { N::ONE / squared.sqrt() } else { N::ZERO };
+            *side = turn.tr_mul(&(*side * share));
+        }
+        Self { sides, front }
     }
 }
 

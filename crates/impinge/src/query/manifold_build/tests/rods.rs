@@ -154,6 +154,14 @@ fn is_witness_of<N: Real>(quick: &[Told<N>], general: &[Told<N>], scale: f64) ->
         && general.iter().all(|point| (point.1 - witness.1).norm() <= near)
 }
 
+/// The second of a pair is a triangle that plainly shows no face.
+fn is_beside_triangle<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>) -> bool {
+    let Kind::Triangle(triangle) = pair.second else { return false };
+    let toward = pair.pose12.inverse_vector(&-found.normal);
+    let part = triangle.part_shown(&toward);
+    part.is_some_and(|part| !matches!(part, FeatureId::Face(_)))
+}
+
 /// From the same separation; answers how often there was a manifold in one go, and how many points.
 fn manifolds<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
     let (mut built, mut points) = (0, 0);
@@ -183,6 +191,10 @@ fn manifolds<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
             };
             let what = describe(pair);
             assert!(are_alike, "round {round}, {what}\n{found:?}\n{quick:?}\n{general:?}");
+            if is_beside_triangle(pair, &found) {
+                // Nothing is drawn, so that each seed has the same pairs as ever.
+                continue;
+            }
             pair.pose12.translation += random.vector::<N, 3>(0.01 * scale);
         }
     });
