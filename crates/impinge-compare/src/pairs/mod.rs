@@ -42,7 +42,7 @@
 //!
 //! Answers are compared before a time is printed: distances, signed distances of contacts (in manifolds
 //! of the deepest one), times of impact, each within 0.002, and whether solids touch unless they just
-//! do. Rows are left out where a contender has no algorithm for a pair, or takes seconds for it; whoever
+//! do. Rows are left out where a contender has no algorithm for a pair, or takes milliseconds for each; whoever
 //! answers otherwise for more than half of the pairs is in the table, but no rival. Where there is a
 //! target its row says what it is on this machine, which is compared by what the manifold of two balls
 //! takes parry. In the end come the cases where impinge takes more than half of the time of its best rival.

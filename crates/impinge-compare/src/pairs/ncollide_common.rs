@@ -20,11 +20,14 @@ use super::super::question::{
 };
 use super::super::regime::{Pair, Poses};
 
-/// A round of impacts that takes longer is given up: of two grounds ncollide takes minutes for it.
-const PATIENCE: Duration = Duration::from_secs(4);
+/// A round of single questions that takes longer is given up: of two grounds ncollide takes minutes for some.
+const PATIENCE: Duration = Duration::from_millis(500);
 
-/// So many impacts are told from one look at the clock to the next.
+/// So many pairs are told from one look at the clock to the next, but for the first.
 const AT_A_LOOK: usize = 16;
+
+/// A solid and where it is.
+type Placed<'a> = (&'a Isometry<f32>, &'a dyn Shape<f32>);
 
 /// What ncollide keeps of a pair.
 struct Kept {
@@ -89,37 +92,39 @@ impl Ncollide {
         })
     }
 
-    fn ask_all(
-        &mut self,
-        ask: impl Fn(&Isometry<f32>, &dyn Shape<f32>, &Isometry<f32>, &dyn Shape<f32>) -> Answer,
-    ) {
-        let [shape1, shape2] = &self.shapes;
+    /// The answers about all pairs by their numbers, unless that takes so long that it is given up.
+    fn ask_all(&mut self, ask: impl Fn(&Self, usize) -> Answer) {
+        let (begun, all) = (Instant::now(), self.first.len());
+        let mut next = 1;
         self.answers.clear();
-        let placed = self.first.iter().zip(&self.second[0]);
-        self.answers.extend(placed.map(|(at1, at2)| ask(at1, &**shape1, at2, &**shape2)));
-    }
-
-    /// All of them, unless that takes so long that it is left out.
-    fn impacts(&mut self) {
-        let begun = Instant::now();
-        self.answers.clear();
-        while self.answers.len() < self.first.len() && begun.elapsed() < PATIENCE {
-            self.next_impacts();
+        while self.answers.len() < all && begun.elapsed() < PATIENCE {
+            for n in self.answers.len()..next {
+                let answer = ask(self, n);
+                self.answers.push(answer);
+            }
+            next = all.min(next + AT_A_LOOK);
         }
-        self.answers.resize(self.first.len(), Answer::UNSUPPORTED);
+        self.answers.resize(all, Answer::UNSUPPORTED);
     }
 
-    /// The next few, so that looking at the clock takes none of the time.
-    fn next_impacts(&mut self) {
-        let (g1, g2) = (&*self.shapes[0], &*self.shapes[1]);
+    /// A question about where two solids are.
+    fn ask_of_places(&mut self, ask: impl Fn(&Placed<'_>, &Placed<'_>) -> Answer) {
+        self.ask_all(|own, n| {
+            let [shape1, shape2] = &own.shapes;
+            ask(&(&own.first[n], &**shape1), &(&own.second[0][n], &**shape2))
+        });
+    }
+
+    fn impacts(&mut self) {
         let (still, by) = (Vector::zeros(), &DefaultTOIDispatcher);
-        let placed = self.first.iter().zip(&self.second[0]).zip(&self.velocities);
-        for ((at1, at2), velocity) in placed.skip(self.answers.len()).take(AT_A_LOOK) {
+        self.ask_all(|own, n| {
+            let (g1, g2) = (&*own.shapes[0], &*own.shapes[1]);
+            let (at1, at2, velocity) = (&own.first[n], &own.second[0][n], &own.velocities[n]);
             let longest = LONGEST_TIME;
             let found = time_of_impact(by, at1, &still, g1, at2, velocity, g2, longest, 0.0);
             let time = found.map(|hit| hit.map_or(Answer::NONE, |hit| Answer(hit.toi)));
-            self.answers.push(time.unwrap_or(Answer::UNSUPPORTED));
-        }
+            time.unwrap_or(Answer::UNSUPPORTED)
+        });
     }
 
     fn manifolds(&mut self, question: Question) {
@@ -161,14 +166,14 @@ impl Contender for Ncollide {
     fn ask(&mut self, question: Question) {
         match question {
             Question::Distance => {
-                self.ask_all(|at1, g1, at2, g2| Answer(distance(at1, g1, at2, g2)));
+                self.ask_of_places(|(at1, g1), (at2, g2)| Answer(distance(at1, *g1, at2, *g2)));
             }
-            Question::Contact => self.ask_all(|at1, g1, at2, g2| {
-                let found = contact(at1, g1, at2, g2, PREDICTION);
+            Question::Contact => self.ask_of_places(|(at1, g1), (at2, g2)| {
+                let found = contact(at1, *g1, at2, *g2, PREDICTION);
                 found.map_or(Answer::NONE, |found| Answer(-found.depth))
             }),
-            Question::Proximity => self.ask_all(|at1, g1, at2, g2| {
-                Answer::touching(proximity(at1, g1, at2, g2, 0.0) == Proximity::Intersecting)
+            Question::Proximity => self.ask_of_places(|(at1, g1), (at2, g2)| {
+                Answer::touching(proximity(at1, *g1, at2, *g2, 0.0) == Proximity::Intersecting)
             }),
             Question::Impact => self.impacts(),
             _ => self.manifolds(question),
