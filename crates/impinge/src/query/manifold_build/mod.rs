@@ -29,7 +29,6 @@ mod names;
 mod outlines;
 mod overlap;
 mod patch;
-mod patch_few;
 mod patch_line;
 mod patch_outline;
 mod reduce;

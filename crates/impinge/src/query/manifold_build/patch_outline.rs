@@ -43,22 +43,13 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members: &mut Members<N>,
         (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
     ) {
-        let is_alone = pieces.clone().nth(1).is_none();
-        let piece = (&self.merging.pieces[lead], deepest);
-        if !(is_alone && self.fill_alone(piece, (&mut *out, &mut *ids))) {
-            self.fill_from_all((lead, deepest), pieces, members, (out, ids));
+        let piece = &self.merging.pieces[lead];
+        if piece.points.len() == 1 && pieces.clone().count() == 1 {
+            let id = self.kept[deepest].unwrap_or_else(|| ids.next());
+            let raw = RawPoint { id, code: 0, ..self.merging.points[deepest] };
+            return out.push(PatchPoint { raw, parts: piece.parts });
         }
-    }
-
-    /// The same of any pieces.
-    pub(super) fn fill_from_all(
-        &self,
-        (lead, deepest): (usize, usize),
-        pieces: impl Iterator<Item = usize>,
-        members: &mut Members<N>,
-        (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
-    ) {
-        let tangents = (N::tables().tangents)(&self.merging.pieces[lead].normal);
+        let tangents = (N::tables().tangents)(&piece.normal);
         self.gather((lead, deepest), pieces, &tangents, members);
         let count = self.drop_copies(members);
         let members = &members[..count];
@@ -157,8 +148,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// The indices of the points on the outline of all, and of the deepest, if no point of the outline
     /// is at most `level`; answers how many there are. There must be room for twice as many and two.
     fn outline(&self, members: &[Member<N>], level: N, out: &mut [u32]) -> usize {
-        let flat = |index: u32| members[index as usize].flat;
-        let length = ring((members.len(), flat), self.merging.tolerance, out);
+        let length = chain(members, 0..members.len(), (0, &mut *out));
+        // Each chain ends where the other starts.
+        let start = (length - 1).max(1);
+        let end = chain(members, (0..members.len()).rev(), (start, &mut *out));
+        let length = thin(members, (end - 1, &mut *out), self.merging.tolerance);
         let depth = |index: usize| self.distance(&members[index]);
         if out[..length].iter().any(|&index| depth(index as usize) <= level) {
             return length;
@@ -253,36 +247,21 @@ fn count32(index: usize) -> u32 {
     u32::try_from(index).expect("32 bits number the points of a patch")
 }
 
-/// The indices of the corners of the hull of sorted points, counter-clockwise, but for those that lie on the
-/// line between those next to them; answers how many there are. There must be room for twice as many and two.
-pub(super) fn ring<N: Real>(
-    (count, flat): (usize, impl Fn(u32) -> Vector<N, 2>),
-    tolerance: N,
-    out: &mut [u32],
-) -> usize {
-    let all = 0..count32(count);
-    let length = chain(&flat, all.clone(), (0, &mut *out));
-    // Each chain ends where the other starts.
-    let start = (length - 1).max(1);
-    let end = chain(&flat, all.rev(), (start, &mut *out));
-    thin(&flat, (end - 1, out), tolerance)
-}
-
 /// One side of the hull of sorted points, from the first to the last: every corner turns left. Written
 /// from a place on; answers where it ends.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
-#[inline]
 fn chain<N: Real>(
-    flat: &impl Fn(u32) -> Vector<N, 2>,
-    order: impl Iterator<Item = u32>,
+    members: &[Member<N>],
+    order: impl Iterator<Item = usize>,
     (start, out): (usize, &mut [u32]),
 ) -> usize {
     let mut end = start;
     for member in order {
+        let member = count32(member);
         while end >= start + 2 {
             // Positive is left of the whole: inside.
-            if beside(flat, [out[end - 2], out[end - 1], member]) < N::ZERO {
+            if beside(members, [out[end - 2], out[end - 1], member]) < N::ZERO {
                 break;
             }
             end -= 1;
@@ -296,16 +275,15 @@ fn chain<N: Real>(
 /// Twice the area of a triangle; positive if the middle one lies left of the way from the first to the
 /// last.
 #[inline]
-fn beside<N: Real>(flat: &impl Fn(u32) -> Vector<N, 2>, corners: [u32; 3]) -> N {
-    let [from, at, to] = corners.map(flat);
+fn beside<N: Real>(members: &[Member<N>], corners: [u32; 3]) -> N {
+    let [from, at, to] = corners.map(|corner| members[corner as usize].flat);
     cross2(&(to - from), &(at - from))
 }
 
 /// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
 /// next to them; answers how many are left.
-#[inline]
 fn thin<N: Real>(
-    flat: &impl Fn(u32) -> Vector<N, 2>,
+    members: &[Member<N>],
     (mut count, outline): (usize, &mut [u32]),
     tolerance: N,
 ) -> usize {
@@ -313,8 +291,8 @@ fn thin<N: Real>(
     while count > 2 && at < count {
         let before = outline[if at == 0 { count - 1 } else { at - 1 }];
         let after = outline[if at + 1 == count { 0 } else { at + 1 }];
-        let way = flat(after) - flat(before);
-        let area = beside(flat, [before, outline[at], after]);
+        let way = members[after as usize].flat - members[before as usize].flat;
+        let area = beside(members, [before, outline[at], after]);
         if area.abs() <= tolerance * way.norm() {
             outline.copy_within(at + 1..count, at);
             count -= 1;
