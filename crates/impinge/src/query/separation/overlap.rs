@@ -332,9 +332,11 @@ mod tests {
         assert!(found * 2 > overlapping, "{found} of {overlapping} in the plane");
     }
 
+    type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
+
     /// Distances that are a part of the separation are so to the bit, however the solids lie.
     fn are_parts<N: Space<D>, const D: usize>(
-        (firsts, seconds): (&[Box<dyn Shape<N, D>>], &[Box<dyn Shape<N, D>>]),
+        (firsts, seconds): (&Solids<N, D>, &Solids<N, D>),
         pose_of: impl Fn(&mut Random) -> Pose<N, D>,
         known: impl Fn(&Pair<'_, N, D>) -> Option<N>,
     ) {
