@@ -3,7 +3,7 @@
 use super::segment::length_of;
 use super::tilt::{FACING_SINE_SQUARED, Tilt};
 use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, Triangle};
-use crate::math::{Matrix, Point, Real, Vector, cross, max, unit, unit_or};
+use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 
 /// The plane (in two dimensions: the space) that a triangle spans.
 struct Span<N: Real, const D: usize> {
@@ -276,13 +276,16 @@ impl<N: Real> Triangle<N, 3> {
     /// triangles that are thin, and where rounding decides.
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
-        let ways = [b - a, c - b, a - c];
+        let sides = [b - a, c - b, a - c];
+        let size = max(max_component(&sides[0]), max_component(&sides[1]));
+        // So that fourth powers are numbers.
+        let ways = sides.map(|side| side / size.power_of_two_below());
         let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&ways[0], &ways[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
         // Written so that what is no number is thin.
-        let is_wide = area > N::lit(THIN_SQUARED) * longest * longest && area < N::INFINITY;
+        let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
         if !is_wide {
             return None;
         }
@@ -419,4 +422,33 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
 fn is_second_face(id: FeatureId) -> bool {
     assert!(matches!(id, FeatureId::Face(0 | 1)), "a triangle has no face named {id:?}");
     id == FeatureId::Face(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+
+    #[test]
+    fn what_a_triangle_shows_is_known_at_every_scale() {
+        let (mut noise, mut known) = (Noise(3), 0);
+        for _ in 0..2000 {
+            let corners = [(); 3].map(|()| Point::from(noise.vector::<f32>(1.0)));
+            let direction = noise.vector::<f32>(1.0).normalize();
+            let shown = |scale: f32| {
+                let [a, b, c] = corners.map(|corner| corner * scale);
+                Triangle::new(a, b, c).part_shown(&direction)
+            };
+            let part = shown(1.0);
+            assert_eq!([shown(2.0_f32.powi(-60)), shown(2.0_f32.powi(60))], [part; 2]);
+            known += usize::from(part.is_some());
+        }
+        assert!(known > 1500, "{known} are plain");
+        assert_eq!(
+            Triangle::new(Point::origin(), Point::origin(), Point::<f32, 3>::origin())
+                .part_shown(&Vector::<f32, 3>::y()),
+            None,
+            "it has no area"
+        );
+    }
 }
