@@ -59,6 +59,36 @@ pub(super) struct Axis<N: Real> {
     pub(super) gap: N,
 }
 
+/// What the directions say.
+pub(super) enum Best<N: Real> {
+    /// One leaves a gap that is beyond the limit.
+    Beyond,
+    /// The one that leaves the largest gap.
+    Axis(Axis<N>),
+    /// A triangle has no area, or the faces beside an edge are not as they should be.
+    Unclear,
+}
+
+impl<N: Real> Best<N> {
+    /// The separation within a limit, that of the general algorithm where the directions do not tell.
+    pub(super) fn settled(
+        &self,
+        (fin, solid): (&Fin<'_, N>, &impl Faces<N>),
+        limit: N,
+        in_general: impl FnOnce() -> Option<Separation<N, 3>>,
+    ) -> Option<Separation<N, 3>> {
+        let found = match self {
+            Self::Beyond => return None,
+            Self::Axis(axis) => fin.answer(solid, axis),
+            Self::Unclear => None,
+        };
+        match found {
+            Some(found) => (found.distance <= limit).then_some(found),
+            None => in_general(),
+        }
+    }
+}
+
 /// What arithmetic on numbers of size 2 cannot resolve.
 pub(super) fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::triangle_axes::{Axis, AxisKind, Edging, Fin, least_sine, noise, parted};
+use super::triangle_axes::{Axis, AxisKind, Best, Edging, Fin, least_sine, noise, parted};
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
 use crate::math::{Pose, Real, Vector, cross, min};
@@ -54,15 +54,8 @@ fn settled<N: Real>(
     best: &Best<N>,
     limit: N,
 ) -> Option<Separation<N, 3>> {
-    let found = match best {
-        Best::Beyond => return None,
-        Best::Axis(best) => fin.answer(hull, best),
-        Best::Unclear => None,
-    };
-    match found {
-        Some(found) => (found.distance <= limit).then_some(found),
-        None => general::of_flat_cores(&fin.pair(Kind::Polytope(hull)), limit),
-    }
+    let in_general = || general::of_flat_cores(&fin.pair(Kind::Polytope(hull)), limit);
+    best.settled((fin, hull), limit, in_general)
 }
 
 /// Whether a triangle and a hull are farther apart than a limit of less than zero; `None` where this
@@ -92,16 +85,6 @@ fn fin<'a, N: Real>(
 /// The hull is a solid of few edges. One without edges, or with faces back to back alone, is no solid.
 pub(super) fn is_usual<N: Real>(hull: &Polytope<N, 3>) -> bool {
     hull.edges().len() <= MOST_EDGES && hull.faces().len() > 2
-}
-
-/// What the directions say.
-enum Best<N: Real> {
-    /// One leaves a gap that is beyond the limit.
-    Beyond,
-    /// The one that leaves the largest gap.
-    Axis(Axis<N>),
-    /// The faces beside an edge are not as they should be.
-    Unclear,
 }
 
 fn best_axis<N: Real>(

@@ -1,6 +1,6 @@
 //! Triangle against triangle in space.
 
-use super::triangle_axes::{Axis, AxisKind, Edging, Faces, Fin, least_sine, noise, parted};
+use super::triangle_axes::{Axis, AxisKind, Best, Edging, Faces, Fin, least_sine, noise, parted};
 use super::{general, wrong_kinds};
 use crate::convex::Separation;
 use crate::math::{Matrix, Point, Real, Vector, cross, max, min};
@@ -18,25 +18,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     };
     let in_general = || general::of_flat_cores(pair, limit);
     let Some(fin) = Fin::new(triangle, &pair.pose12, other.reach()) else { return in_general() };
-    let found = match best_axis(&fin, other, |gap| fin.is_beyond(gap, limit)) {
-        Best::Beyond => return None,
-        Best::Axis(axis) => fin.answer(*other, &axis),
-        Best::Unclear => None,
-    };
-    match found {
-        Some(found) => (found.distance <= limit).then_some(found),
-        None => in_general(),
-    }
-}
-
-/// What the directions say.
-enum Best<N: Real> {
-    /// One leaves a gap that is beyond the limit.
-    Beyond,
-    /// The one that leaves the largest gap.
-    Axis(Axis<N>),
-    /// One of the triangles has no area.
-    Unclear,
+    let best = best_axis(&fin, other, |gap| fin.is_beyond(gap, limit));
+    best.settled((&fin, *other), limit, in_general)
 }
 
 /// The direction that leaves the largest gap: the first triangle's own normal unless another one leaves more
