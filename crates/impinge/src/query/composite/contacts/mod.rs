@@ -106,11 +106,9 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
     /// The deepest contact, the first of equals.
     fn deepest(&self) -> Option<Separation<N, D>> {
-        let patches = self.patches.iter();
-        let points =
-            patches.flat_map(|patch| patch.points.iter().map(|point| (patch.normal, point.raw)));
-        let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
-        deepest.map(|(normal, point)| separation_at(&normal, &point))
+        deepest_of(self.patches.iter().flat_map(|Patch { normal, points }| {
+            points.iter().map(move |point| (normal, &point.raw))
+        }))
     }
 
     /// The two shapes change places.
@@ -334,8 +332,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     }
     let nearest = of_ordered(&ordered, limit)?;
     // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
-    let is_half_space = matches!(ordered.first.shape.0, Kind::Plane(_));
-    if is_half_space && nearest.distance.is_finite_number() {
+    if between.is_half_space_first() && nearest.distance.is_finite_number() {
         return Some(nearest);
     }
     deepest(&between, nearest.distance, limit).map(in_world)
@@ -406,20 +403,22 @@ fn deepest_in_general<N: Space<D>, const D: usize>(
     let mut notes = Notes::default();
     let findings = query.findings(&nearby, &mut notes);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
-    let points = kept.flat_map(|Finding { piece, .. }| {
-        notes.points[piece.points.clone()].iter().map(|point| (piece.normal, *point))
-    });
-    let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
-    deepest.map(|(normal, point)| separation_at(&normal, &point))
+    deepest_of(kept.flat_map(|Finding { piece, .. }| {
+        notes.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
+    }))
 }
 
-/// What a contact point says of two shapes.
-fn separation_at<N: Real, const D: usize>(
-    normal: &Vector<N, D>,
-    point: &RawPoint<N, D>,
-) -> Separation<N, D> {
-    let (distance, point1) = (point.distance, point.point1);
-    Separation { distance, normal: *normal, point1, point2: point1 + normal * distance }
+/// What the deepest of contact points, each with its normal, says of two shapes; the first of equals.
+fn deepest_of<'a, N: Real, const D: usize>(
+    points: impl Iterator<Item = (&'a Vector<N, D>, &'a RawPoint<N, D>)>,
+) -> Option<Separation<N, D>> {
+    let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+    deepest.map(|(&normal, &RawPoint { distance, point1, .. })| Separation {
+        distance,
+        normal,
+        point1,
+        point2: point1 + normal * distance,
+    })
 }
 
 /// How far those parts of one composite are apart that do not hang together; negative where they
