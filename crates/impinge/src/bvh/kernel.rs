@@ -4,12 +4,13 @@
 //! machine has. Only comparisons, minima and maxima are used, so equality is exact. Callers choose
 //! once per batch with `with_kernel!`, which compiles its body for every instruction set.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
+use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 
 use super::gaps::Gaps;
 use super::slabs::Slabs;
 use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
+use crate::math::simd::{Level, Vectors};
 
 /// Which vectors the kernels use. The results do not depend on it.
 #[derive(Clone, Copy, Debug)]
@@ -19,14 +20,21 @@ pub struct Lanes(pub(super) Choice);
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Choice {
     Scalar,
-    Simd(Level),
+    /// Sixteen lanes are one register of AVX-512, which halves the instructions of a lane.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(fearless_simd::Avx512),
+    Vectors(Vectors),
 }
 
 impl Lanes {
     /// The widest vectors of this machine.
     #[must_use]
     pub fn detect() -> Self {
-        Self(Choice::Simd(Level::new()))
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx512) = fearless_simd::Level::new().as_avx512() {
+            return Self(Choice::Avx512(avx512));
+        }
+        Self(Level::new().vectors().map_or(Choice::Scalar, Choice::Vectors))
     }
 
     /// No vectors: the definition that the others are tested against.
@@ -38,14 +46,9 @@ impl Lanes {
     /// Everything that runs on this machine, for tests.
     #[must_use]
     pub fn available() -> Vec<Self> {
-        let level = Level::new();
-        let mut all = vec![Self::scalar(), Self(Choice::Simd(level))];
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            all.extend(level.as_avx2().map(|token| Self(Choice::Simd(Level::Avx2(token)))));
-            all.extend(level.as_sse4_2().map(|token| Self(Choice::Simd(Level::Sse4_2(token)))));
-            all.extend(level.as_sse2().map(|token| Self(Choice::Simd(Level::Sse2(token)))));
-        }
+        let mut all = vec![Self::scalar(), Self::detect()];
+        let vectors = Level::available().into_iter().filter_map(Level::vectors);
+        all.extend(vectors.map(|vectors| Self(Choice::Vectors(vectors))));
         all
     }
 }
@@ -64,8 +67,15 @@ macro_rules! with_kernel {
                 let $kernel = $crate::bvh::kernel::Scalar;
                 $body
             }
-            $crate::bvh::kernel::Choice::Simd(level) => {
-                fearless_simd::dispatch!(level, simd => {
+            #[cfg(target_arch = "x86_64")]
+            $crate::bvh::kernel::Choice::Avx512(simd) => {
+                fearless_simd::Simd::vectorize(simd, #[inline(always)] || {
+                    let $kernel = $crate::bvh::kernel::Wide(simd);
+                    $body
+                })
+            }
+            $crate::bvh::kernel::Choice::Vectors(vectors) => {
+                $crate::math::lanes::with_vectors!(vectors, simd => {
                     let $kernel = $crate::bvh::kernel::Wide(simd);
                     $body
                 })
@@ -344,7 +354,7 @@ fn overlaps_on<S: Simd, const D: usize>(
 
 /// The instruction set moves selected lanes to the front quickly.
 #[inline(always)]
-fn packs_lanes(level: Level) -> bool {
+fn packs_lanes(level: fearless_simd::Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return level.as_avx2().is_some();
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]

@@ -22,6 +22,15 @@
 //! rounds outwards. Every result is a function of the calls made: it does not depend on the
 //! instruction set nor on the number of threads.
 
+#![cfg_attr(
+    not(any(
+        all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )),
+    allow(dead_code, reason = "without vectors the scalar kernels are all that there is")
+)]
+
 mod block;
 mod bounds;
 mod farthest;

@@ -3,39 +3,58 @@
 //! Each operation is in the order of its scalar twin, so that a lane has the bits that a vector has. Nothing
 //! here is a `map`: closures that are handed to it are not inlined into vector code.
 
-use fearless_simd::{Select, Simd};
-
+use super::simd::{Simd, SimdMask};
 use super::{Real, Vector, Wide, max};
 
-/// Runs `$body` with `$simd` bound to the vectors of `$level`, and `$otherwise` where it has none.
+/// Runs `$body` with `$simd` bound to the vectors of a [`Level`](super::simd::Level), or to arrays.
 ///
-/// Of those of x86 only the largest that is worth it and the one that is always there are compiled:
-/// wider registers than AVX2 has bring nothing to eight lanes. What is called by the body must not
-/// depend on which vectors they are.
+/// `$body` is compiled for each instruction set, so it is a call of a kernel.
 macro_rules! with_lanes {
-    ($level:expr, $simd:ident => $body:expr, else $otherwise:expr) => {{
-        let level: fearless_simd::Level = $level;
-        #[cfg(target_arch = "x86_64")]
-        if let Some($simd) = level.as_avx2() {
-            fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            )
-        } else if let Some($simd) = level.as_sse2() {
-            fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            )
-        } else {
-            $otherwise
+    ($level:expr, $simd:ident => $body:expr) => {
+        match $crate::math::simd::Level::vectors($level) {
+            Some(vectors) => $crate::math::lanes::with_vectors!(vectors, $simd => $body),
+            None if $crate::math::simd::ON_ARRAYS => {
+                let $simd = $crate::math::arrays::Arrays;
+                $body
+            }
+            None => unreachable!("every machine of this target has vectors"),
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        fearless_simd::dispatch!(level, $simd => $body)
-    }};
+    };
 }
-pub(crate) use with_lanes;
+
+/// Runs `$body` with `$simd` bound to the vectors of an instruction set.
+macro_rules! with_vectors {
+    ($vectors:expr, $simd:ident => $body:expr) => {
+        match $vectors {
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            $crate::math::simd::Vectors::Avx2($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            $crate::math::simd::Vectors::Sse2($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+            $crate::math::simd::Vectors::Neon($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            $crate::math::simd::Vectors::Simd128($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+        }
+    };
+}
+
+pub(crate) use {with_lanes, with_vectors};
 
 /// The same number in all lanes.
 #[inline(always)]

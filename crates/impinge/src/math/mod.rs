@@ -7,21 +7,22 @@
 //! Arithmetic here keeps the rule "the same bits everywhere": no fused multiply-add, no library
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.
 
-mod eight;
+pub(crate) mod arrays;
 pub(crate) mod lanes;
 #[cfg(test)]
 pub(crate) mod noise;
 mod pose;
 mod real;
+pub(crate) mod simd;
 mod space;
 mod vector;
 
 pub use nalgebra as na;
 pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
 
-pub(crate) use eight::Wide;
 pub use pose::Pose;
 pub use real::Real;
+pub(crate) use simd::Wide;
 pub use space::Space;
 pub use vector::{
     centroid, cross, cross2, max, max_component, min, orthonormal_basis, perp, perpendicular_to,

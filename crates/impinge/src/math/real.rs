@@ -1,8 +1,8 @@
 //! The scalar: `f32` and, with the feature `f64`, `f64`. Nobody else.
 
-use super::eight::Eight;
 use super::max;
 use super::na::{RealField, Scalar};
+use super::simd::Eight;
 use crate::tables::Compiled;
 
 /// A floating-point scalar of the library: `f32` or `f64`.

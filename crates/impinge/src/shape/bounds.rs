@@ -1,12 +1,11 @@
 //! Boxes and spheres around shapes placed somewhere.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use super::polytope::LANES;
 use super::segment::length_of;
 use super::{Polytope, Shape};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::lanes::{highest_lane, load, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector, Wide, max};
 
 /// The box around a shape placed at `pose`, in the frame that the pose leads to; as small as is
@@ -54,7 +53,7 @@ fn extents<N: Real, const D: usize>(
     blocks: &[[[N; LANES]; D]],
     pose: &Pose<N, D>,
 ) -> Option<[Vector<N, D>; 2]> {
-    with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, pose), else None)
+    with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, pose))
 }
 
 /// The least and the greatest coordinates of vertices in the frame that a pose leads to: eight at a time, each

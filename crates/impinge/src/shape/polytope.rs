@@ -4,12 +4,12 @@ use core::array::from_fn;
 use core::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::Level;
 use smallvec::SmallVec;
 
 use super::FeatureId;
 use super::polytope_support;
 use super::segment::length_of;
+use crate::math::simd::Level;
 use crate::math::{Point, Real, Vector, max, unit};
 
 /// A convex solid with flat faces, in any dimension.

@@ -1,10 +1,9 @@
 //! Support points of polytopes of more than a few vertices, and the faces that points lie highest above, by
 //! vectors.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
-
 use super::polytope::{LANES, Planes};
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
 
 /// The index of a vertex farthest along a direction: the first of equals.
@@ -13,7 +12,7 @@ pub(super) fn vertex<N: Real, const D: usize>(
     blocks: &[[[N; LANES]; D]],
     direction: &Vector<N, D>,
 ) -> usize {
-    with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction), else 0)
+    with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction))
 }
 
 /// The index of a plane that a point lies highest above: the first of equals.
@@ -22,7 +21,7 @@ pub(super) fn plane<N: Real, const D: usize>(
     planes: &[Planes<N, D>],
     point: &Point<N, D>,
 ) -> usize {
-    with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point), else 0)
+    with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point))
 }
 
 #[inline(always)]

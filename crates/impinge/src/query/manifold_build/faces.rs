@@ -6,14 +6,13 @@
 //! their [overlap](super::overlap), which are the definition of this, and which take over wherever this
 //! declines: parts that are no faces, polygons with short sides, nearest points off the faces.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use super::fences::{fence, placed};
 use super::frame::Frame;
 use super::overlap::Candidates;
 use super::triangle_face::along_side;
 use super::{ManifoldRequest, Pair, RawManifold, choose};
 use crate::math::lanes::{dot, load, minus, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, max_component};
 use crate::shape::{Cuboid, FaceRing, FeatureId, Kind};
 
@@ -125,7 +124,7 @@ fn at<N: Real>(
     rings: [&FaceRing<N>; 2],
     pose12: &Pose<N, 3>,
 ) -> Option<Places<N>> {
-    with_lanes!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12), else None)
+    with_lanes!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, frame, rings, pose12))
 }
 
 #[inline(always)]

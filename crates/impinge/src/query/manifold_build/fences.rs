@@ -1,9 +1,8 @@
 //! Two convex polygons of a plane, a triangle and one of up to eight corners: how far inside of the sides
 //! of each the corners of the other are, side by side.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use crate::math::lanes::{dot, load, minus, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, max};
 use crate::shape::FaceRing;
 
@@ -56,7 +55,7 @@ impl<N: Real> Fences<N> {
 
 /// [`held`] with the vectors of an instruction set; the answers do not depend on it.
 fn at<N: Real>(level: Level, base: &Base<'_, N>, face: &FaceRing<N>) -> Option<Fences<N>> {
-    with_lanes!(level, simd => held::<_, N, N::Lanes<_>>(simd, base, face), else None)
+    with_lanes!(level, simd => held::<_, N, N::Lanes<_>>(simd, base, face))
 }
 
 #[inline(always)]

@@ -4,7 +4,6 @@
 //! numbers are those of [facets](super::facet) over a [half-space](super::half_space), which define this and
 //! which take over where this declines: solids that may turn, other kinds, cores hardly longer than rounding.
 
-use fearless_simd::{Level, Simd, SimdMask};
 use smallvec::SmallVec;
 
 use super::facet::{LEAST_COSINE, lifted_by};
@@ -13,6 +12,7 @@ use super::half_space::BOUNDARY;
 use super::overlap::Candidates;
 use super::{ManifoldRequest, Pair, RawManifold, choose, tangents3};
 use crate::math::lanes::{dot, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, max, min};
 use crate::shape::{Capsule, ConvexPolyhedron, Cuboid, FaceRing, FeatureId, Kind, Polytope};
 use crate::shape::{Segment, SupportMap, Triangle};
@@ -271,9 +271,7 @@ fn list_hull<N: Real>(
     lowest: &Lowest<N>,
     out: &mut Corners<N>,
 ) {
-    with_lanes!(level, simd => list_in_lanes::<_, N, N::Lanes<_>>(simd, hull, lowest, out), else {
-        fearless_simd::dispatch!(level, simd => list_in_lanes::<_, N, N::Lanes<_>>(simd, hull, lowest, out));
-    });
+    with_lanes!(level, simd => list_in_lanes::<_, N, N::Lanes<_>>(simd, hull, lowest, out));
 }
 
 #[inline(always)]

@@ -6,12 +6,12 @@
 //! solid is first. A place within rounding of a side lies on it, which keeps the names still when
 //! sides or corners coincide.
 
-use fearless_simd::{Level, Simd, SimdMask};
 use smallvec::SmallVec;
 
 use super::facet::{Corner, Facet, LANES};
 use super::frame::{Candidate, Frame};
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Wide, cross2, max, max_component};
 use crate::shape::FeatureId;
 
@@ -325,9 +325,7 @@ impl<N: Real> Rows<N> {
 
     /// Fills both with the vectors of an instruction set; the numbers do not depend on it.
     fn fill_at<const D: usize>(level: Level, overlap: &Overlap<'_, N, D>, rows: &mut [Self; 2]) {
-        with_lanes!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows), else {
-            fearless_simd::dispatch!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows));
-        });
+        with_lanes!(level, simd => Self::fill_both::<_, N::Lanes<_>, D>(simd, overlap, rows));
     }
 
     #[inline(always)]

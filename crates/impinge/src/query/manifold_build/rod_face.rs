@@ -6,8 +6,6 @@
 //! order and distances are those of [facets](super::facet) and their [overlap](super::overlap), which define
 //! this and which take over where this declines: short sides, corners on the line of the core, edges along it.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use super::faces::{flat, on_side, shown};
 use super::facet::{LEAST_COSINE, lifted_by};
 use super::fences::{LANES, fence, placed};
@@ -16,6 +14,7 @@ use super::overlap::Candidates;
 use super::segments::{core, part_at};
 use super::{ManifoldRequest, Pair, RawManifold, choose, names};
 use crate::math::lanes::{load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component};
 use crate::query::separation::bare;
 use crate::shape::{ConvexPolyhedron, FaceRing, FeatureId, Kind, RoundPart};
@@ -175,7 +174,7 @@ fn outline<N: Real>(
     (frame, pose): (&Frame<N, 3>, &Pose<N, 3>),
     core: &Core<N>,
 ) -> Option<Outline<N>> {
-    with_lanes!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, ring, (frame, pose), core), else None)
+    with_lanes!(level, simd => laid_out::<_, N, N::Lanes<_>>(simd, ring, (frame, pose), core))
 }
 
 /// Lays a face out; `None` of one that is not plain to see as a polygon.

@@ -6,10 +6,9 @@
 //! both sides of the other are the nearest points, however they were found. What is neither, within rounding,
 //! is left to others.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::polygon_lanes::{LANES, Outline, Row, gaps};
-use crate::math::lanes::{dot, minus};
+use crate::math::lanes::{dot, highest_lane, minus};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, unit};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
@@ -50,7 +49,7 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, numbers: V) -> (N, usize) {
     let mut lanes = [N::ZERO; LANES];
     numbers.store(&mut lanes);
-    let is_most = numbers.simd_ge(V::all(simd, numbers.greatest())).to_bitmask();
+    let is_most = numbers.simd_ge(V::all(simd, highest_lane(numbers))).to_bitmask();
     let lane = (is_most.trailing_zeros() as usize).min(LANES - 1);
     (lanes[lane], lane)
 }

@@ -4,12 +4,11 @@
 //! is left to it: more vertices, sides of no length, numbers that end, and nearest points that do not
 //! meet the best axis.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
-
 use super::polygon_nearest::nearest_points;
 use super::polygon_polygon::Axis;
 use crate::convex::Separation;
 use crate::math::lanes::{dot, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max, perp, unit};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
@@ -112,7 +111,7 @@ pub(super) fn between<N: Real>(
     known: Option<Axis<N>>,
     limit: N,
 ) -> Verdict<N> {
-    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit), else Verdict::Undecided)
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit))
 }
 
 #[inline(always)]

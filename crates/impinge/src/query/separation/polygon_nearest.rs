@@ -1,9 +1,8 @@
 //! Sides of two polygons of the plane: each end against each side of the other, eight at a time.
 
-use fearless_simd::{Select, Simd};
-
 use super::polygon_lanes::{highest, lane};
 use crate::math::lanes::{dot, either};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Wide};
 
 /// The nearest points of the sides at two vertices, each given with its neighbours; `None` where the

@@ -6,13 +6,12 @@
 //! while it is positive, so that the nearest points are ends of, or lie on, the sides next to the
 //! best normal.
 
-use fearless_simd::Level;
-
 use super::outline::{Outline, Reach};
 use super::polygon_lanes::{self, Polygon, Verdict};
 use super::rectangle_axes::Rectangles;
 use super::segments::nearest_of_ends;
 use crate::convex::Separation;
+use crate::math::simd::Level;
 use crate::math::{Point, Real, Vector, max, min, perp, unit};
 use crate::query::Pair;
 use crate::shape::Kind;
@@ -284,7 +283,7 @@ pub(super) mod tests {
 
     /// Pairs of all kinds in the lanes of each instruction set, against one number after the other.
     fn eight_at_a_time<N: Real>(seed: u64) {
-        use crate::query::separation::hulls::tests::{Random, levels};
+        use crate::query::separation::hulls::tests::Random;
         let random = &mut Random(seed);
         let (mut decided, mut overlapping, mut count) = (0, 0, 0);
         for round in 0..3000 {
@@ -305,7 +304,7 @@ pub(super) mod tests {
             let expected = of_outlines(&pair, known_axis(&pair), N::INFINITY);
             let expected = expected.expect("nothing is beyond infinity");
             let polygons = [first, second].map(|kind| Polygon::of(&kind).expect("eight at most"));
-            for level in levels() {
+            for level in Level::available() {
                 let [polygon1, polygon2] = &polygons;
                 let found = polygon_lanes::between(
                     level,

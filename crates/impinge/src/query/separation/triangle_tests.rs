@@ -255,8 +255,8 @@ fn check_told<N: Real>(
     (triangles, found): (&[Triangle<N, 3>], &[Option<Separation<N, 3>>]),
     round: usize,
 ) {
-    let sifted = question.sifted(tiles).expect("there are vectors");
-    let eight = question.eight(tiles).expect("there are vectors");
+    let sifted = question.sifted(tiles);
+    let eight = question.eight(tiles);
     let (pose12, reach) = (question.pose12, question.solid.reach());
     let center = match question.solid {
         Flat::Cuboid(cuboid) => cuboid.center(),

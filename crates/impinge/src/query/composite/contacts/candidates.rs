@@ -71,7 +71,7 @@ fn near_kept<N: Space<D>, const D: usize>(
     let (mut parts, mut near) = (PartPairs::new(), Near::new());
     let mut clearance = depth_in(aabb, probe.center());
     for (block, kept) in around.parts().chunks(LANES).enumerate() {
-        let bounds = around.tiles().get(block).and_then(|tiles| sight.bounds(tiles));
+        let bounds = around.tiles().get(block).map(|tiles| sight.bounds(tiles));
         if let Some(bounds) = bounds {
             clearance = min(clearance, bounds.from_middle);
             // Beyond the last part are copies of it.

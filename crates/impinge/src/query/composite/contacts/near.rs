@@ -228,7 +228,7 @@ mod tests {
         let mut around = Around::default();
         assert!(around.reaches(&mesh, &everywhere), "one triangle is kept");
         let sight = probe.sight(&mut around, &everywhere);
-        let found = sight.bounds(&around.tiles()[0]).expect("there are vectors");
+        let found = sight.bounds(&around.tiles()[0]);
         let is_beyond = found.near & 1 == 0;
         assert_eq!(found.near == u8::MAX, !is_beyond, "the one stands for all eight");
         let together = Bound { from_middle: found.from_middle, is_beyond };

@@ -3,10 +3,9 @@
 //!
 //! Of the solid its core counts by its extents along its own axes alone, as that of a box.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
-
 use super::near::{least_length, relative_slack};
 use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide, min};
 use crate::query::tiles::{LANES, Tiles};
 
@@ -36,8 +35,8 @@ pub(super) struct Bounds<N> {
 }
 
 impl<N: Real, const D: usize> Sight<N, D> {
-    /// What the solid sees of eight parts; `None` without vectors.
-    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> Option<Bounds<N>> {
+    /// What the solid sees of eight parts.
+    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> Bounds<N> {
         at(Level::new(), tiles, self)
     }
 }
@@ -47,8 +46,8 @@ fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &Tiles<N, D>,
     sight: &Sight<N, D>,
-) -> Option<Bounds<N>> {
-    with_lanes!(level, simd => Some(bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight)), else None)
+) -> Bounds<N> {
+    with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight))
 }
 
 #[inline(always)]

@@ -110,7 +110,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             limit: self.request.prediction,
             within,
         };
-        let seen = sighted(&question, self.surface.has_plain_seams())?;
+        let seen = sighted(&question, self.surface.has_plain_seams());
         // What is outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, seen.from_middle);

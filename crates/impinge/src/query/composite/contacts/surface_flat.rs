@@ -135,7 +135,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
             (depth_in(&aabb, &self.center), SmallVec::<[u8; LANES]>::new());
         let count = around.parts().len();
         for (block, tiles) in around.tiles().iter().enumerate() {
-            let sifted = self.question.sifted(tiles)?;
+            let sifted = self.question.sifted(tiles);
             clearance = min(clearance, sifted.from_middle);
             eights.push(sifted.near & (u8::MAX >> (LANES - (count - block * LANES).min(LANES))));
         }
@@ -177,7 +177,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
         if near.count == 0 {
             return Some(());
         }
-        let eight = self.question.eight(&near.tiles)?;
+        let eight = self.question.eight(&near.tiles);
         if !eight.is_sound() {
             return None;
         }

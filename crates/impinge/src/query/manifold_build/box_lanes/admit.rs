@@ -1,9 +1,8 @@
 //! The candidates of eight pairs, each in a slot of its own, and which of them count.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::LANES;
 use super::masks::bits;
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// The places of eight pairs, and for each of them a bit of a mask.
@@ -101,7 +100,7 @@ impl<V> Admission<V> {
         is_there: M,
     ) where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         height.store(&mut slots.height[slot]);
         self.lowest = (is_there & height.simd_lt(self.lowest)).select(height, self.lowest);

@@ -1,9 +1,8 @@
 //! Eight pairs of boxes side by side, and where the second of each lies in the frame of the first.
 
-use fearless_simd::{Select, Simd};
-
 use super::{BoxJob, LANES};
 use crate::math::lanes::{by_axis, either, lit, norm, seen_from};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Pose, Real, Wide};
 use crate::query::manifold_build::frame::ROUNDING_ERRORS;
 use crate::shape::Cuboid;

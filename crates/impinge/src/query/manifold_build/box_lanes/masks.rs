@@ -1,6 +1,6 @@
 //! Bits of eight pairs side by side.
 
-use fearless_simd::{Simd, SimdMask};
+use crate::math::simd::{Simd, SimdMask};
 
 /// A bit for each lane.
 #[inline(always)]

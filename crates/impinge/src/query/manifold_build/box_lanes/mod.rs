@@ -17,12 +17,11 @@ mod space;
 #[cfg(test)]
 pub(super) mod tests;
 
-use fearless_simd::{Level, Simd};
-
 use self::gather::Inputs;
 pub(super) use self::masks::{bits, transposed};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Wide};
 use crate::shape::{Cuboid, Kind};
 
@@ -78,9 +77,7 @@ fn update_at<N: Real, E: Eights<N, D>, const D: usize>(
     level: Level,
     jobs: &mut [BoxJob<'_, N, D>],
 ) {
-    with_lanes!(level, simd => update::<_, N, N::Lanes<_>, E, D>(simd, jobs), else {
-        jobs.iter_mut().for_each(E::one_by_one);
-    });
+    with_lanes!(level, simd => update::<_, N, N::Lanes<_>, E, D>(simd, jobs));
 }
 
 /// Eight by eight. The numbers of the next eight are gathered before those gathered last are used,

@@ -1,25 +1,11 @@
 //! Eight at a time against one by one, bit for bit, on every instruction set.
 
-use fearless_simd::Level;
-
 use super::super::tests::scene::Random;
 use super::{BoxJob, Eights, plane, space, update_at};
+use crate::math::simd::Level;
 use crate::math::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
 use crate::query::{ManifoldRequest, RawManifold};
 use crate::shape::Cuboid;
-
-/// Everything that runs on this machine.
-pub(in crate::query::manifold_build) fn levels() -> Vec<Level> {
-    let level = Level::new();
-    let mut all = vec![level];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        all.extend(level.as_avx2().map(Level::Avx2));
-        all.extend(level.as_sse4_2().map(Level::Sse4_2));
-        all.extend(level.as_sse2().map(Level::Sse2));
-    }
-    all
-}
 
 /// The dimensions: how boxes are treated there, and how they turn.
 trait Turning<N: Real, const D: usize>: Eights<N, D> {
@@ -87,7 +73,7 @@ fn compare<N: Real, E: Eights<N, D>, const D: usize>(
     what: &str,
 ) -> usize {
     let mut points = 0;
-    for level in levels() {
+    for level in Level::available() {
         let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
         let (mut expected, mut found) = (fresh(), fresh());
         for (step, cases) in steps.iter().enumerate() {
@@ -103,7 +89,7 @@ fn compare<N: Real, E: Eights<N, D>, const D: usize>(
             }
         }
     }
-    points / levels().len()
+    points / Level::available().len()
 }
 
 /// A draw of two boxes near each other.

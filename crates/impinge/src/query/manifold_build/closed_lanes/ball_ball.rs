@@ -1,10 +1,9 @@
 //! Two balls: `separation/ball_ball.rs` in lanes.
 
-use fearless_simd::Simd;
-
 use super::gather::Inputs;
 use super::vectors::{times, unit};
 use super::{Form, Found, PairQuestion, Solid};
+use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 

@@ -1,10 +1,9 @@
 //! A ball and a box: `separation/ball_cuboid.rs` in lanes.
 
-use fearless_simd::Simd;
-
 use super::gather::Inputs;
 use super::vectors::{bits, by_axis, length_of, lit, minus, negated, rounding_of, times, unit};
 use super::{Form, Found, PairQuestion, Solid};
+use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::{Cuboid, FeatureId};
 

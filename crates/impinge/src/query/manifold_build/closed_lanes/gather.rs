@@ -1,9 +1,8 @@
 //! Eight pairs of solids side by side.
 
-use fearless_simd::Simd;
-
 use super::vectors::{by_axis, dot, norm, seen_from};
 use super::{Form, KeptPairs, LANES, PairQuestion};
+use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide};
 
 /// A vector in each lane, by rows.

@@ -21,8 +21,6 @@ mod solid;
 mod tests;
 mod vectors;
 
-use fearless_simd::{Level, Simd};
-
 use self::ball_ball::BallBall;
 use self::ball_cuboid::BallCuboid;
 use self::ball_segment::BallSegment;
@@ -35,6 +33,7 @@ use super::box_lanes::transposed;
 use super::{Candidate, Pair, names};
 use crate::convex::Separation;
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Pose, Real, Space, Vector, Wide};
 use crate::query::{ManifoldRequest, RawManifold};
 use crate::shape::{FeatureId, Geometry};
@@ -138,14 +137,7 @@ fn update_at<F: Form<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     pairs: &mut P,
 ) {
-    with_lanes!(level, simd => update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs), else {
-        for index in 0..pairs.len() {
-            if pairs.begin(index).is_some() {
-                one_by_one(pairs, index);
-                pairs.end(index);
-            }
-        }
-    });
+    with_lanes!(level, simd => update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs));
 }
 
 /// A pair alone.

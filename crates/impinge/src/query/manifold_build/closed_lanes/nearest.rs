@@ -1,10 +1,9 @@
 //! Segments in lanes: their nearest points to others, and the names of their parts.
 
-use fearless_simd::{Select, Simd};
-
 use super::gather::Inputs;
 use super::vectors::{dot, either, length_of, minus, plus, times};
 use super::{PairQuestion, Solid};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::FeatureId;
 

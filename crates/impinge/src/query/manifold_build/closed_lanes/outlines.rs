@@ -1,10 +1,9 @@
 //! Segments of the plane, and what separates them: `separation/polygon_polygon.rs` in lanes, for
 //! outlines of two vertices.
 
-use fearless_simd::{Select, Simd};
-
 use super::nearest::{Nearest, nearest_on_segment};
 use super::vectors::{dot, either, lit, minus, negated, norm, times, unit};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// A point or vector of the plane in each lane.

@@ -1,13 +1,12 @@
 //! Segments and capsules of the plane: the facets of `facet.rs` and what two of them share, as
 //! `overlap.rs` has it, in lanes.
 
-use fearless_simd::{Select, Simd};
-
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
 use super::outlines::{Outline, Plane, separation};
 use super::vectors::{bits, dot, either, lit, minus, negated, norm, plus, rounding_of, times};
 use super::{Form, Found, PairQuestion};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
@@ -251,7 +250,7 @@ impl<V, M> Candidate<V, M> {
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: fearless_simd::SimdMask<S>,
+        M: SimdMask<S>,
     {
         let (own, other) = (&facets[which], &facets[1 - which]);
         let [is_beside, is_first, is_last] = other.beside(simd, own.flats[end], frame);

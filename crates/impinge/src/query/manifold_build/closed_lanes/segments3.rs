@@ -1,11 +1,10 @@
 //! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
 
-use fearless_simd::{Select, Simd};
-
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther, nearest_on_segment};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
 use super::{Form, Found, PairQuestion};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 

@@ -1,13 +1,12 @@
 //! Eight at a time against one by one, bit for bit, on every instruction set.
 
-use fearless_simd::Level;
-
-use super::super::box_lanes::tests::{facts, levels};
+use super::super::box_lanes::tests::facts;
 use super::super::tests::scene::{Random, Scene};
 use super::{
     BallBall, BallCuboid, BallSegment, Form, KeptPairs, PairQuestion, Segments2, Segments3, Solid,
     update_at,
 };
+use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::{ManifoldRequest, RawManifold};
 use crate::shape::{Ball, Capsule, Cuboid, Segment};
@@ -68,7 +67,7 @@ fn compare<F: Form<N, D>, N: Space<D>, const D: usize>(
     what: &str,
 ) -> [usize; 3] {
     let mut sums = [0; 3];
-    for level in levels() {
+    for level in Level::available() {
         let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
         let (mut expected, mut found) = (fresh(), fresh());
         sums = [0; 3];

@@ -1,12 +1,11 @@
 //! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
 
-use fearless_simd::Simd;
-
 pub(super) use super::super::box_lanes::bits;
 use super::super::frame::ROUNDING_ERRORS;
 pub(super) use crate::math::lanes::{
     by_axis, cross, dot, either, lit, minus, negated, norm, over, plus, seen_from, times,
 };
+use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
 /// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.

@@ -8,13 +8,12 @@
 mod facing;
 mod part;
 
-use fearless_simd::{Level, Simd};
-
 use self::facing::Facing;
 use self::part::{Names, Part};
 use super::frame::rounding;
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd};
 use crate::math::{Real, Wide};
 use crate::query::separation::bare;
 use crate::query::separation::meeting::Meeting;
@@ -43,7 +42,7 @@ pub(super) fn build<N: Real>(
     let shown = ([names1, names2], tolerance);
     with_lanes!(Level::new(), simd => {
         build_in_lanes::<_, N, N::Lanes<_>>(simd, pair, shown, (request.prediction, out))
-    }, else false)
+    })
 }
 
 /// How they meet is told by vectors, and what they show and share from corner to corner.

@@ -1,16 +1,15 @@
 //! Eight segments at once against a ball.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use super::super::ball_segment;
 use super::{ChainQuestion, Eight, Links};
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{Ball, Kind, Segment};
 
-/// The separations of a ball from segments; `None` where the numbers end, and without vectors.
+/// The separations of a ball from segments; `None` where the numbers end.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -43,7 +42,7 @@ fn at<N: Real>(
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {
-    with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius), else None)
+    with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
 }
 
 /// By the distances that [`ball_segment`] finds.

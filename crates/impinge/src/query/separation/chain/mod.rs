@@ -9,12 +9,12 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, Simd};
 use smallvec::SmallVec;
 
 use super::polygon_lanes::Polygon;
 use crate::convex::Separation;
 use crate::math::lanes::{dot, either, load, minus, spread};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::Kind;
@@ -103,7 +103,6 @@ impl<V> Eight<V> {
     where
         V: Wide<S, Scalar = N>,
     {
-        use fearless_simd::SimdMask;
         let origin: [V; 2] = spread(simd, &question.origin);
         let a: [V; 2] = minus(&load(simd, &tiles.corners[0]), &origin);
         let b: [V; 2] = minus(&load(simd, &tiles.corners[1]), &origin);
@@ -144,7 +143,7 @@ fn nearest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (from_a, to_b) = (dot(&minus(point, a), side), dot(&minus(b, point), side));
     let zero = V::all(simd, N::ZERO);
     let (is_after_a, is_nearer_a) = (from_a.simd_gt(zero), from_a.simd_lt(to_b));
-    let share = fearless_simd::Select::select(is_nearer_a, from_a, to_b) / (from_a + to_b);
+    let share = is_nearer_a.select(from_a, to_b) / (from_a + to_b);
     let step = [side[0] * share, side[1] * share];
     let after_a = [a[0] + step[0], a[1] + step[1]];
     let between = either(is_nearer_a, &after_a, &minus(b, &step));

@@ -1,12 +1,11 @@
 //! Eight segments at once against a polygon of up to eight vertices, swollen or not.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
-
 use super::super::polygon_lanes::{Outline, Polygon, of_axis};
 use super::super::polygon_polygon::{self, Axis};
 use super::{ChainQuestion, Eight, Links};
 use crate::convex::Separation;
 use crate::math::lanes::{dot, either, negated, over, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::LANES;
@@ -22,7 +21,7 @@ pub(super) fn links<N: Real>(
     polygon: &Polygon<N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links), else None)
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links))
 }
 
 #[inline(always)]

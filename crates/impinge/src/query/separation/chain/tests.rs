@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::query::Pair;
-use crate::query::separation::hulls::tests::{Random, levels};
+use crate::query::separation::hulls::tests::Random;
 use crate::query::separation::polygon_polygon::tests::solid_of;
 use crate::query::separation::separation_in_plane;
 use crate::shape::{Ball, Segment};
@@ -60,7 +60,7 @@ fn compare<N: Real>(seed: u64) {
             let answer = separation_in_plane(&Pair { first, second, pose12 }, limit);
             expected.extend(answer.map(|answer| (index, answer)));
         }
-        for level in levels() {
+        for level in Level::available() {
             let mut links = Links::new(N::INFINITY);
             count += 1;
             if links_at(level, &question, &mut links).is_some() {

@@ -1,10 +1,9 @@
 //! Vertices in lanes, and how far they and planes lie from one another.
 
-use fearless_simd::{Simd, SimdMask};
-
 use super::solid::Flat;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::math::lanes::{by_axis, dot, highest_lane, load, spread};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide};
 use crate::shape::Planes;
 

@@ -1,12 +1,11 @@
 //! An edge of each solid: faces of the Minkowski difference where they overlap, nearest points where
 //! they are apart.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::face::{Meeting, Side};
 use super::pool::Asked;
 use super::{Found, LANES, noise};
 use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;

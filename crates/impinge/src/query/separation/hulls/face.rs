@@ -3,12 +3,11 @@
 use core::cell::Cell;
 use core::ops::ControlFlow;
 
-use fearless_simd::Simd;
-
 use super::cloud::{Cloud, Heights, Place, highest_over};
 use super::pool::{Asked, Pool};
 use super::solid::Flat;
 use super::{Found, noise};
+use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
 use crate::query::separation::segments::nearest_on_segment;
 

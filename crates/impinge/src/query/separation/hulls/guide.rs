@@ -1,11 +1,10 @@
 //! What is known beforehand of the parts that may decide, and what is found out for the next time.
 
-use fearless_simd::Simd;
-
 use super::cloud::{Best, Cloud};
 use super::noise;
 use super::pool::{Asked, Pool, Pools};
 use super::solid::Flat;
+use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
 /// How far the solids may move before what is noted of them means nothing, in units of the pair.

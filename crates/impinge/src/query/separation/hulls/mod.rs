@@ -26,8 +26,6 @@ pub(in crate::query) mod tests;
 
 use core::cell::Cell;
 
-use fearless_simd::{Level, Simd};
-
 pub(crate) use self::certificate::Certificate;
 use self::cloud::{Cloud, Place};
 use self::face::{Meeting, Side};
@@ -37,6 +35,7 @@ use self::solid::{BoxParts, Flat};
 use super::{general, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::Pair;
 use crate::shape::{Cuboid, Kind, SupportMap};
@@ -153,7 +152,7 @@ fn at<N: Real>(
     question: (&Pose<N, 3>, N),
     guide: &mut Guide<N>,
 ) -> Verdict<N> {
-    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, question, guide), else Verdict::Undecided)
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, solids, question, guide))
 }
 
 #[inline(always)]

@@ -6,13 +6,12 @@
 //! cross. Whether it is a face at all are signs of products that change by no more than the turn of
 //! the solids. Distances of edges change by no more than the motion of points.
 
-use fearless_simd::{Simd, SimdMask};
-
 use super::edges::{Chosen, Edge, Edges, squares};
 use super::face::Meeting;
 use super::guide::ROOM;
 use super::{Found, LANES, noise};
 use crate::math::lanes::{self, by_axis, dot, load, spread};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 
 /// So many edges of each solid are noted.

@@ -6,8 +6,6 @@
 //! are the faces of the Minkowski difference; where they are apart the nearest of the edges of faces that are
 //! seen from some point of the segment. What is not proved is left to the general algorithm.
 
-use fearless_simd::{Level, Simd, SimdMask};
-
 use super::super::rod::{Parting, Rod, Verdict, noise, settled};
 use super::super::segments::nearest_of_segments;
 use super::super::{general, wrong_kinds};
@@ -15,6 +13,7 @@ use super::edges::{Edge, Edges, squares};
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::convex::Separation;
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, cross, max, min};
 use crate::query::Pair;
 use crate::shape::{Kind, Polytope, PolytopeEdge, SupportMap};
@@ -195,9 +194,7 @@ impl<'a, N: Real> Beam<'a, N> {
 impl<N: Real> Planes<N> {
     /// With the vectors of an instruction set; the answer does not depend on it.
     fn of(level: Level, rod: &Rod<'_, N>, hull: &Polytope<N, 3>) -> Self {
-        with_lanes!(level, simd => Self::in_lanes::<_, N::Lanes<_>>(simd, rod, hull), else {
-            fearless_simd::dispatch!(level, simd => Self::in_lanes::<_, N::Lanes<_>>(simd, rod, hull))
-        })
+        with_lanes!(level, simd => Self::in_lanes::<_, N::Lanes<_>>(simd, rod, hull))
     }
 
     #[inline(always)]
@@ -229,9 +226,7 @@ impl<N: Real> Planes<N> {
 
 /// The edge of a face that is seen that is nearest to the segment, the first of equals.
 fn nearest_edge<N: Real>(level: Level, beam: &Beam<'_, N>) -> Option<usize> {
-    with_lanes!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, beam), else {
-        fearless_simd::dispatch!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, beam))
-    })
+    with_lanes!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, beam))
 }
 
 #[inline(always)]

@@ -1,10 +1,9 @@
 //! Against the general algorithm, and on every instruction set.
 
-use fearless_simd::Level;
-
 use super::{BoxParts, Certificate, Flat, Guide, Verdict, at};
 use crate::convex::Separation;
 use crate::math::na::{Quaternion, UnitQuaternion};
+use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
 use crate::query::separation::general;
@@ -93,17 +92,6 @@ fn with_solids<N: Real, T>(pair: &Pair<'_, N, 3>, ask: impl FnOnce([&Flat<'_, N>
     ask([&flat(0), &flat(1)])
 }
 
-pub(in crate::query) fn levels() -> Vec<Level> {
-    let level = Level::new();
-    let mut all = vec![level];
-    #[cfg(target_arch = "x86_64")]
-    {
-        all.extend(level.as_avx2().map(Level::Avx2));
-        all.extend(level.as_sse2().map(Level::Sse2));
-    }
-    all
-}
-
 /// How far off an answer is: from the distance, by its own points, and by what its normal separates.
 pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -140,7 +128,7 @@ fn compare<N: Real>(seed: u64, rounds: usize) {
             pair.pose12.translation += truth.normal * (N::lit(gap) - truth.distance);
         }
         let truth = general::of_flat_cores(&pair, N::INFINITY).expect("no limit");
-        let found = levels().into_iter().map(|level| verdict(level, &pair, N::INFINITY));
+        let found = Level::available().into_iter().map(|level| verdict(level, &pair, N::INFINITY));
         let found: Vec<_> = found.collect();
         assert!(found.iter().all(|one| *one == found[0]), "round {round}: {found:?}");
         count += 1;
@@ -198,7 +186,7 @@ fn walk<N: Real>(seed: u64, walks: usize, scale: f64) -> [usize; 3] {
         }
         let limit = N::lit([0.1, 0.02, 10.0][round % 3] * size);
         let start = pair.pose12;
-        for level in levels() {
+        for level in Level::available() {
             pair.pose12 = start;
             let (mut certificate, mut own) = (Certificate::<N, 3>::default(), Random(seed));
             for step in 0..24 {

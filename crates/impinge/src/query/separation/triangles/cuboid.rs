@@ -1,7 +1,5 @@
 //! Triangles against one box.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_cuboid;
 use super::{
@@ -10,6 +8,7 @@ use super::{
 };
 use crate::convex::Separation;
 use crate::math::lanes::{spread, times};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::query::tiles::Tiles;
 use crate::shape::Cuboid;

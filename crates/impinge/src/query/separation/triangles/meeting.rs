@@ -9,10 +9,10 @@ use super::super::triangle_axes::{Axis, AxisKind, Faces, Fin, noise};
 use super::super::triangle_polytope;
 use super::{Axes, Faceted, Question, at, polytope};
 use crate::convex::Separation;
+use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector, cross, max};
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{Cuboid, FeatureId, Kind, Polytope, SupportMap, Triangle};
-use fearless_simd::Level;
 
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
 const INSIDE: f64 = 1.0 / 32.0;
@@ -95,8 +95,8 @@ impl<'a, N: Real> Flat<'a, N> {
 }
 
 impl<'a, N: Real> FlatQuestion<'a, N> {
-    /// The axes of eight triangles; `None` without vectors.
-    pub(crate) fn eight<'q>(&'q self, tiles: &Tiles<N, 3>) -> Option<Eight<'q, 'a, N>> {
+    /// The axes of eight triangles.
+    pub(crate) fn eight<'q>(&'q self, tiles: &Tiles<N, 3>) -> Eight<'q, 'a, N> {
         let reach = self.solid.reach();
         let Self { pose12, limit, origin, .. } = self;
         let question = Question { pose12, reach, limit: *limit, origin };
@@ -104,7 +104,7 @@ impl<'a, N: Real> FlatQuestion<'a, N> {
             Flat::Cuboid(cuboid) => at(Level::new(), cuboid, &question, tiles),
             Flat::Polytope(hull) => at(Level::new(), hull, &question, tiles),
         };
-        Some(Eight { question: self, axes: axes? })
+        Eight { question: self, axes }
     }
 }
 

@@ -12,7 +12,6 @@ mod sift;
 
 pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
 pub(crate) use self::meeting::{Flat, FlatQuestion, Told, Touched};
-use fearless_simd::{Level, Select, Simd};
 use smallvec::SmallVec;
 
 use super::triangle_axes::{Axis, AxisKind, Fin, THIN, noise};
@@ -20,6 +19,7 @@ use crate::convex::Separation;
 use crate::math::lanes::{
     by_axis, cross, dot, either, load, minus, over, spread, times, with_lanes,
 };
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
 use crate::query::tiles::{LANES, TiledParts, Tiles};
 use crate::shape::{Kind, SupportMap, Triangle};
@@ -83,7 +83,7 @@ fn of_solid<N: Real>(
         return false;
     }
     for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
-        let Some(axes) = at(Level::new(), solid, &question, tiles) else { return false };
+        let axes = at(Level::new(), solid, &question, tiles);
         for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
             let found = axes.answer(lane, (solid, &question), tiles);
             let Some(found) = found else { return false };
@@ -99,8 +99,8 @@ fn at<N: Real>(
     solid: &impl Faceted<N>,
     question: &Question<'_, N>,
     tiles: &Tiles<N, 3>,
-) -> Option<Axes<N>> {
-    with_lanes!(level, simd => Some(solid.search::<_, N::Lanes<_>>(simd, question, tiles)), else None)
+) -> Axes<N> {
+    with_lanes!(level, simd => solid.search::<_, N::Lanes<_>>(simd, question, tiles))
 }
 
 /// What all triangles are asked.

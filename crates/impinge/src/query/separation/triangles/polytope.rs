@@ -1,7 +1,5 @@
 //! Triangles against one convex hull.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::triangle_axes::{Axis, AxisKind, Fin, least_sine, noise};
 use super::super::triangle_polytope;
 use super::{
@@ -9,6 +7,7 @@ use super::{
 };
 use crate::convex::Separation;
 use crate::math::lanes::{cross, dot, minus, over, spread, times};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::query::tiles::Tiles;
 use crate::shape::Polytope;

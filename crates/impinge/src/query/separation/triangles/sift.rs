@@ -1,11 +1,10 @@
 //! Which triangles a solid with flat faces may be near, by the planes of its faces alone.
 
-use fearless_simd::{Level, Select, Simd, SimdMask};
-
 use super::low_byte;
 use super::meeting::{Flat, FlatQuestion};
 use super::turned;
 use crate::math::lanes::{dot, load, minus, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Wide, max, max_component, min};
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{Cuboid, Polytope, SupportMap};
@@ -30,19 +29,15 @@ struct Gaps<V> {
 }
 
 impl<N: Real> FlatQuestion<'_, N> {
-    /// What may be near of eight triangles; `None` without vectors.
-    pub(crate) fn sifted(&self, tiles: &Tiles<N, 3>) -> Option<Sifted<N>> {
+    /// What may be near of eight triangles.
+    pub(crate) fn sifted(&self, tiles: &Tiles<N, 3>) -> Sifted<N> {
         at(Level::new(), self, tiles)
     }
 }
 
 /// [`sift`] with the vectors of an instruction set; the answers do not depend on it.
-fn at<N: Real>(
-    level: Level,
-    question: &FlatQuestion<'_, N>,
-    tiles: &Tiles<N, 3>,
-) -> Option<Sifted<N>> {
-    with_lanes!(level, simd => Some(sift::<_, N, N::Lanes<_>>(simd, question, tiles)), else None)
+fn at<N: Real>(level: Level, question: &FlatQuestion<'_, N>, tiles: &Tiles<N, 3>) -> Sifted<N> {
+    with_lanes!(level, simd => sift::<_, N, N::Lanes<_>>(simd, question, tiles))
 }
 
 #[inline(always)]

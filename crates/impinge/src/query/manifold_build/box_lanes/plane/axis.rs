@@ -1,10 +1,9 @@
 //! The separating axis test of eight pairs of boxes in the plane:
 //! `query/separation/rectangle_axes.rs` in lanes.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::gather::{Boxes, is_finite};
 use crate::math::lanes::{by_axis, dot, lit};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// The axis of the largest gap of eight pairs.
@@ -53,7 +52,7 @@ impl<V> Boxes<V, 2> {
     pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
         let (first, second) = self.best_sides(simd);
@@ -79,7 +78,7 @@ impl<V> Boxes<V, 2> {
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (Side<V, M>, Side<V, M>)
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
         let leans = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
@@ -106,7 +105,7 @@ impl<V> Boxes<V, 2> {
 }
 
 #[inline(always)]
-fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S> + Select<V>>(
+fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     gaps: [V; 2],
     is_y: M,
     is_positive: [M; 2],

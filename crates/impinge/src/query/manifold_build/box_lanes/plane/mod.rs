@@ -4,8 +4,6 @@ mod axis;
 mod names;
 mod sides;
 
-use fearless_simd::Simd;
-
 use self::names::Names;
 use self::sides::Sides;
 use super::admit::{Admission, Limits, Slots};
@@ -14,6 +12,7 @@ use super::gather::Inputs;
 use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
 use crate::math::lanes::lit;
+use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts2;
 

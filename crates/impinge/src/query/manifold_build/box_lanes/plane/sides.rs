@@ -1,14 +1,13 @@
 //! The two sides that meet, of eight pairs, and the ends of what they share: those of `box_sides.rs`,
 //! side by side.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::admit::{Admission, Slots};
 use super::super::gather::{Boxes, other, tolerance};
 use super::super::masks::bits;
 use super::SLOTS;
 use super::axis::BestSide;
 use crate::math::lanes::{by_axis, dot, either, lit};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
@@ -67,7 +66,7 @@ impl<V, M> Sides<V, M> {
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let (zero, is_y) = (V::all(simd, N::ZERO), axis.is_y);
         let own = by_axis(
@@ -113,7 +112,7 @@ impl<V, M> Sides<V, M> {
     ) -> [u8; 2 * SLOTS]
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let mut above = [self.above(simd, 0), self.above(simd, 1)];
         above[0].is_inside &= !self.is_corner | !self.is_second_lower;
@@ -149,7 +148,7 @@ impl<V, M> Sides<V, M> {
     ) -> [V; 2]
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let rise = self.is_upward.select(height, -height);
         let level = self.level + is_second.select(rise, V::all(simd, N::ZERO));
@@ -169,7 +168,7 @@ impl<V, M> Sides<V, M> {
     fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> Candidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let end = self.ends[end];
         self.beside(simd, end, (end.place + self.half, self.half + self.half))
@@ -180,7 +179,7 @@ impl<V, M> Sides<V, M> {
     fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> Candidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
         let along = place - self.ends[0].place;
@@ -200,7 +199,7 @@ impl<V, M> Sides<V, M> {
     ) -> Candidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let slack = V::all(simd, N::TWO) * self.tolerance;
         let is_inside = !(along.simd_lt(-slack) | along.simd_gt(length + slack));
@@ -231,7 +230,7 @@ impl<V, M> Upper<V, M> {
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let (rotation, shift) = other(boxes, axis.is_second);
         let facing: [V; 2] = by_axis(

@@ -1,9 +1,8 @@
 //! The separating axis test of eight pairs of boxes: `query/separation/cuboid_axes.rs` in lanes.
 
-use fearless_simd::{Select, Simd};
-
 use super::super::gather::{Boxes, is_finite};
 use crate::math::lanes::{by_axis, dot, lit};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// The axis of the largest gap of eight pairs.

@@ -4,13 +4,12 @@
 //! their numbers, so there are places for 4 + 4 + 16 of them and a bit that says which there are:
 //! nothing is moved until all is known.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
 use super::super::masks::bits;
 use super::faces::{Faces, cross};
 use super::shown::Shown;
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// The first eight slots are corners, above which or below which the other face is to be named.
@@ -69,7 +68,7 @@ where
     S: Simd,
     N: Real,
     V: Wide<S, Scalar = N, Mask = M>,
-    M: SimdMask<S> + Select<V>,
+    M: SimdMask<S>,
 {
     #[inline(always)]
     pub(super) fn new(

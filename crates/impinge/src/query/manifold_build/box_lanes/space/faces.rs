@@ -1,11 +1,10 @@
 //! The two faces that meet, of eight pairs: those of `box_faces.rs`, side by side.
 
-use fearless_simd::{Select, Simd, SimdMask};
-
 use super::super::gather::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
 use super::shown::Shown;
 use crate::math::lanes::{by_axis, dot, either, lit, negated, norm, seen_from};
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// A face of a box, and the face of the other above it, in the frame of the first of these.
@@ -78,7 +77,7 @@ struct Below<V, M> {
 }
 
 #[inline(always)]
-fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
     boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, M>,
@@ -112,7 +111,7 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Se
 /// The normal away from the box whose face is to be the rectangle where edges decide, and whether that
 /// is the second box, there and elsewhere.
 #[inline(always)]
-fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
     boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, M>,
@@ -128,7 +127,7 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
 
 /// The face of a box that is most aligned with a unit vector does not lean too far.
 #[inline(always)]
-fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S> + Select<V>>(
+fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
     toward: &[V; 3],
 ) -> M {
@@ -165,7 +164,7 @@ impl<V, M> Faces<V, M> {
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let below = below(simd, boxes, axis);
         let (rotation, shift) = other(boxes, below.is_second);
@@ -242,7 +241,7 @@ impl<V, M> Faces<V, M> {
     ) -> [V; 3]
     where
         V: Wide<S, Scalar = N, Mask = M>,
-        M: SimdMask<S> + Select<V>,
+        M: SimdMask<S>,
     {
         let is_second = self.is_second;
         let level = self.half + is_second.select(height, V::all(simd, N::ZERO));

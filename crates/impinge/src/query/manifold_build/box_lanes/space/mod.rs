@@ -6,8 +6,6 @@ mod faces;
 mod names;
 mod shown;
 
-use fearless_simd::Simd;
-
 use self::clip::{Clip, Corners};
 use self::faces::Faces;
 use self::names::{Names, Side, parts_at};
@@ -17,6 +15,7 @@ use super::gather::{Boxes, Inputs};
 use super::masks::{bits, turned};
 use super::{BoxJob, Eights, LANES};
 use crate::math::lanes::lit;
+use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
 use crate::query::manifold_build::contacts3;
 

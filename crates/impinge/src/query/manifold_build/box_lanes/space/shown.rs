@@ -1,9 +1,8 @@
 //! What faces show of themselves, of eight pairs: `manifold_build/shown.rs` in lanes.
 
-use fearless_simd::{Simd, SimdMask};
-
 use super::clip::SIGNS;
 use crate::math::lanes::lit;
+use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 

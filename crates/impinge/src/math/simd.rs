@@ -1,0 +1,274 @@
+//! Eight numbers side by side: the vectors that kernels compute in, and which of them a target has.
+//!
+//! A kernel is one source over [`Simd`] and [`Wide`]. [`with_lanes!`](super::lanes::with_lanes) compiles it for
+//! the instruction sets of the target, or for [`Arrays`](super::arrays::Arrays) where the target has none. All
+//! operations are those of IEEE 754, so that each lane has the bits that a scalar would have.
+
+use core::ops::{
+    Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
+};
+
+use fearless_simd::{Select, SimdBase, SimdFloat, f32x8};
+
+/// The vectors that kernels use: those of an instruction set, or none. No result depends on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level(pub(crate) Option<Vectors>);
+
+/// An instruction set for which kernels are compiled.
+///
+/// Of x86 AVX2, and SSE2 of the baseline: what lies between brings little, and eight lanes gain nothing from
+/// wider registers, whereas each set is one more copy of all kernels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vectors {
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    Avx2(fearless_simd::Avx2),
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    Sse2(fearless_simd::Sse2),
+    #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+    Neon(fearless_simd::Neon),
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    Simd128(fearless_simd::WasmSimd128),
+}
+
+/// Kernels are compiled for arrays too: for targets without vectors, and for tests.
+pub(crate) const ON_ARRAYS: bool = cfg!(any(
+    test,
+    not(any(
+        all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))
+));
+
+impl Level {
+    /// The best of this machine.
+    #[inline]
+    pub(crate) fn new() -> Self {
+        let level = fearless_simd::Level::new();
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+        let vectors = match level.as_avx2() {
+            Some(avx2) => Some(Vectors::Avx2(avx2)),
+            None => level.as_sse2().map(Vectors::Sse2),
+        };
+        #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+        let vectors = level.as_neon().map(Vectors::Neon);
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        let vectors = level.as_wasm_simd128().map(Vectors::Simd128);
+        #[cfg(not(any(
+            all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+            all(target_arch = "aarch64", target_feature = "neon"),
+            all(target_arch = "wasm32", target_feature = "simd128")
+        )))]
+        let vectors = {
+            let _ = level;
+            None
+        };
+        Self(vectors)
+    }
+
+    /// Those of an instruction set; none without.
+    #[inline]
+    pub(crate) const fn vectors(self) -> Option<Vectors> {
+        self.0
+    }
+
+    /// Everything that runs on this machine, the best first and last without vectors, for tests.
+    pub(crate) fn available() -> Vec<Self> {
+        let mut all = vec![Self::new()];
+        #[cfg(target_arch = "x86_64")]
+        all.extend(
+            fearless_simd::Level::new().as_sse2().map(|sse2| Self(Some(Vectors::Sse2(sse2)))),
+        );
+        all.push(Self(None));
+        all
+    }
+}
+
+/// A scalar of which eight make a vector.
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub trait Eight: Sized {
+    /// Eight of them.
+    type Lanes<S: Simd>: Wide<S, Scalar = Self>;
+}
+
+impl Eight for f32 {
+    type Lanes<S: Simd> = S::F32x8;
+}
+
+#[cfg(feature = "f64")]
+impl Eight for f64 {
+    type Lanes<S: Simd> = S::F64x8;
+}
+
+/// A set of vectors. A value of it proves that the machine has them.
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub trait Simd: Copy {
+    /// Eight `f32`.
+    type F32x8: Wide<Self, Scalar = f32>;
+    /// Eight `f64`.
+    #[cfg(feature = "f64")]
+    type F64x8: Wide<Self, Scalar = f64>;
+}
+
+/// A truth value in each lane.
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub trait SimdMask<S: Simd>:
+    Copy
+    + BitAnd<Output = Self>
+    + BitAndAssign
+    + BitOr<Output = Self>
+    + BitOrAssign
+    + BitXor<Output = Self>
+    + Not<Output = Self>
+{
+    /// A bit for each lane, the first lowest.
+    fn to_bitmask(self) -> u64;
+    /// It is true in some lane.
+    fn any_true(self) -> bool;
+    /// It is true in all lanes.
+    fn all_true(self) -> bool;
+
+    /// The first vector where it is true, else the second.
+    #[inline(always)]
+    fn select<V: Wide<S, Mask = Self>>(self, one: V, other: V) -> V {
+        V::selected(self, one, other)
+    }
+}
+
+/// A vector of scalars.
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub trait Wide<S: Simd>:
+    Copy
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// What one lane holds.
+    type Scalar;
+    /// What comparisons say.
+    type Mask: SimdMask<S>;
+
+    /// The same number in all lanes.
+    fn all(simd: S, value: Self::Scalar) -> Self;
+    /// As many numbers as there are lanes.
+    fn load(simd: S, numbers: &[Self::Scalar]) -> Self;
+    /// Writes as many numbers as there are lanes.
+    fn store(self, numbers: &mut [Self::Scalar]);
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// The magnitude.
+    fn abs(self) -> Self;
+
+    /// Whether each number is less; false for NaN.
+    fn simd_lt(self, other: Self) -> Self::Mask;
+    /// Whether each number is greater; false for NaN.
+    fn simd_gt(self, other: Self) -> Self::Mask;
+    /// Whether each number is not greater; false for NaN.
+    fn simd_le(self, other: Self) -> Self::Mask;
+    /// Whether each number is not less; false for NaN.
+    fn simd_ge(self, other: Self) -> Self::Mask;
+    /// Whether each number is equal; false for NaN.
+    fn simd_eq(self, other: Self) -> Self::Mask;
+
+    /// See [`SimdMask::select`].
+    fn selected(mask: Self::Mask, one: Self, other: Self) -> Self;
+
+    /// The smaller number; the second if either is NaN.
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        self.simd_lt(other).select(self, other)
+    }
+
+    /// The larger number; the second if either is NaN.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.simd_gt(other).select(self, other)
+    }
+}
+
+impl<S: fearless_simd::Simd> Simd for S {
+    type F32x8 = f32x8<S>;
+    #[cfg(feature = "f64")]
+    type F64x8 = fearless_simd::f64x8<S>;
+}
+
+impl<S: fearless_simd::Simd, M: fearless_simd::SimdMask<S>> SimdMask<S> for M {
+    #[inline(always)]
+    fn to_bitmask(self) -> u64 {
+        fearless_simd::SimdMask::to_bitmask(self)
+    }
+
+    #[inline(always)]
+    fn any_true(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+
+    #[inline(always)]
+    fn all_true(self) -> bool {
+        fearless_simd::SimdMask::all_true(self)
+    }
+}
+
+impl<S: fearless_simd::Simd, V: SimdFloat<S>> Wide<S> for V {
+    type Scalar = V::Element;
+    type Mask = <V as SimdBase<S>>::Mask;
+
+    #[inline(always)]
+    fn all(simd: S, value: V::Element) -> Self {
+        V::splat(simd, value)
+    }
+
+    #[inline(always)]
+    fn load(simd: S, numbers: &[V::Element]) -> Self {
+        V::from_slice(simd, numbers)
+    }
+
+    #[inline(always)]
+    fn store(self, numbers: &mut [V::Element]) {
+        self.store_slice(numbers);
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        SimdBase::abs(self)
+    }
+
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> Self::Mask {
+        SimdBase::simd_lt(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_gt(self, other: Self) -> Self::Mask {
+        SimdBase::simd_gt(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_le(self, other: Self) -> Self::Mask {
+        SimdBase::simd_le(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_ge(self, other: Self) -> Self::Mask {
+        SimdBase::simd_ge(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_eq(self, other: Self) -> Self::Mask {
+        SimdBase::simd_eq(self, other)
+    }
+
+    #[inline(always)]
+    fn selected(mask: Self::Mask, one: Self, other: Self) -> Self {
+        Select::select(mask, one, other)
+    }
+}
