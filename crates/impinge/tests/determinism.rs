@@ -5,60 +5,28 @@
 //! depths, features, names), proximities and events. `golden/state_hashes.txt` holds that number for
 //! each scene, dimension and scalar. It is the same on every platform and in every build, because
 //! the pipeline only adds, multiplies, divides, takes roots, compares and rounds, in a fixed order,
-//! and takes sines from a software library. The file changes only together with a deliberate change
-//! of answers; then run `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit it.
+//! and takes sines from a software library; `crates/impinge-wasm` plays the same scenes in
+//! WebAssembly. The file changes only together with a deliberate change of answers; then run
+//! `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit it.
 
+#[macro_use]
+#[path = "scene_stage/runs.rs"]
+mod runs;
 mod scene_stage;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::hash::Hasher;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
-use impinge::broad_phase::DBVTBroadPhase;
 use impinge::bvh::Lanes;
 use impinge_scenes::{
-    Scene, few_moving, mixed_shapes, mixed_sizes, pile, sparse_drift, spawn_and_despawn, tower,
+    few_moving, mixed_shapes, mixed_sizes, pile, sparse_drift, spawn_and_despawn, tower,
 };
-use scene_stage::{Digest, Play, Player, digest_state};
-
-/// What the number of a run stands for, and how much of it there was.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Outcome {
-    hash: u64,
-    contacts: usize,
-    events: usize,
-}
-
-/// A scene and how long it is played.
-#[derive(Clone)]
-struct Run<const D: usize> {
-    scene: Scene<D>,
-    steps: u32,
-}
+use runs::{Outcome, Run};
+use scene_stage::Play;
 
 impl<const D: usize> Run<D> {
-    /// Plays the scene in a world whose broad phase uses the given vectors.
-    fn play<N: Play<D>>(&self, lanes: Option<Lanes>) -> Outcome {
-        let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
-        if let Some(lanes) = lanes {
-            let margin = N::lit(self.scene.margin);
-            let broad_phase = DBVTBroadPhase::with_lanes(margin, lanes).expect("a margin");
-            player.world.set_broad_phase(Box::new(broad_phase));
-        }
-        let (mut digest, mut outcome) = (Digest::new(), Outcome::default());
-        for _ in 0..self.steps {
-            player.step();
-            let world = &player.world;
-            digest_state(world, &mut digest);
-            outcome.contacts += world.contact_manifolds().map(|(_, _, m)| m.len()).sum::<usize>();
-            outcome.events += world.contact_events().len() + world.proximity_events().len();
-        }
-        outcome.hash = digest.finish();
-        outcome
-    }
-
     /// Plays the scene in every way there is and answers what it always came to.
     fn in_every_way<N: Play<D>>(&self) -> Outcome {
         let outcome = self.play::<N>(None);
@@ -81,12 +49,11 @@ impl<const D: usize> Run<D> {
         f32: Play<D>,
         f64: Play<D>,
     {
-        let name = self.scene.name.replace(' ', "-").replace('%', "percent");
         for (scalar, outcome) in
             [("f32", self.in_every_way::<f32>()), ("f64", self.in_every_way::<f64>())]
         {
             assert!(outcome.contacts > 50 && outcome.events > 20, "too little: {outcome:?}");
-            compare_with_golden(&format!("{name} {D} {scalar}"), outcome.hash);
+            compare_with_golden(&self.key(scalar), outcome.hash);
         }
     }
 }
@@ -125,30 +92,15 @@ fn compare_with_golden(key: &str, hash: u64) {
         .expect("the golden file can be written");
 }
 
-macro_rules! scenes {
-    ($($name:ident: $scene:expr, $steps:expr;)*) => {
+macro_rules! tests {
+    ($($name:ident: $run:expr;)*) => {
         $(
             #[test]
             fn $name() {
-                Run { scene: $scene, steps: $steps }.check();
+                $run.check();
             }
         )*
     };
 }
 
-scenes! {
-    pile_in_plane: pile::<2>(600), 20;
-    pile_in_space: pile::<3>(150), 20;
-    sparse_drift_in_plane: sparse_drift::<2>(2500), 12;
-    sparse_drift_in_space: sparse_drift::<3>(600), 30;
-    mixed_shapes_in_plane: mixed_shapes::<2>(300), 30;
-    mixed_shapes_in_space: mixed_shapes::<3>(240), 20;
-    mixed_sizes_in_plane: mixed_sizes::<2>(600), 30;
-    mixed_sizes_in_space: mixed_sizes::<3>(600), 30;
-    spawn_and_despawn_in_plane: spawn_and_despawn::<2>(500), 40;
-    spawn_and_despawn_in_space: spawn_and_despawn::<3>(500), 30;
-    tower_in_plane: tower::<2>(400), 20;
-    tower_in_space: tower::<3>(400), 20;
-    few_moving_in_plane: few_moving::<2>(3000), 60;
-    few_moving_in_space: few_moving::<3>(3000), 40;
-}
+for_each_run!(tests);

@@ -1,0 +1,94 @@
+//! Hashes of scenes and queries, which are the same on every target: the golden ones of the test `determinism`,
+//! and one of the answers for all pairs of kinds.
+//!
+//! Natively the program of this package prints them. As a WebAssembly module it exports functions of numbers
+//! alone, by which `compare.mjs` reads them in Node.
+
+#[macro_use]
+#[path = "../../impinge/tests/scene_stage/runs.rs"]
+mod runs;
+mod answers;
+#[path = "../../impinge/tests/scene_stage/mod.rs"]
+mod scene_stage;
+
+use std::sync::OnceLock;
+
+use impinge_scenes::{
+    few_moving, mixed_shapes, mixed_sizes, pile, sparse_drift, spawn_and_despawn, tower,
+};
+
+use runs::Run;
+use scene_stage::Play;
+
+/// A hash by its name.
+pub struct Check {
+    /// Of scenes as in the golden file.
+    pub name: String,
+    /// Computes it.
+    pub hash: Box<dyn Fn() -> u64 + Send + Sync>,
+}
+
+impl core::fmt::Debug for Check {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+/// All checks.
+#[must_use]
+pub fn checks() -> &'static [Check] {
+    static CHECKS: OnceLock<Vec<Check>> = OnceLock::new();
+    CHECKS.get_or_init(|| {
+        let mut checks = Vec::new();
+        macro_rules! add {
+            ($($name:ident: $run:expr;)*) => {
+                $(add_run(&$run, &mut checks);)*
+            };
+        }
+        for_each_run!(add);
+        let mut add = |name: &str, hash: fn() -> u64| {
+            checks.push(Check { name: name.to_owned(), hash: Box::new(hash) });
+        };
+        add("answers 2 f32", answers::in_plane::<f32>);
+        add("answers 2 f64", answers::in_plane::<f64>);
+        add("answers 3 f32", answers::in_space::<f32>);
+        add("answers 3 f64", answers::in_space::<f64>);
+        checks
+    })
+}
+
+fn add_run<const D: usize>(run: &Run<D>, checks: &mut Vec<Check>)
+where
+    f32: Play<D>,
+    f64: Play<D>,
+{
+    let (run32, run64) = (run.clone(), run.clone());
+    let hash32 = move || run32.play::<f32>(None).hash;
+    let hash64 = move || run64.play::<f64>(None).hash;
+    checks.push(Check { name: run.key("f32"), hash: Box::new(hash32) });
+    checks.push(Check { name: run.key("f64"), hash: Box::new(hash64) });
+}
+
+/// What the host sees.
+#[cfg(target_family = "wasm")]
+mod exports {
+    #![expect(unsafe_code, reason = "the attribute that keeps a name counts as unsafe")]
+
+    /// How many checks there are.
+    #[unsafe(no_mangle)]
+    pub extern "C" fn count() -> usize {
+        super::checks().len()
+    }
+
+    /// A byte of the name of a check; zero after the last.
+    #[unsafe(no_mangle)]
+    pub extern "C" fn name(check: usize, byte: usize) -> u32 {
+        super::checks()[check].name.as_bytes().get(byte).copied().unwrap_or(0).into()
+    }
+
+    /// Computes the hash of a check.
+    #[unsafe(no_mangle)]
+    pub extern "C" fn hash(check: usize) -> u64 {
+        (super::checks()[check].hash)()
+    }
+}

@@ -1,0 +1,74 @@
+//! The scenes whose hashes are golden, and how they are played.
+
+use std::hash::Hasher;
+
+use impinge::broad_phase::DBVTBroadPhase;
+use impinge::bvh::Lanes;
+use impinge_scenes::Scene;
+
+use crate::scene_stage::{Digest, Play, Player, digest_state};
+
+/// What the number of a run stands for, and how much of it there was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Outcome {
+    pub(crate) hash: u64,
+    pub(crate) contacts: usize,
+    pub(crate) events: usize,
+}
+
+/// A scene and how long it is played.
+#[derive(Clone)]
+pub(crate) struct Run<const D: usize> {
+    pub(crate) scene: Scene<D>,
+    pub(crate) steps: u32,
+}
+
+impl<const D: usize> Run<D> {
+    /// What the golden file calls this scene with a scalar.
+    pub(crate) fn key(&self, scalar: &str) -> String {
+        let name = self.scene.name.replace(' ', "-").replace('%', "percent");
+        format!("{name} {D} {scalar}")
+    }
+
+    /// Plays the scene in a world whose broad phase uses the given vectors.
+    pub(crate) fn play<N: Play<D>>(&self, lanes: Option<Lanes>) -> Outcome {
+        let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
+        if let Some(lanes) = lanes {
+            let margin = N::lit(self.scene.margin);
+            let broad_phase = DBVTBroadPhase::with_lanes(margin, lanes).expect("a margin");
+            player.world.set_broad_phase(Box::new(broad_phase));
+        }
+        let (mut digest, mut outcome) = (Digest::new(), Outcome::default());
+        for _ in 0..self.steps {
+            player.step();
+            let world = &player.world;
+            digest_state(world, &mut digest);
+            outcome.contacts += world.contact_manifolds().map(|(_, _, m)| m.len()).sum::<usize>();
+            outcome.events += world.contact_events().len() + world.proximity_events().len();
+        }
+        outcome.hash = digest.finish();
+        outcome
+    }
+}
+
+/// Hands all runs to a macro, each with the name of its test.
+macro_rules! for_each_run {
+    ($then:ident) => {
+        $then! {
+            pile_in_plane: Run { scene: pile::<2>(600), steps: 20 };
+            pile_in_space: Run { scene: pile::<3>(150), steps: 20 };
+            sparse_drift_in_plane: Run { scene: sparse_drift::<2>(2500), steps: 12 };
+            sparse_drift_in_space: Run { scene: sparse_drift::<3>(600), steps: 30 };
+            mixed_shapes_in_plane: Run { scene: mixed_shapes::<2>(300), steps: 30 };
+            mixed_shapes_in_space: Run { scene: mixed_shapes::<3>(240), steps: 20 };
+            mixed_sizes_in_plane: Run { scene: mixed_sizes::<2>(600), steps: 30 };
+            mixed_sizes_in_space: Run { scene: mixed_sizes::<3>(600), steps: 30 };
+            spawn_and_despawn_in_plane: Run { scene: spawn_and_despawn::<2>(500), steps: 40 };
+            spawn_and_despawn_in_space: Run { scene: spawn_and_despawn::<3>(500), steps: 30 };
+            tower_in_plane: Run { scene: tower::<2>(400), steps: 20 };
+            tower_in_space: Run { scene: tower::<3>(400), steps: 20 };
+            few_moving_in_plane: Run { scene: few_moving::<2>(3000), steps: 60 };
+            few_moving_in_space: Run { scene: few_moving::<3>(3000), steps: 40 };
+        }
+    };
+}
