@@ -6,10 +6,14 @@ mod query_support;
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::dim2::shape::Compound as Compound2;
 use impinge::dim3::shape::Compound as Compound3;
-use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Unit, Vector};
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{
+    AbstractRotation, Isometry, Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector,
+};
+use impinge::query::{ClosestPoints, Proximity, closest_points, contact, distance, proximity};
 use impinge::shape::{
-    Ball, Capsule, CompositeShape, Cuboid, FeatureId, HeightField, PartPath, Plane, Shape,
-    ShapeError, ShapeHandle, Triangle,
+    Ball, Capsule, CompositeShape, Compound, Cuboid, FeatureId, HeightField, PartPath, Plane,
+    Segment, Shape, ShapeError, ShapeHandle, Triangle,
 };
 use impinge_reference::random::Random;
 use part_search::{Boxes, check_points, coarse_vector};
@@ -262,4 +266,104 @@ fn surfaces_and_neighbours_are_those_of_the_child() {
     compound.extend_path(6, &mut path);
     assert_eq!(path.as_slice(), [2, 1], "the second part of the second floor");
     assert_eq!(compound.child_of_part(6), (2, 1), "the same");
+}
+
+/// A solid and a corner of it, with small numbers that half of the time are whole.
+fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, Vector<N, D>) {
+    let grid = N::lit([1.0, 1.0 / 1024.0][usize::from(random.bits() & 1 == 0)]);
+    let mut corner = || random.vector::<N, D>().map(|x| (x * N::lit(4.0) / grid).round() * grid);
+    let (a, b) = (corner(), corner());
+    let axis = Vector::<N, D>::from_fn(|row, _| if row == 0 { N::ONE } else { N::ZERO });
+    match random.bits() % 4 {
+        0 => (ShapeHandle::new(Segment::new(Point::from(a), Point::from(b))), a),
+        1 => (ShapeHandle::new(Triangle::new(Point::from(b), Point::from(a), Point::origin())), a),
+        2 => (ShapeHandle::new(Ball::new(a[0].abs())), axis * a[0]),
+        _ => (ShapeHandle::new(Cuboid::new(a.abs())), a),
+    }
+}
+
+/// A compound with a turned child, or one in one, of which a corner is near the origin.
+fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    random: &mut Poses,
+    turn: fn(&mut Poses) -> R,
+    depth: usize,
+) -> ShapeHandle<N, D> {
+    let (shape, corner) = cornered::<N, D>(random);
+    let rotation = turn(random);
+    let at = -rotation.transform_vector(&corner);
+    let pose = Pose::from_isometry(&Isometry::from_parts(at.into(), rotation));
+    let inner = ShapeHandle::new(Compound::new(vec![(N::isometry(&pose), shape)]));
+    (0..depth).fold(inner, |shape, _| {
+        let at = random.vector::<N, D>() * N::lit(8.0);
+        let there = Pose::from_isometry(&Isometry::from_parts(at.into(), turn(random)));
+        let shape = ShapeHandle::new(Compound::new(vec![(N::isometry(&there), shape)]));
+        ShapeHandle::new(Compound::new(vec![(N::isometry(&there.inverse()), shape)]))
+    })
+}
+
+/// Zero distance, intersecting and having a contact are one fact, in either order.
+fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    g2: &dyn Shape<N, D>,
+) -> bool {
+    let touches = distance(m, g1, m, g2) == N::ZERO;
+    for (g1, g2) in [(g1, g2), (g2, g1)] {
+        let found = [
+            distance(m, g1, m, g2) == N::ZERO,
+            proximity(m, g1, m, g2, N::ZERO) == Proximity::Intersecting,
+            closest_points(m, g1, m, g2, N::ZERO) == ClosestPoints::Intersecting,
+            contact(m, g1, m, g2, N::ZERO).is_some(),
+        ];
+        let parts = [g1, g2].map(|g| g.geometry().as_composite().map(|all| all.part(0)));
+        assert_eq!(found, [touches; 4], "{parts:?} at {:?}", Pose::from_isometry(m));
+    }
+    touches
+}
+
+fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    turn: fn(&mut Poses) -> R,
+) {
+    let random = &mut Poses(7, false);
+    let mut touching = 0;
+    for round in 0..3000 {
+        let compound = with_corner_at_origin(random, turn, round % 3);
+        let at = random.vector::<N, D>() * N::lit([0.0, 4.0, 1e6][round / 3 % 3]);
+        let m = Isometry::from_parts(at.into(), turn(random));
+        let other: ShapeHandle<N, D> = match round / 9 % 3 {
+            0 => ShapeHandle::new(Ball::new(N::ZERO)),
+            1 => {
+                let end = Point::from(random.vector::<N, D>());
+                ShapeHandle::new(Segment::new(Point::origin(), end))
+            }
+            _ => with_corner_at_origin(random, turn, 0),
+        };
+        touching += usize::from(check_one_fact(&m, &*compound, &*other));
+    }
+    assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
+}
+
+/// Of children that are turned and moved so that a corner comes to the origin, where another solid begins.
+#[test]
+fn touching_a_turned_child_is_one_fact() {
+    check_corners::<f32, _, 2>(quarter_or_any2);
+    check_corners::<f64, _, 2>(quarter_or_any2);
+    check_corners::<f32, _, 3>(quarter_or_any3);
+    check_corners::<f64, _, 3>(quarter_or_any3);
+}
+
+fn quarter_or_any2<N: Real>(random: &mut Poses) -> UnitComplex<N> {
+    match random.bits() % 4 {
+        0 => UnitComplex::identity(),
+        1 => UnitComplex::new(N::frac_pi_2()),
+        _ => random.turn2(),
+    }
+}
+
+fn quarter_or_any3<N: Real>(random: &mut Poses) -> UnitQuaternion<N> {
+    match random.bits() % 4 {
+        0 => UnitQuaternion::identity(),
+        1 => UnitQuaternion::from_axis_angle(&Vector::<N, 3>::z_axis(), N::frac_pi_2()),
+        _ => random.turn3(),
+    }
 }

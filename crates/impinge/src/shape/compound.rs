@@ -1,5 +1,6 @@
 //! Compounds: shapes side by side, as one.
 
+use super::compound_search::search_box;
 use super::error::or_panic;
 use super::scale::Scale;
 use super::segment::length_of;
@@ -48,7 +49,9 @@ pub struct Compound<N: Space<D>, const D: usize> {
     pub(super) poses: Vec<Pose<N, D>>,
     /// The number of the first part of each child, and at last that of all parts.
     pub(super) firsts: Vec<u32>,
-    /// Over the boxes of the children.
+    /// Around the boxes of the children.
+    aabb: Aabb<N, D>,
+    /// Over these boxes, grown by what rounding may make of the children.
     pub(super) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
     /// A child has a surface that knows its seams.
@@ -82,12 +85,14 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
             return Err(ShapeError::ChildPoseNotFinite { index });
         }
         let firsts = first_parts(&children)?;
-        let boxes = children.iter().zip(&poses).map(|((_, shape), pose)| boxed(&**shape, pose));
-        let tree = BoxTree::from_boxes(&boxes.collect::<Vec<_>>());
+        let placed = || children.iter().zip(&poses).map(|((_, shape), pose)| (&**shape, pose));
+        let boxes = placed().map(|(shape, pose)| boxed(shape, pose));
+        let aabb = boxes.reduce(|all, own| all.merged(&own)).unwrap_or_else(Aabb::unbounded);
+        let searched: Vec<_> = placed().map(|(shape, pose)| search_box(shape, pose)).collect();
+        let tree = BoxTree::from_boxes(&searched);
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
-        let around = tree.bounds().copied().unwrap_or_else(Aabb::unbounded);
-        let sphere = sphere_around(&around, &children, &poses);
-        Ok(Self { children, poses, firsts, tree, sphere, has_surface })
+        let sphere = sphere_around(&aabb, &children, &poses);
+        Ok(Self { children, poses, firsts, aabb, tree, sphere, has_surface })
     }
 
     /// The shapes and their positions in the frame of the compound.
@@ -199,7 +204,10 @@ fn first_parts<N: Space<D>, const D: usize>(
 }
 
 /// The box of a shape placed at `pose`; that of everything where arithmetic fails.
-fn boxed<N: Space<D>, const D: usize>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Aabb<N, D> {
+pub(super) fn boxed<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+) -> Aabb<N, D> {
     let aabb = shape.aabb(pose);
     Aabb::try_new(*aabb.mins(), *aabb.maxs()).unwrap_or_else(|_| Aabb::unbounded())
 }
@@ -308,7 +316,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
     }
 
     fn local_aabb(&self) -> Aabb<N, D> {
-        self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
+        self.aabb
     }
 
     /// Of many children the box is that of the box of all, turned, and so is that of a composite child.

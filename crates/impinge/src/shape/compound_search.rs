@@ -1,12 +1,13 @@
 //! The search of a compound: first among the boxes of its children, then within each composite.
 
+use super::compound::boxed;
 use super::{CompositeShape, Compound, PartSearch, Shape};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Pose, Real, Space, Vector, max, min};
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
     fn bounds(&self) -> Aabb<N, D> {
-        self.local_aabb()
+        PartSearch::bounds(&self.tree)
     }
 
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
@@ -76,6 +77,22 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     }
 }
 
+/// The box by which a search finds a child: around all that rounding makes of the child in the frames in which
+/// the pair algorithms place it. That is in proportion to the child's own coordinates and its position, which may
+/// cancel in the box.
+pub(super) fn search_box<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+) -> Aabb<N, D> {
+    let local = shape.local_aabb();
+    let parts = shape.geometry().as_composite();
+    let searched = parts.map_or(local, |parts| parts.search().bounds());
+    let of_parts = largest((searched.maxs() - local.maxs()).iter());
+    let ends = local.mins().iter().chain(local.maxs().iter()).chain(pose.translation.iter());
+    let aabb = boxed(shape, pose);
+    aabb.loosened(N::TWO * of_parts + rounding(largest(ends)))
+}
+
 /// The box in the frame that `pose` leads from around what `aabb` holds; grown by what rounding may
 /// take off where `aabb`, at rest or on its way, meets `own`.
 ///
@@ -88,8 +105,16 @@ fn within<N: Real, const D: usize>(
 ) -> Aabb<N, D> {
     let corners = [aabb.mins(), aabb.maxs(), own.mins(), own.maxs()];
     let ends = corners.iter().flat_map(|corner| corner.iter()).chain(pose.translation.iter());
-    let finite = ends.filter(|x| x.is_finite_number());
-    let largest = finite.fold(N::ZERO, |largest, x| max(largest, x.abs()));
-    let slack = N::lit(32.0) * N::EPSILON * largest;
-    aabb.transformed_by(&pose.inverse()).loosened(slack)
+    aabb.transformed_by(&pose.inverse()).loosened(rounding(largest(ends)))
+}
+
+/// The largest magnitude of the finite numbers.
+fn largest<'a, N: Real>(numbers: impl Iterator<Item = &'a N>) -> N {
+    let finite = numbers.filter(|x| x.is_finite_number());
+    finite.fold(N::ZERO, |largest, x| max(largest, x.abs()))
+}
+
+/// By how much boxes grow whose coordinates are up to `size`.
+fn rounding<N: Real>(size: N) -> N {
+    N::lit(32.0) * N::EPSILON * size
 }

@@ -3,6 +3,7 @@
 use super::chain::update_chain;
 use super::{
     CompositeContacts, PART_POINTS, contact_in_world, deepest, deepest_in_general, deepest_within,
+    rounding,
 };
 use crate::convex::Separation;
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector};
@@ -120,7 +121,11 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     let general = deepest_in_general(&between, &request);
     let distance = |found: Option<Separation<N, D>>| found.map(|found| found.distance);
     assert_eq!(distance(at_once), distance(general), "{}", what());
-    assert_eq!(distance(at_once), distance(expected), "{}", what());
+    match [at_once, expected].map(distance) {
+        // A contact asked for alone has the distance of the solids where it differs by rounding.
+        [Some(a), Some(b)] => assert!((a - b).abs() <= rounding(&between), "{a}, {b}: {}", what()),
+        [a, b] => assert_eq!(a, b, "{}", what()),
+    }
 }
 
 /// What two ways say of one solid that moves; how many updates the quick one did, and what it found.

@@ -354,17 +354,26 @@ fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool
 
 /// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
 /// near as the nearest are looked at, unless that is one that cannot be touched.
+///
+/// A contact that differs from the distance by rounding alone has that: it exists where the shapes touch, and is
+/// no overlap where they are apart. One of [`has_own_way`] is as it is found without the distance.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     distance: N,
     limit: N,
 ) -> Option<Separation<N, D>> {
+    let (near, rounding) = (max(distance, N::ZERO), rounding(between));
     // Along the normal of its face a part may be a little farther than it is.
-    let near = max(distance, N::ZERO);
-    let reach = near + near * N::lit(NEARLY) + rounding(between);
-    let found =
-        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)));
-    found.filter(|found| found.distance <= limit)
+    let reach = near + near * N::lit(NEARLY) + rounding;
+    let mut found =
+        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
+    let farther = found.distance - near;
+    let is_off = farther > N::ZERO || distance > N::ZERO;
+    if is_off && farther.abs() <= rounding && !has_own_way(between) {
+        found.distance = near;
+        found.point2 = found.point1 + found.normal * near;
+    }
+    (found.distance <= limit).then_some(found)
 }
 
 /// Lengths below this are rounding errors of the pair.

@@ -64,7 +64,7 @@ enum Solid<'a, N: Real, const D: usize> {
 /// A part of the first shape and one of the second, in the order of their kinds.
 ///
 /// Both are seen from one point close to them, as [`Between::parts`] does; so this is the same
-/// pair, up to the order.
+/// pair, up to the order, and as far apart to the bit.
 pub(super) struct PartPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [Body<'a, N, D>; 2],
@@ -290,8 +290,10 @@ impl<N: Space<D>, const D: usize> Lying<N, D> {
     /// By the poses of a part of the first shape and one of the second.
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_turned: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
-        let (frame, other) = if is_turned { (frame2, frame1) } else { (frame1, frame2) };
-        Self { pose12: Pose::relative(&frame, &other), is_turned, frame, turn }
+        let pose12 = Pose::relative(&frame1, &frame2);
+        // Turned round like any pair whose kinds are in the opposite order: to the bit that of the separation.
+        let (frame, pose12) = if is_turned { (frame2, pose12.inverse()) } else { (frame1, pose12) };
+        Self { pose12, is_turned, frame, turn }
     }
 }
 
