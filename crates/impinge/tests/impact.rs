@@ -100,6 +100,21 @@ fn the_longest_time_is_included() {
 
 /// The table of the documentation: rows are starts, columns are motions.
 #[test]
+fn there_is_no_time_before_the_start() {
+    let ball = Ball::new(1.0_f64);
+    for (x, speed) in [0.0, 1.5, 2.0, 3.0].into_iter().flat_map(|x| {
+        let speeds = [0.0, f64::MIN_POSITIVE, 1e-300, 1.0, 1e300];
+        speeds.map(|speed| (x, speed))
+    }) {
+        for time in [-f64::MIN_POSITIVE, -1e-300, -1.0, f64::NAN] {
+            let options = ImpactOptions::new().with_max_time(time);
+            let moving = (at(x, 0.0), V2::new(-speed, 0.0), &ball as &dyn Shape<f64, 2>);
+            assert_eq!(onto_with(&ball, moving, &options), None, "{x} {speed} until {time}");
+        }
+    }
+}
+
+#[test]
 fn starts_in_contact_count_by_their_velocities() {
     let (floor, half) = (floor(), ImpactOptions::new().with_target_distance(0.5));
     let none = ImpactOptions::new();

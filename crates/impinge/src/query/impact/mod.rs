@@ -268,14 +268,16 @@ struct Course<'m, 'a, N: Real, const D: usize> {
 }
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
-    /// `None` if the solids certainly stay apart, or something is not finite.
+    /// `None` if there is no time, the solids certainly stay apart, or something is not finite.
     #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
         moving2: &'m Moving<'a, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Self> {
-        if are_parted(moving1, moving2, options) {
+        // Not left to the end of the path: the product of a time and a speed may be zero.
+        let has_time = options.max_time >= N::ZERO;
+        if !has_time || are_parted(moving1, moving2, options) {
             return None;
         }
         let order = order(&moving1.placed, &moving2.placed);
