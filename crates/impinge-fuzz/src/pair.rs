@@ -4,24 +4,24 @@ use std::fmt::Debug;
 
 use impinge::math::{AbstractRotation, Isometry, Pose, Space, max};
 use impinge::query::{self, ClosestPoints, Proximity};
-use impinge::shape::{Shape, ShapeHandle};
+use impinge::shape::{Shape, ShapeHandle, ShapeKind};
 
 use crate::place::Dimension;
 use crate::shapes::{anatomy, is_unbounded, parts_of, reach, shape};
 use crate::{Bytes, Task, dispatch};
 
 /// Two placed shapes.
-pub struct Pair<N: Space<D>, R, const D: usize> {
-    pub m1: Isometry<N, R, D>,
-    pub g1: ShapeHandle<N, D>,
-    pub m2: Isometry<N, R, D>,
-    pub g2: ShapeHandle<N, D>,
+pub(crate) struct Pair<N: Space<D>, R, const D: usize> {
+    pub(crate) m1: Isometry<N, R, D>,
+    pub(crate) g1: ShapeHandle<N, D>,
+    pub(crate) m2: Isometry<N, R, D>,
+    pub(crate) g2: ShapeHandle<N, D>,
     /// All numbers are moderate, so answers must be finite.
-    pub is_moderate: bool,
+    pub(crate) is_moderate: bool,
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D> {
-    pub fn from_bytes<M: Dimension<N, D, Turn = R>>(bytes: &mut Bytes<'_>) -> Self {
+    pub(crate) fn from_bytes<M: Dimension<N, D, Turn = R>>(bytes: &mut Bytes<'_>) -> Self {
         let (g1, m1) = (shape::<N, M, D>(bytes), M::position(bytes));
         // The same shape and place more often than chance has it.
         let g2 = if bytes.choice(8) == 0 { g1.clone() } else { shape::<N, M, D>(bytes) };
@@ -29,7 +29,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         Self { m1, g1, m2, g2, is_moderate: bytes.is_moderate() }
     }
 
-    pub fn swapped(&self) -> Self {
+    pub(crate) fn swapped(&self) -> Self {
         Self {
             m1: self.m2,
             g1: self.g2.clone(),
@@ -39,19 +39,26 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
     }
 
-    /// The two are the same thing at the same place: then their order says nothing.
-    pub fn are_same(&self) -> bool {
-        let poses = [&self.m1, &self.m2].map(|m| format!("{:?}", Pose::from_isometry(m)));
-        poses[0] == poses[1] && anatomy(&*self.g1) == anatomy(&*self.g2)
+    /// The two are the same thing at the same place: then their order says nothing. A ball has no rotation.
+    pub(crate) fn are_same(&self) -> bool {
+        let is_ball = self.g1.geometry().kind() == ShapeKind::Ball;
+        let place = |m| if is_ball { Pose::unturned(m) } else { Pose::from_isometry(m) };
+        let places = [&self.m1, &self.m2].map(|m| format!("{:?}", place(m)));
+        places[0] == places[1] && anatomy(&*self.g1) == anatomy(&*self.g2)
     }
 
     /// Both poses are finite.
-    pub fn is_placed(&self) -> bool {
+    pub(crate) fn is_placed(&self) -> bool {
         [&self.m1, &self.m2].iter().all(|m| Pose::from_isometry(*m).is_finite())
     }
 
     /// Swapped arguments give the flipped answer, to the bit.
-    pub fn check_flip<A: PartialEq + Debug>(&self, own: &A, other: &A, flip: impl Fn(&A) -> A) {
+    pub(crate) fn check_flip<A: PartialEq + Debug>(
+        &self,
+        own: &A,
+        other: &A,
+        flip: impl Fn(&A) -> A,
+    ) {
         if same(own, &flip(other)) || (self.are_same() && same(own, other)) {
             return;
         }
@@ -59,7 +66,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
     }
 
     /// What rounding may make of a length.
-    pub fn tolerance(&self) -> N {
+    pub(crate) fn tolerance(&self) -> N {
         let places = [&self.m1, &self.m2]
             .iter()
             .fold(N::ZERO, |sum, m| m.translation.vector.iter().fold(sum, |sum, x| sum + x.abs()));
@@ -77,7 +84,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Debug for Pair<N, R
 }
 
 /// Equal, or not told apart when written.
-pub fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
+pub(crate) fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
     one == other || format!("{one:?}") == format!("{other:?}")
 }
 
@@ -139,23 +146,23 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         self.shapes().into_iter().all(is_unbounded)
     }
 
-    pub fn distance(&self) -> N {
+    pub(crate) fn distance(&self) -> N {
         query::distance(&self.m1, &*self.g1, &self.m2, &*self.g2)
     }
 
-    pub fn closest_points(&self, limit: N) -> ClosestPoints<N, D> {
+    pub(crate) fn closest_points(&self, limit: N) -> ClosestPoints<N, D> {
         query::closest_points(&self.m1, &*self.g1, &self.m2, &*self.g2, limit)
     }
 
-    pub fn proximity(&self, margin: N) -> Proximity {
+    pub(crate) fn proximity(&self, margin: N) -> Proximity {
         query::proximity(&self.m1, &*self.g1, &self.m2, &*self.g2, margin)
     }
 
-    pub fn contact(&self, prediction: N) -> Option<query::Contact<N, D>> {
+    pub(crate) fn contact(&self, prediction: N) -> Option<query::Contact<N, D>> {
         query::contact(&self.m1, &*self.g1, &self.m2, &*self.g2, prediction)
     }
 
-    pub fn witness(&self, limit: N) -> Option<query::Witness<N, D>> {
+    pub(crate) fn witness(&self, limit: N) -> Option<query::Witness<N, D>> {
         query::witness(&self.m1, &*self.g1, &self.m2, &*self.g2, limit)
     }
 

@@ -3,8 +3,8 @@
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Space, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Compound, Cuboid, Ellipsoid, Geometry, Plane, Polyline, Rounded, Segment, Shape,
-    ShapeHandle, SupportMap, TaperedCapsule, TriMesh, Triangle,
+    Ball, Capsule, CompositeShape, Compound, Cuboid, Ellipsoid, Geometry, Plane, Polyline, Rounded,
+    Segment, Shape, ShapeHandle, SupportMap, TaperedCapsule, TriMesh, Triangle,
 };
 
 use crate::Bytes;
@@ -17,14 +17,14 @@ const COMMON_KINDS: usize = 13;
 const MOST_NESTED: usize = 3;
 
 /// A shape of the kind that the next byte says; a ball where a constructor refuses the numbers.
-pub fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+pub(crate) fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
 ) -> ShapeHandle<N, D> {
     nested::<N, M, D>(bytes, 0).unwrap_or_else(|| ShapeHandle::new(Ball::new(N::ONE)))
 }
 
 /// The shape, if the constructor took the numbers.
-pub fn made<N: Real, S: Shape<N, D>, E: std::error::Error, const D: usize>(
+pub(crate) fn made<N: Real, S: Shape<N, D>, E: std::error::Error, const D: usize>(
     shape: Result<S, E>,
 ) -> Option<ShapeHandle<N, D>> {
     match shape {
@@ -117,7 +117,7 @@ fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> 
 
 /// A support map of the user's own: the hull of points, swollen.
 #[derive(Clone, Debug)]
-pub struct Cloud<N: Real, const D: usize> {
+pub(crate) struct Cloud<N: Real, const D: usize> {
     points: Vec<Point<N, D>>,
     rounding: N,
 }
@@ -156,25 +156,25 @@ impl<N: Real, const D: usize> Shape<N, D> for Cloud<N, D> {
 }
 
 /// What the library sees of a shape, as text: of a composite its parts.
-pub fn anatomy<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> String {
+pub(crate) fn anatomy<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> String {
     let Some(parts) = shape.geometry().as_composite() else { return format!("{shape:?}") };
     (0..parts.num_parts()).map(|part| format!("{:?}\n", parts.part(part))).collect()
 }
 
 /// The shape or a part of it reaches to infinity.
-pub fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> bool {
+pub(crate) fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> bool {
     let aabb = shape.local_aabb();
     !(0..D).all(|axis| aabb.mins()[axis].is_finite_number() && aabb.maxs()[axis].is_finite_number())
 }
 
 /// How many parts the shape has; `None` if it is convex.
-pub fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32> {
-    shape.geometry().as_composite().map(|parts| parts.num_parts())
+pub(crate) fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32> {
+    shape.geometry().as_composite().map(CompositeShape::num_parts)
 }
 
 /// About how far the shape reaches from its own origin, the places of its parts included: what rounding
 /// is in proportion to. What is unbounded adds nothing.
-pub fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
+pub(crate) fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
     if let Some(parts) = shape.geometry().as_composite() {
         let one = |part| {
             let part = parts.part(part);

@@ -4,7 +4,7 @@ use impinge::math::{Point, Real, Vector};
 
 /// What is left of the input; zeros when it is used up, so that every input means something.
 #[derive(Debug)]
-pub struct Bytes<'a> {
+pub(crate) struct Bytes<'a> {
     rest: &'a [u8],
     /// Numbers may be tiny, huge or none at all; otherwise they are moderate, and so must answers be.
     is_wild: bool,
@@ -12,27 +12,27 @@ pub struct Bytes<'a> {
 
 impl<'a> Bytes<'a> {
     /// All of the input.
-    pub const fn new(rest: &'a [u8]) -> Self {
+    pub(crate) const fn new(rest: &'a [u8]) -> Self {
         Self { rest, is_wild: false }
     }
 
     /// The same with numbers of any size.
-    pub const fn go_wild(&mut self) {
+    pub(crate) const fn go_wild(&mut self) {
         self.is_wild = true;
     }
 
     /// All numbers are moderate: at most 32, and a multiple of 1/1024.
-    pub const fn is_moderate(&self) -> bool {
+    pub(crate) const fn is_moderate(&self) -> bool {
         !self.is_wild
     }
 
     /// The input is used up.
-    pub const fn is_empty(&self) -> bool {
+    pub(crate) const fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
 
     /// The next byte.
-    pub fn byte(&mut self) -> u8 {
+    pub(crate) fn byte(&mut self) -> u8 {
         let Some((&first, rest)) = self.rest.split_first() else { return 0 };
         self.rest = rest;
         first
@@ -43,17 +43,17 @@ impl<'a> Bytes<'a> {
     }
 
     /// One of `count` choices, 256 at most.
-    pub fn choice(&mut self, count: usize) -> usize {
+    pub(crate) fn choice(&mut self, count: usize) -> usize {
         usize::from(self.byte()) % count
     }
 
     /// Heads or tails.
-    pub fn coin(&mut self) -> bool {
+    pub(crate) fn coin(&mut self) -> bool {
         self.byte() % 2 == 1
     }
 
     /// A number: small and round ones, which make solids touch exactly, more often than others.
-    pub fn number<N: Real>(&mut self) -> N {
+    pub(crate) fn number<N: Real>(&mut self) -> N {
         let kinds = if self.is_wild { 16 } else { 11 };
         N::lit(match self.choice(kinds) {
             0..4 => f64::from(i8::from_le_bytes(self.bytes())) / 16.0,
@@ -67,39 +67,39 @@ impl<'a> Bytes<'a> {
     }
 
     /// A finite number.
-    pub fn finite<N: Real>(&mut self) -> N {
+    pub(crate) fn finite<N: Real>(&mut self) -> N {
         let number = self.number::<N>();
         if number.is_finite_number() { number } else { N::ONE }
     }
 
     /// A finite number, zero or more.
-    pub fn size<N: Real>(&mut self) -> N {
+    pub(crate) fn size<N: Real>(&mut self) -> N {
         self.finite::<N>().abs()
     }
 
     /// A vector of any numbers.
-    pub fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
+    pub(crate) fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         Vector::<N, D>::from_fn(|_, _| self.number())
     }
 
     /// A vector of sizes.
-    pub fn sizes<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
+    pub(crate) fn sizes<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         Vector::<N, D>::from_fn(|_, _| self.size())
     }
 
     /// A point of finite numbers.
-    pub fn point<N: Real, const D: usize>(&mut self) -> Point<N, D> {
+    pub(crate) fn point<N: Real, const D: usize>(&mut self) -> Point<N, D> {
         Point::from(Vector::<N, D>::from_fn(|_, _| self.finite()))
     }
 
     /// Up to 15 points.
-    pub fn points<N: Real, const D: usize>(&mut self) -> Vec<Point<N, D>> {
+    pub(crate) fn points<N: Real, const D: usize>(&mut self) -> Vec<Point<N, D>> {
         let count = self.choice(16);
         (0..count).map(|_| self.point()).collect()
     }
 
     /// Up to 12 tuples of indices, of `count` vertices or (seldom) one more than there are.
-    pub fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
+    pub(crate) fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
         let parts = self.choice(13);
         let mut index = || self.choice(count.max(1)) as u32;
         let mut parts: Vec<_> = (0..parts).map(|_| std::array::from_fn(|_| index())).collect();

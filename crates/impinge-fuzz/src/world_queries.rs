@@ -19,7 +19,7 @@ type World<N, const D: usize> = CollisionWorld<N, D, u8>;
 type Object<N, const D: usize> = CollisionObject<N, D, u8>;
 
 /// Asks one kind of question.
-pub fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,
 ) {

@@ -20,11 +20,10 @@ impl Task for Construct {
             let kinds = [&shape, &scaled].map(|shape| shape.geometry().kind());
             let is_known = !bytes.is_moderate()
                 || kinds[0] == kinds[1]
-                || kinds == [ShapeKind::Ball, ShapeKind::Ellipsoid];
-            assert!(
-                is_known || shape.as_shape::<Compound<N, D>>().is_some(),
-                "{kinds:?} {scaled:?}"
-            );
+                || kinds == [ShapeKind::Ball, ShapeKind::Ellipsoid]
+                || M::is_tetrahedron(&shape)
+                || shape.as_shape::<Compound<N, D>>().is_some();
+            assert!(is_known, "{kinds:?} {scaled:?}");
             check(&*scaled);
         }
         if let Some(deformed) = deformed::<N, M, D>(&shape, bytes) {
@@ -57,7 +56,7 @@ fn check<N: Real, const D: usize>(shape: &dyn Shape<N, D>) {
 }
 
 /// The shape with other vertices or heights, if its kind has any.
-pub fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
+pub(crate) fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     bytes: &mut Bytes<'_>,
 ) -> Option<ShapeHandle<N, D>> {
@@ -76,7 +75,7 @@ pub fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
 }
 
 /// The vertices, each of which may be another.
-pub fn moved<N: Real, const D: usize>(
+pub(crate) fn moved<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     bytes: &mut Bytes<'_>,
 ) -> Vec<Point<N, D>> {
@@ -85,7 +84,7 @@ pub fn moved<N: Real, const D: usize>(
 }
 
 /// A box of any numbers that make one.
-pub fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
+pub(crate) fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
     let low = bytes.point::<N, D>();
     Aabb::try_new(low, low + bytes.sizes::<N, D>()).ok()
 }

@@ -13,7 +13,7 @@ use crate::Bytes;
 use crate::shapes::made;
 
 /// One dimension's ways to make things from bytes.
-pub trait Dimension<N: Space<D>, const D: usize> {
+pub(crate) trait Dimension<N: Space<D>, const D: usize> {
     /// How many kinds of shape the dimension has to itself.
     const OWN_KINDS: usize;
 
@@ -28,6 +28,8 @@ pub trait Dimension<N: Space<D>, const D: usize> {
     fn loose(position: N::Isometry) -> Isometry<N, Self::Turn, D>;
     /// A shape that only this dimension has; `None` if a constructor refuses the numbers.
     fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
+    /// A tetrahedron, whose kind is another if it is flat, which other factors may make of it.
+    fn is_tetrahedron(shape: &ShapeHandle<N, D>) -> bool;
     /// A body that moves and turns at constant rates.
     fn motion(
         position: Isometry<N, Self::Turn, D>,
@@ -42,13 +44,13 @@ pub trait Dimension<N: Space<D>, const D: usize> {
 }
 
 /// Whether objects with these data may meet: unless the data differ in the lowest bit.
-pub const fn may_meet(one: u8, two: u8) -> bool {
+pub(crate) const fn may_meet(one: u8, two: u8) -> bool {
     (one ^ two) & 1 == 0
 }
 
 /// The plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Plane;
+pub(crate) struct Plane;
 
 impl<N: Real> Dimension<N, 2> for Plane {
     const OWN_KINDS: usize = 2;
@@ -88,6 +90,10 @@ impl<N: Real> Dimension<N, 2> for Plane {
         made(field.map(|field| field.with_holes(|cell| holes >> (cell % 8) & 1 == 1)))
     }
 
+    fn is_tetrahedron(_: &ShapeHandle<N, 2>) -> bool {
+        false
+    }
+
     fn motion(
         position: dim2::math::Isometry<N>,
         bytes: &mut Bytes<'_>,
@@ -109,7 +115,7 @@ impl<N: Real> Dimension<N, 2> for Plane {
                 field.set_heights(heights).ok()?;
             }
         }
-        assert!(field.height_at(bytes.number()).is_none_or(|y| y == y), "{field:?}");
+        assert!(field.height_at(bytes.number()).is_none_or(|y| !y.as_f64().is_nan()), "{field:?}");
         Some(ShapeHandle::new(field))
     }
 
@@ -142,7 +148,7 @@ impl<N: Real> Dimension<N, 2> for Plane {
 
 /// Space.
 #[derive(Clone, Copy, Debug)]
-pub struct Room;
+pub(crate) struct Room;
 
 impl<N: Real> Dimension<N, 3> for Room {
     const OWN_KINDS: usize = 5;
@@ -177,6 +183,10 @@ impl<N: Real> Dimension<N, 3> for Room {
         }
     }
 
+    fn is_tetrahedron(shape: &ShapeHandle<N, 3>) -> bool {
+        shape.as_shape::<dim3::shape::Tetrahedron<N>>().is_some()
+    }
+
     fn motion(
         position: dim3::math::Isometry<N>,
         bytes: &mut Bytes<'_>,
@@ -200,7 +210,7 @@ impl<N: Real> Dimension<N, 3> for Room {
             }
         }
         let height = field.height_at(bytes.number(), bytes.number());
-        assert!(height.is_none_or(|y| y == y), "{field:?}");
+        assert!(height.is_none_or(|y| !y.as_f64().is_nan()), "{field:?}");
         Some(ShapeHandle::new(field))
     }
 
@@ -246,5 +256,5 @@ fn field3<N: Real>(bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
 /// No point of a surface is NaN.
 fn check_finite<N: Real, const D: usize>(points: &[Point<N, D>]) {
     let mut numbers = points.iter().flat_map(|point| point.iter());
-    assert!(numbers.all(|x| x == x), "{points:?}");
+    assert!(numbers.all(|x| !x.as_f64().is_nan()), "{points:?}");
 }

@@ -1,5 +1,11 @@
 //! Shapes, poses and questions made from the fuzzer's bytes: whatever the bytes, no call may panic
 //! or hang, and answers must not contradict each other.
+#![allow(
+    clippy::missing_assert_message,
+    clippy::missing_panics_doc,
+    reason = "all of this is assertions; what is printed of them is the input"
+)]
+#![allow(clippy::cast_possible_truncation, reason = "counts and indices are below 256")]
 
 mod bytes;
 mod construct;
@@ -12,7 +18,7 @@ mod single;
 mod world;
 mod world_queries;
 
-pub use bytes::Bytes;
+use bytes::Bytes;
 pub use construct::construct;
 pub use impact::{nonlinear_time_of_impact, time_of_impact};
 pub use manifolds::manifolds;
@@ -23,8 +29,11 @@ pub use world::world;
 use impinge::math::Space;
 use place::{Dimension, Plane, Room};
 
+/// What is run on an input; it panics on a finding.
+pub type Target = fn(&[u8]);
+
 /// The targets with their names.
-pub const TARGETS: [(&str, fn(&[u8])); 12] = [
+pub const TARGETS: [(&str, Target); 12] = [
     ("distance", distance),
     ("closest_points", closest_points),
     ("proximity", proximity),
