@@ -76,8 +76,10 @@ impl<N: Real> Round<N> {
         direction: &Vector<N, 3>,
         below: impl Iterator<Item = &'a Vector<N, 3>>,
     ) -> SmallVec<[Vector<N, 3>; 8]> {
-        let is_cap = radial(direction).norm_squared() <= N::EPSILON;
-        let end = if direction.y < N::ZERO { -self.half } else { self.half };
+        let is_below = direction.y < N::ZERO;
+        let has_cap = is_below || !self.is_cone;
+        let is_cap = has_cap && radial(direction).norm_squared() <= N::EPSILON;
+        let end = if is_below { -self.half } else { self.half };
         let at = |aside: Vector<N, 2>, y: N| {
             Vector::<N, 3>::new(aside.x * self.radius, y, aside.y * self.radius)
         };
