@@ -78,7 +78,9 @@ impl<N: Real> Boxes<N> {
     /// The pair of edges that leaves the largest gap, if that is more than `least`.
     ///
     /// The cross product of two axes has the sine of their angle for its length. Where the gap along
-    /// it is negative, dividing by that can only make it smaller, so most pairs need no root.
+    /// it is negative, dividing by that can only make it smaller, so most pairs need no root. How it leans
+    /// on the axes of the second box is a difference of two products, which is small where the sine is: the
+    /// entry of the rotation that equals it is not, up to rounding, and that is divided by the sine too.
     fn best_edges(&self, leans: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
@@ -88,7 +90,9 @@ impl<N: Real> Boxes<N> {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[(i1, j)] - t[i1] * r[(i2, j)];
                 let reach1 = self.half1[i1] * leans[(i2, j)] + self.half1[i2] * leans[(i1, j)];
-                let reach2 = self.half2[j1] * leans[(i, j2)] + self.half2[j2] * leans[(i, j1)];
+                let lean1 = (r[(i1, j)] * r[(i2, j1)] - r[(i2, j)] * r[(i1, j1)]).abs();
+                let lean2 = (r[(i1, j)] * r[(i2, j2)] - r[(i2, j)] * r[(i1, j2)]).abs();
+                let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
                 let slack = along.abs() - reach1 - reach2;
                 if slack <= min(bound, N::ZERO) {
                     continue;

@@ -130,7 +130,9 @@ impl<V> Boxes<V, 3> {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
                 let reach1 = self.half1[i1] * leans[j][i2] + self.half1[i2] * leans[j][i1];
-                let reach2 = self.half2[j1] * leans[j2][i] + self.half2[j2] * leans[j1][i];
+                let lean1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
+                let lean2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
+                let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
                 let slack = along.abs() - reach1 - reach2;
                 let sine = (r[j][i1] * r[j][i1] + r[j][i2] * r[j][i2]).sqrt();
                 let is_better = !slack.simd_le(bound.smaller(zero))
