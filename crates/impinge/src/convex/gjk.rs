@@ -277,7 +277,7 @@ impl<N: Simplicial<D>, const D: usize> Search<N, D> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
         let is_apart = best.height > noise();
-        (is_apart && mix.meets_within(&best, N::TWO * gap())).then(|| placed(&best, &mix, N::HALF))
+        is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
     /// The answer where the bounds meet. Of normals that do, that of the nearest point is taken if

@@ -75,18 +75,10 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         (self.on2 - self.on1 - target).norm_squared()
     }
 
-    /// Whether the points lie across from each other but for rounding, and on the supporting planes
-    /// but for the gap that answers may have.
+    /// Whether the points lie across from each other and on the supporting planes, but for rounding.
     pub(super) fn meets(&self, best: &Candidate<N, D>) -> bool {
-        self.meets_within(best, N::TWO * noise())
-    }
-
-    /// As [`Self::meets`], with a length instead of rounding.
-    pub(super) fn meets_within(&self, best: &Candidate<N, D>, slack: N) -> bool {
-        let away = self.on2 - self.on1;
-        let along = best.normal.dot(&away);
-        let aside = (away - best.normal * along).norm_squared();
-        aside <= slack * slack && (along - best.height).abs() <= N::TWO * tolerance()
+        let slack = N::TWO * noise();
+        self.miss(&(best.normal * best.height)) <= slack * slack
     }
 }
 
