@@ -63,6 +63,7 @@ pub mod bvh;
 pub(crate) mod convex;
 pub mod dim2;
 pub mod dim3;
+pub(crate) mod generation;
 #[cfg(doctest)]
 mod guide;
 pub mod math;

@@ -186,6 +186,27 @@ fn misuse_is_told_and_changes_nothing() {
 }
 
 #[test]
+fn handles_of_other_broad_phases_are_refused() {
+    let [(mut own, handle), (_, foreign)] = [0, 1].map(|data| {
+        let mut broad_phase = DBVTBroadPhase::new(0.1);
+        let handle = broad_phase.create_proxy(ball::<f64, 3>([0.0; 3], 1.0), data);
+        (broad_phase, handle)
+    });
+    let forged = ProxyHandle::new(0, 0);
+    for unknown in [foreign, forged] {
+        let refused = Err(BroadPhaseError::StaleHandle(unknown));
+        let volume = ball([9.0; 3], 1.0);
+        assert_eq!(own.try_remove(&[unknown], &mut |_, _| ()), refused, "remove");
+        assert_eq!(own.try_deferred_set_bounding_volume(unknown, volume), refused, "move");
+        let again = own.try_deferred_recompute_all_proximities_with(unknown);
+        assert_eq!(again, refused, "filter again");
+        assert!(own.proxy(unknown).is_none() && own.loosened_volume(unknown).is_none(), "look up");
+    }
+    let twin = own.clone();
+    assert!(own.proxy(handle).is_some() && twin.proxy(handle).is_some(), "its own, and a clone's");
+}
+
+#[test]
 #[should_panic(expected = "there is no proxy ProxyHandle { index: 0, generation: 0 }")]
 fn removing_twice_panics() {
     let mut broad_phase = DBVTBroadPhase::new(0.1);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up.
 const FLOORS: [&[&str]; 10] = [
-    &["math", "memory"],
+    &["generation", "math", "memory"],
     &["bounding_volume", "pairs"],
     &["bvh"],
     &["partitioning"],

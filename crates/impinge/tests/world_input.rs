@@ -9,7 +9,8 @@ use impinge::broad_phase::DBVTBroadPhase;
 use impinge::math::Point;
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::query::Ray;
-use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, WorldError};
+use impinge::shape::Ball;
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, QueryFilter, WorldError};
 use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step, vector};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
@@ -42,22 +43,69 @@ fn check_unchanged<N: Stage<D>, const D: usize>(
     assert_eq!(next.uid(), stale.uid(), "the free index is still free");
 }
 
+/// Whatever is asked of the world, it does not know the handle.
+fn check_unknown<N: Stage<D>, const D: usize>(
+    world: &mut World<N, D>,
+    first: CollisionObjectHandle,
+    unknown: CollisionObjectHandle,
+) {
+    let refused = Err(WorldError::StaleHandle(unknown));
+    assert_eq!(world.try_set_position(unknown, N::on_x(0.0)), refused, "move");
+    let moves = [(first, N::on_x(9.0)), (unknown, N::on_x(9.0))];
+    assert_eq!(world.try_set_positions(&moves), refused, "move many");
+    assert_eq!(world.try_remove(&[first, unknown]), refused, "remove");
+    assert_eq!(world.try_set_shape(unknown, cube(1.0)), refused, "shape");
+    assert_eq!(world.try_set_collision_groups(unknown, CollisionGroups::new()), refused, "groups");
+    assert_eq!(world.try_set_query_type(unknown, near(1.0)), refused, "query type");
+    let deformed = world.try_deform(unknown, |_: &mut Ball<N>| ());
+    assert_eq!(deformed, refused, "deform");
+    assert!(!world.contains(unknown), "unknown");
+    assert!(world.collision_object(unknown).is_none(), "look up");
+    assert!(world.collision_object_mut(unknown).is_none(), "look up, to change");
+    assert!(world.contact_pair(first, unknown).is_none(), "contacts");
+    assert!(world.proximity_pair(unknown, first).is_none(), "proximity");
+    let everything = Ray::new(Point::from(vector([-9.0; D])), vector([1.0; D]));
+    let hits = |filter: &QueryFilter<'_, N, D, ()>| {
+        world.ray_hits(&everything, N::INFINITY, true, filter).len()
+    };
+    let all = hits(&QueryFilter::new());
+    assert_eq!(hits(&QueryFilter::new().exclude(unknown)), all, "it excludes nothing");
+}
+
 fn stale_handles_are_refused<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = pair::<N, D>();
     let [first, _, stale] = handles;
-    let refused = Err(WorldError::StaleHandle(stale));
-    assert_eq!(world.try_set_position(stale, N::on_x(0.0)), refused, "move");
-    let moves = [(first, N::on_x(9.0)), (stale, N::on_x(9.0))];
-    assert_eq!(world.try_set_positions(&moves), refused, "move many");
-    assert_eq!(world.try_remove(&[first, stale]), refused, "remove");
-    assert_eq!(world.try_set_shape(stale, cube(1.0)), refused, "shape");
-    assert_eq!(world.try_set_collision_groups(stale, CollisionGroups::new()), refused, "groups");
-    assert_eq!(world.try_set_query_type(stale, near(1.0)), refused, "query type");
+    check_unknown(&mut world, first, stale);
     let twice = Err(WorldError::RepeatedHandle(first));
     assert_eq!(world.try_remove(&[first, first]), twice, "twice at once");
-    assert!(world.collision_object(stale).is_none(), "gone");
-    assert!(world.collision_object_mut(stale).is_none(), "gone");
     check_unchanged(&mut world, handles);
+}
+
+/// Worlds side by side, filled alike: as a server and its clients are, or a prediction.
+fn handles_of_other_worlds_are_refused<N: Stage<D>, const D: usize>() {
+    let mut worlds: Vec<_> = (0..4).map(|_| pair::<N, D>()).collect();
+    for round in 0..2 {
+        for (own, other) in (0..4).flat_map(|own| (0..4).map(move |other| (own, other))) {
+            let ([first, second, _], foreign) = (worlds[own].1, worlds[other].1);
+            let world = &mut worlds[own].0;
+            if own != other {
+                for handle in foreign {
+                    check_unknown(world, first, handle);
+                }
+                assert!(first != foreign[0], "no handle has two worlds");
+                assert_eq!(format!("{first:?}"), format!("{:?}", foreign[0]), "the same message");
+            }
+            let expected = [Some(first), Some(second), None];
+            assert_eq!(foreign.map(|handle| world.counterpart(handle)), expected, "by number");
+            world.set_broad_phase(Box::new(DBVTBroadPhase::new(N::ONE)));
+        }
+        for (world, handles) in &mut worlds {
+            assert_eq!(step(world), [], "no event in round {round}");
+            if round == 1 {
+                check_unchanged(world, *handles);
+            }
+        }
+    }
 }
 
 fn bad_numbers_are_refused<N: Stage<D>, const D: usize>() {
@@ -200,7 +248,7 @@ fn boxes_are_exact<N: Stage<D>, const D: usize>() {
 }
 
 in_tests! {
-    stale_handles_are_refused, bad_numbers_are_refused, uids_are_dense_and_in_order,
+    stale_handles_are_refused, handles_of_other_worlds_are_refused, bad_numbers_are_refused, uids_are_dense_and_in_order,
     empty_worlds_answer, queries_are_right_at_once, boxes_are_exact,
 }
 

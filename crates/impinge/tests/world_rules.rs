@@ -162,7 +162,9 @@ fn margins_never_change_an_answer<N: Stage<D>, const D: usize>() {
     let events: usize = log.iter().map(|(contacts, near, _)| contacts.len() + near.len()).sum();
     assert!(events > 200, "much happens: {events}");
     for margin in [0.02, 0.5, 8.0] {
-        assert_eq!(swarm::<N, D>(margin), log, "margin {margin}");
+        // In words: the handles of two worlds differ, and read alike.
+        let other = swarm::<N, D>(margin);
+        assert_eq!(format!("{other:?}"), format!("{log:?}"), "margin {margin}");
     }
 }
 

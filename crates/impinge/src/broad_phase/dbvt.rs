@@ -82,7 +82,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     /// If the margin is negative, infinite or NaN.
     pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
         let finder = BV::try_finder(margin)?;
-        let (handles, proxies, recent) = (Handles::default(), Vec::new(), Recent::default());
+        let (handles, proxies, recent) = (Handles::new(), Vec::new(), Recent::default());
         Ok(Self { handles, proxies, finder, recent })
     }
 }

@@ -1,29 +1,31 @@
 //! Names of objects that stay distinguishable after the object is gone.
 
+use crate::generation::Generation;
 use crate::memory::Look;
 
 /// The name of an object in a broad phase.
 ///
 /// A handle is never given out twice: that of a removed object stays distinct from those of all
-/// later objects. Ordered by [`Self::uid`], then by age.
+/// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses the handles of another one like
+/// stale ones, unless one is a clone of the other. Ordered by [`Self::uid`], then by age.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProxyHandle {
     index: u32,
-    generation: u32,
+    generation: Generation,
 }
 
 impl ProxyHandle {
     /// The handle of the `generation`-th object at an index, for a broad phase of one's own; it must
     /// give each pair of numbers once.
     #[must_use]
-    pub const fn new(index: u32, generation: u32) -> Self {
-        Self { index, generation }
+    pub const fn new(index: u32, generation: u16) -> Self {
+        Self { index, generation: Generation::of_no_table(generation) }
     }
 
     /// How many objects held this index before.
     #[must_use]
-    pub const fn generation(&self) -> u32 {
-        self.generation
+    pub const fn generation(&self) -> u16 {
+        self.generation.count()
     }
 
     /// The index in the table of handles: dense, and in order of creation until the first removal.
@@ -37,10 +39,12 @@ impl ProxyHandle {
 }
 
 /// Gives handles out and knows which are alive.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Handles {
+    /// That of the first object at an index.
+    first: Generation,
     /// By index: the generation of the present or the next object.
-    generations: Vec<u32>,
+    generations: Vec<Generation>,
     /// By index: the object is present.
     is_present: Vec<bool>,
     /// Indices without an object; the last one freed is used first.
@@ -48,9 +52,14 @@ pub(super) struct Handles {
 }
 
 impl Handles {
+    pub(super) fn new() -> Self {
+        let (generations, is_present, free) = (Vec::new(), Vec::new(), Vec::new());
+        Self { first: Generation::of_new_table(), generations, is_present, free }
+    }
+
     pub(super) fn create(&mut self) -> ProxyHandle {
         let index = self.free.pop().unwrap_or_else(|| {
-            self.generations.push(0);
+            self.generations.push(self.first);
             self.is_present.push(false);
             u32::try_from(self.generations.len() - 1).expect("fewer than 2^32 handles")
         });
@@ -77,7 +86,7 @@ impl Handles {
     /// Ends the handle. An index whose generations are used up is retired.
     pub(super) fn remove(&mut self, handle: ProxyHandle) {
         self.is_present[handle.uid()] = false;
-        if let Some(next) = handle.generation.checked_add(1) {
+        if let Some(next) = handle.generation.next() {
             self.generations[handle.uid()] = next;
             self.free.push(handle.index);
         }
@@ -90,7 +99,7 @@ mod tests {
 
     #[test]
     fn stale_handles_never_alias() {
-        let mut handles = Handles::default();
+        let mut handles = Handles::new();
         let [first, second] = [handles.create(), handles.create()];
         assert_eq!((first.uid(), second.uid()), (0, 1), "dense, in order of creation");
         handles.remove(first);
@@ -102,11 +111,14 @@ mod tests {
 
     #[test]
     fn worn_out_indices_are_retired() {
-        let mut handles =
-            Handles { generations: vec![u32::MAX], is_present: vec![true], free: Vec::new() };
-        let last = ProxyHandle { index: 0, generation: u32::MAX };
+        let mut handles = Handles::new();
+        let mut last = handles.create();
+        while last.generation() < u16::MAX {
+            handles.remove(last);
+            last = handles.create();
+        }
         handles.remove(last);
-        assert_eq!(handles.create().uid(), 1, "index 0 has no generation left");
+        assert_eq!((last.uid(), handles.create().uid()), (0, 1), "index 0 has no generation left");
         assert!(!handles.is_alive(last), "gone");
     }
 }

@@ -1,22 +1,30 @@
 //! Names of objects.
 
+use crate::generation::Generation;
+
 /// The name of a collision object; it never comes to mean another object of its world.
 ///
-/// Worlds count each for itself: a handle means something only to the world that gave it.
+/// Only the world that gave it accepts it: another world refuses it like a stale one, also where both
+/// were filled alike. (Worlds are told apart by a tag of 16 bits, which is used again after 65535
+/// other worlds.) Handles of two worlds are never equal; [`CollisionWorld::counterpart`] translates
+/// them, and those that were deserialized, which belong to no world: the serialized form is the index
+/// and the generation.
 ///
 /// Ordered by the index in the handle table, then by generation: this is the canonical order of
 /// pairs, events and query results.
+///
+/// [`CollisionWorld::counterpart`]: crate::world::CollisionWorld::counterpart
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionObjectHandle {
     index: u32,
-    generation: u32,
+    generation: Generation,
 }
 
 impl CollisionObjectHandle {
-    /// The handle of the `generation`-th object at an index of the table.
+    /// The handle of the object of a generation at an index of the table.
     #[inline]
-    pub(crate) const fn new(index: u32, generation: u32) -> Self {
+    pub(crate) const fn new(index: u32, generation: Generation) -> Self {
         Self { index, generation }
     }
 
@@ -33,9 +41,9 @@ impl CollisionObjectHandle {
         self.index
     }
 
-    /// How many objects held this index before.
+    /// Which object at this index of which world.
     #[inline]
-    pub(crate) const fn generation(self) -> u32 {
+    pub(crate) const fn generation(self) -> Generation {
         self.generation
     }
 }

@@ -355,6 +355,32 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.iter()
     }
 
+    /// The handle by which this world names the object of the index and generation of `handle`, which may
+    /// be one of another world or a deserialized one; `None` if there is no such object.
+    ///
+    /// For worlds that are filled alike: a server and its clients, a prediction, a replay. Whether the
+    /// two objects mean the same is up to the caller.
+    ///
+    /// ```
+    /// use impinge::dim2::na::Isometry2;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let [mut server, mut client] = [0, 1].map(|_| CollisionWorld::new(0.02_f32));
+    /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    /// let add = |world: &mut CollisionWorld<f32, ()>| {
+    ///     world.add(Isometry2::identity(), ball.clone(), CollisionGroups::new(), query, ())
+    /// };
+    /// let (on_server, on_client) = (add(&mut server), add(&mut client));
+    /// assert!(client.collision_object(on_server).is_none(), "it names an object of the server");
+    /// assert_eq!(client.counterpart(on_server), Some(on_client));
+    /// ```
+    #[must_use]
+    pub fn counterpart(&self, handle: CollisionObjectHandle) -> Option<CollisionObjectHandle> {
+        let own = self.objects.body(handle.index())?.handle;
+        (own.generation().count() == handle.generation().count()).then_some(own)
+    }
+
     /// The handle names an object of this world.
     #[must_use]
     pub fn contains(&self, handle: CollisionObjectHandle) -> bool {

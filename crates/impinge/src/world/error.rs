@@ -9,7 +9,7 @@ use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// The handle names no object of the world, or no longer.
+    /// The handle names no object of the world: the object was removed, or belongs to another world.
     StaleHandle(CollisionObjectHandle),
     /// The handle occurs twice among those to remove.
     RepeatedHandle(CollisionObjectHandle),

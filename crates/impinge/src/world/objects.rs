@@ -4,6 +4,7 @@ use super::bodies::{Body, ChangeList, Readers, WorldBroadPhase};
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
+use crate::generation::Generation;
 use crate::math::Space;
 use crate::memory::Look;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
@@ -18,6 +19,8 @@ const MOST: u32 = (1 << 31) - 1;
 /// generations are used up is never used again.
 #[derive(Debug)]
 pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
+    /// That of the first object at an index.
+    first: Generation,
     slots: Vec<Slot>,
     /// The objects in no particular order, without gaps: that a handle is fresh shows in its slot,
     /// so who only hands objects on does not wait for their memory.
@@ -32,7 +35,7 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     /// That of the object here, or of the next one.
-    generation: u32,
+    generation: Generation,
     /// Where the object is, or [`NOWHERE`].
     place: u32,
 }
@@ -50,8 +53,9 @@ pub(super) struct Description<N: Space<D>, const D: usize, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    pub(super) const fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
+            first: Generation::of_new_table(),
             slots: Vec::new(),
             records: Vec::new(),
             free: Vec::new(),
@@ -60,7 +64,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// The object of a handle; `None` for a stale one.
+    /// The object of a handle; `None` for a stale one and that of another world.
     #[inline]
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
@@ -75,7 +79,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.get_mut(place)
     }
 
-    /// Where the object of a handle is, if it is fresh and not forged.
+    /// Where the object of a handle is, if it is fresh and of this world.
     #[inline]
     fn place(&self, handle: CollisionObjectHandle) -> Option<usize> {
         let slot = self.slots.get(handle.uid())?;
@@ -165,7 +169,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
         }
         let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MOST);
-        Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, 0))
+        Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, self.first))
     }
 
     /// Stores an object under the next handle.
@@ -190,10 +194,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// Forgets an object.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) {
-        let next = handle.generation().checked_add(1);
+        let next = handle.generation().next();
         let slot = &mut self.slots[handle.uid()];
         let place = core::mem::replace(&mut slot.place, NOWHERE);
-        slot.generation = next.unwrap_or(u32::MAX);
+        slot.generation = next.unwrap_or(slot.generation);
         let object = self.records.swap_remove(place as usize);
         if let Some(moved) = self.records.get(place as usize) {
             self.slots[moved.body.handle.uid()].place = place;

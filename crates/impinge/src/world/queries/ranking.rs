@@ -146,13 +146,14 @@ impl<N: Real, A> Eq for Ranked<N, A> {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generation::Generation;
 
     fn filled(count: usize, limit: f32) -> Vec<(f32, u32)> {
         let mut ranking = Ranking::new(count, limit).expect("room");
         for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
             ranking.offer(Ranked {
                 key,
-                handle: CollisionObjectHandle::new(index, 0),
+                handle: CollisionObjectHandle::new(index, Generation::of_no_table(0)),
                 answer: index,
             });
         }
@@ -177,7 +178,7 @@ mod tests {
         for limit in [0.5, 1.0, 2.0, f32::INFINITY] {
             let mut best = Best::new(limit).expect("room");
             for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
-                let handle = CollisionObjectHandle::new(index, 0);
+                let handle = CollisionObjectHandle::new(index, Generation::of_no_table(0));
                 best.offer(Ranked { key, handle, answer: index });
             }
             let found: Vec<_> =
