@@ -56,7 +56,8 @@ use gjk::Answer;
 /// ([`SupportMap::curved_support`]); for others that are curved by about the larger of that and
 /// `2⁻⁴⁰ · s`; only where a whole ring of normals is nearly as good, as deep in nearly coaxial
 /// cylinders or cones, a local search ends the work, which may fall short by some `10⁻⁷ · s`. The
-/// points lie on the cores to the same accuracy, on curved ones to about its square root at worst.
+/// points lie on the cores to the same accuracy, on curved ones that do not say how they bend to about its
+/// square root at worst.
 /// Where several normals are equally good (coincident centres, say) one is picked, the
 /// same each time. Cores that are single coincident points have no direction at all: the first
 /// axis is taken.

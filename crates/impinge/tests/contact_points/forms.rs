@@ -1,0 +1,393 @@
+//! Random solids of all kinds, each with the distance of a point from its surface, in `f64` and by the
+//! reference or by hand.
+
+use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid,
+    HeightField, Plane, Polyline, Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, TriMesh,
+    Triangle,
+};
+use impinge_reference::geometry::vector::{add, dot, norm, scale, sub};
+use impinge_reference::geometry::{PointMeter, Solid};
+use impinge_reference::random::Random;
+
+use super::query_support::solids::RoundHull;
+
+/// How far a local point is from the surface of a solid, or of one part of a composite.
+type Off<const D: usize> = Box<dyn Fn(&[f64; D]) -> f64>;
+
+pub(crate) struct Form<N: Real, const D: usize> {
+    pub(crate) shape: ShapeHandle<N, D>,
+    /// In words.
+    pub(crate) text: String,
+    offs: Vec<Off<D>>,
+    /// No point is farther from the local origin; zero for a half-space.
+    pub(crate) reach: f64,
+    /// By so much points of a manifold beside the deepest may be off: a part that leans and is rounded is
+    /// taken as if its surface were flat up to its end.
+    pub(crate) beside: f64,
+}
+
+/// 1 / cosine - 1 of the largest angle by which a part may lean, atan(1/2).
+const LEANING: f64 = 0.1181;
+
+impl<N: Real, const D: usize> Form<N, D> {
+    fn new<S: Shape<N, D>>(shape: S, text: String, reach: f64, offs: Vec<Off<D>>) -> Self {
+        Self { shape: ShapeHandle::new(shape), text, offs, reach, beside: 0.0 }
+    }
+
+    /// A solid that the reference knows, swollen by a radius.
+    fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, swelling: f64) -> Self {
+        let reach = solid.bounding_radius();
+        let reach = if reach.is_finite() { reach + swelling } else { 0.0 };
+        let text = format!("{solid:?} swollen by {swelling}");
+        Self {
+            beside: LEANING * swelling,
+            ..Self::new(shape, text, reach, vec![metered(solid, swelling)])
+        }
+    }
+
+    /// A composite of solids that the reference knows.
+    fn composite<S: Shape<N, D>>(shape: S, parts: &[Solid<D>]) -> Self {
+        let reach = parts.iter().map(Solid::bounding_radius).fold(0.0, f64::max);
+        let offs = parts.iter().map(|part| metered(part, 0.0)).collect();
+        Self::new(shape, format!("{parts:?}"), reach, offs)
+    }
+
+    /// How far a local point is from the surface, of a composite from that of its nearest part.
+    pub(crate) fn off(&self, point: &[f64; D]) -> f64 {
+        self.offs.iter().map(|off| off(point).abs()).fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn metered<const D: usize>(solid: &Solid<D>, swelling: f64) -> Off<D> {
+    let meter = PointMeter::new(solid);
+    Box::new(move |point| meter.measure(point).0 - swelling)
+}
+
+/// Draws sizes and points that the scalar holds.
+struct Draw<'a> {
+    random: &'a mut Random,
+    /// Lengths are between this and 16 times as much.
+    least: f64,
+}
+
+impl Draw<'_> {
+    fn size<N: Real>(&mut self) -> f64 {
+        N::lit(self.random.magnitude(self.least, 4)).as_f64()
+    }
+
+    fn sizes<N: Real, const D: usize>(&mut self) -> [f64; D] {
+        std::array::from_fn(|_| self.size::<N>())
+    }
+
+    /// Corners of a wide triangle or a thick tetrahedron.
+    fn corners<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
+        loop {
+            let limit = self.size::<N>();
+            let corners: [[f64; D]; K] =
+                std::array::from_fn(|_| self.random.vector::<D>(limit).map(|x| N::lit(x).as_f64()));
+            let side = |corner: usize| sub(&corners[corner], &corners[0]);
+            let apart = |a: [f64; D], b: [f64; D]| dot(&a, &b).abs() < 0.8 * norm(&a) * norm(&b);
+            let is_wide = (1..K).all(|corner| norm(&side(corner)) > 0.3 * limit)
+                && (2..K).all(|corner| apart(side(corner), side(corner - 1)));
+            // The triangles of the plane run counter-clockwise.
+            let is_left = D != 2 || K < 3 || side(1)[0] * side(2)[1] > side(1)[1] * side(2)[0];
+            if is_wide && is_left {
+                return corners;
+            }
+        }
+    }
+}
+
+fn point<N: Real, const D: usize>(p: &[f64; D]) -> Point<N, D> {
+    Point::from(p.map(N::lit))
+}
+
+fn vector<N: Real, const D: usize>(v: &[f64; D]) -> Vector<N, D> {
+    Vector::from(v.map(N::lit))
+}
+
+fn up<const D: usize>(length: f64) -> [f64; D] {
+    std::array::from_fn(|axis| if axis == 1 { length } else { 0.0 })
+}
+
+const COMMON: usize = 12;
+
+/// The kinds that both dimensions have, by number.
+fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form<N, D> {
+    let (half, radius, sizes) = (draw.size::<N>(), draw.size::<N>(), draw.sizes::<N, D>());
+    let cuboid = || Cuboid::new(vector::<N, D>(&sizes));
+    match kind {
+        0 => Form::known(Ball::new(N::lit(radius)), &Solid::ball(radius), 0.0),
+        1 => {
+            let [a, b] = draw.corners::<N, D, 2>();
+            Form::known(Segment::new(point(&a), point(&b)), &Solid::segment(a, b), 0.0)
+        }
+        2 => {
+            let capsule = Capsule::<N, D>::new(N::lit(half), N::lit(radius));
+            Form::known(capsule, &Solid::segment(up(-half), up(half)), radius)
+        }
+        3 => {
+            let [a, b, c] = draw.corners::<N, D, 3>();
+            let triangle = Triangle::<N, D>::new(point(&a), point(&b), point(&c));
+            Form::known(triangle, &Solid::triangle(a, b, c), 0.0)
+        }
+        4 => Form::known(cuboid(), &Solid::cuboid(sizes), 0.0),
+        5 => Form::new(
+            Ellipsoid::new(vector::<N, D>(&sizes)),
+            format!("ellipsoid of {sizes:?}"),
+            sizes.iter().copied().fold(0.0, f64::max),
+            vec![off_ellipsoid(sizes)],
+        ),
+        6 => tapered(half, [radius, draw.size::<N>()]),
+        7 => Form::known(Rounded::new(cuboid(), N::lit(radius)), &Solid::cuboid(sizes), radius),
+        8 => {
+            let [a, b, c] = draw.corners::<N, D, 3>();
+            let triangle = Triangle::<N, D>::new(point(&a), point(&b), point(&c));
+            let rounded = Rounded::new(triangle, N::lit(radius));
+            Form::known(rounded, &Solid::triangle(a, b, c), radius)
+        }
+        9 => {
+            let corners = draw.corners::<N, D, 3>();
+            let points = corners.iter().map(point).collect();
+            let hull = RoundHull { points, rounding: N::lit(radius) };
+            Form::known(hull, &Solid::polytope(corners.to_vec()), radius)
+        }
+        10 => {
+            let normal = Unit::new_unchecked(vector::<N, D>(&up(1.0)));
+            Form::known(Plane::<N, D>::new(normal), &Solid::half_space(up(1.0)), 0.0)
+        }
+        _ => {
+            let [a, b, c] = draw.corners::<N, D, 3>();
+            let line = Polyline::open([a, b, c].iter().map(point).collect());
+            Form::composite(line, &[Solid::segment(a, b), Solid::segment(b, c)])
+        }
+    }
+}
+
+/// To first order, which is enough near the surface.
+fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
+    Box::new(move |point| {
+        let once: [f64; D] = std::array::from_fn(|axis| point[axis] / half_axes[axis]);
+        let twice: [f64; D] = std::array::from_fn(|axis| once[axis] / half_axes[axis]);
+        if norm(&twice) == 0.0 {
+            return -half_axes.iter().copied().fold(f64::INFINITY, f64::min);
+        }
+        norm(&once) * (norm(&once) - 1.0) / norm(&twice)
+    })
+}
+
+/// The union of balls along the second axis whose radii change evenly.
+fn tapered<N: Space<D>, const D: usize>(half: f64, radii: [f64; 2]) -> Form<N, D> {
+    let [low, high] = radii.map(N::lit);
+    let shape = TaperedCapsule::<N, D>::new(N::lit(half), low, high);
+    let off = move |point: &[f64; D]| {
+        let (length, growth) = (2.0 * half, radii[1] - radii[0]);
+        let (along, axis) = (point[1] + half, up::<D>(point[1]));
+        let aside = norm(&sub(point, &axis));
+        let ball =
+            |share: f64| norm(&sub(point, &up(share * length - half))) - radii[0] - growth * share;
+        let lean = length * length - growth * growth;
+        if lean <= 0.0 {
+            return ball(0.0).min(ball(1.0));
+        }
+        ball(((along + aside * growth / lean.sqrt()) / length).clamp(0.0, 1.0))
+    };
+    let text = format!("tapered capsule of {half} and {radii:?}");
+    let most = radii[0].max(radii[1]);
+    Form { beside: LEANING * most, ..Form::new(shape, text, half + most, vec![Box::new(off)]) }
+}
+
+pub(crate) const PLANE: [&str; COMMON + 4] = [
+    "ball",
+    "segment",
+    "capsule",
+    "triangle",
+    "cuboid",
+    "ellipsoid",
+    "tapered capsule",
+    "rounded cuboid",
+    "rounded triangle",
+    "support map",
+    "half-space",
+    "polyline",
+    "polygon",
+    "rounded polygon",
+    "height field",
+    "compound",
+];
+
+pub(crate) fn plane<N: Real>(kind: usize, least: f64, random: &mut Random) -> Form<N, 2> {
+    let mut draw = Draw { random, least };
+    if kind < COMMON {
+        return common(kind, &mut draw);
+    }
+    let (half, radius) = (draw.size::<N>(), draw.size::<N>());
+    let sizes = draw.sizes::<N, 2>();
+    let corners = [[1.0, 0.0], [0.75, 0.75], [0.0, 1.0], [-1.0, 0.5], [-0.5, -1.0], [0.5, -0.75]]
+        .map(|[x, y]| [x * sizes[0], y * sizes[1]].map(|x| N::lit(x).as_f64()));
+    let points: Vec<_> = corners.iter().map(point).collect();
+    let solid = Solid::polytope(corners.to_vec());
+    match kind - COMMON {
+        0 => Form::known(ConvexPolygon::<N>::from_points(&points), &solid, 0.0),
+        1 => {
+            let polygon = ConvexPolygon::<N>::from_points(&points);
+            Form::known(Rounded::new(polygon, N::lit(radius)), &solid, radius)
+        }
+        2 => {
+            let heights = (0..5).map(|_| N::lit(draw.random.single(-0.5, 0.5))).collect();
+            let field = HeightField::<N, 2>::new(heights, vector(&[half * 8.0, radius]));
+            let cells = (0..4).filter_map(|cell| field.segment(cell));
+            let ends =
+                |segment: Segment<N, 2>| Solid::segment(wide(segment.a()), wide(segment.b()));
+            let parts: Vec<_> = cells.map(ends).collect();
+            Form::composite(field, &parts)
+        }
+        _ => {
+            let at = [half, radius].map(N::lit);
+            let cuboid = ShapeHandle::new(Cuboid::new(vector::<N, 2>(&sizes)));
+            let children = vec![
+                (Isometry2::translation(at[0], at[1]), ShapeHandle::new(Ball::new(N::lit(radius)))),
+                (Isometry2::identity(), cuboid),
+            ];
+            let ball = Solid::capsule([half, radius], [half, radius], radius);
+            Form::composite(Compound::new(children), &[ball, Solid::cuboid(sizes)])
+        }
+    }
+}
+
+pub(crate) const SPACE: [&str; COMMON + 11] = [
+    "ball",
+    "segment",
+    "capsule",
+    "triangle",
+    "cuboid",
+    "ellipsoid",
+    "tapered capsule",
+    "rounded cuboid",
+    "rounded triangle",
+    "support map",
+    "half-space",
+    "polyline",
+    "cylinder",
+    "cone",
+    "rounded cylinder",
+    "rounded cone",
+    "hull",
+    "rounded hull",
+    "thin box",
+    "mesh",
+    "closed mesh",
+    "height field",
+    "compound",
+];
+
+pub(crate) fn space<N: Real>(kind: usize, least: f64, random: &mut Random) -> Form<N, 3> {
+    let mut draw = Draw { random, least };
+    if kind < COMMON {
+        return common(kind, &mut draw);
+    }
+    let (half, radius, swelling) = (draw.size::<N>(), draw.size::<N>(), draw.size::<N>());
+    let [h, r, s] = [half, radius, swelling].map(N::lit);
+    let cylinder = Solid::Cylinder { half_height: half, radius };
+    let cone = Solid::Cone { half_height: half, radius };
+    match kind - COMMON {
+        0 => Form::known(Cylinder::new(h, r), &cylinder, 0.0),
+        1 => Form::known(Cone::new(h, r), &cone, 0.0),
+        2 => Form::known(Rounded::new(Cylinder::new(h, r), s), &cylinder, swelling),
+        3 => Form::known(Rounded::new(Cone::new(h, r), s), &cone, swelling),
+        4 => hull(&mut draw, 0.0),
+        5 => hull(&mut draw, swelling),
+        6 => {
+            let sizes = [half * 4.0, N::lit(radius / 256.0).as_f64(), swelling * 4.0];
+            Form::known(Cuboid::new(vector::<N, 3>(&sizes)), &Solid::cuboid(sizes), 0.0)
+        }
+        7 => floor(half * 8.0, |_| 0.0),
+        8 => {
+            let corners = draw.corners::<N, 3, 4>();
+            let volume = dot(&cross(&corners), &sub(&corners[3], &corners[0]));
+            let faces: [[u32; 3]; 4] = if volume < 0.0 {
+                [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+            } else {
+                [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+            };
+            meshed(&corners, faces.to_vec())
+        }
+        9 => {
+            let heights = (0..9).map(|_| N::lit(draw.random.single(-0.5, 0.5))).collect();
+            let size = vector(&[half * 8.0, swelling, radius * 8.0]);
+            let field = HeightField::<N, 3>::new(3, 3, heights, size);
+            let cells =
+                [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| field.triangles(row, column));
+            let triangles = cells.into_iter().flatten().flatten().map(|triangle| {
+                let [a, b, c] = triangle.corners().each_ref().map(wide);
+                Solid::triangle(a, b, c)
+            });
+            let parts: Vec<_> = triangles.collect();
+            Form::composite(field, &parts)
+        }
+        _ => {
+            let children = vec![
+                (Isometry3::translation(r, s, h), ShapeHandle::new(Ball::new(r))),
+                (Isometry3::identity(), ShapeHandle::new(Cone::new(h, s))),
+            ];
+            let ball = Solid::capsule([radius, swelling, half], [radius, swelling, half], radius);
+            let cone = Solid::Cone { half_height: half, radius: swelling };
+            Form::composite(Compound::new(children), &[ball, cone])
+        }
+    }
+}
+
+fn wide<N: Real, const D: usize>(point: &Point<N, D>) -> [f64; D] {
+    point.coords.map(N::as_f64).into()
+}
+
+fn cross([a, b, c, _]: &[[f64; 3]; 4]) -> [f64; 3] {
+    let (e, f) = (sub(b, a), sub(c, a));
+    [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]]
+}
+
+/// Ten points about the origin.
+fn hull<N: Real>(draw: &mut Draw<'_>, swelling: f64) -> Form<N, 3> {
+    let sizes = draw.sizes::<N, 3>();
+    let corners: Vec<[f64; 3]> = (0..10)
+        .map(|_| {
+            let direction: [f64; 3] = draw.random.unit_vector();
+            std::array::from_fn(|axis| N::lit(direction[axis] * sizes[axis]).as_f64())
+        })
+        .collect();
+    let hull = ConvexHull::<N>::from_points(&corners.iter().map(point).collect::<Vec<_>>());
+    let solid = Solid::polytope(hull.vertices().iter().map(wide).collect());
+    if swelling > 0.0 {
+        return Form::known(Rounded::new(hull, N::lit(swelling)), &solid, swelling);
+    }
+    Form::known(hull, &solid, 0.0)
+}
+
+/// Triangles over a square of four cells, at the heights that a function of the vertex gives.
+fn floor<N: Real>(half: f64, height: impl Fn(usize) -> f64) -> Form<N, 3> {
+    let corner = |index: usize| {
+        let at = |step: usize| half * [-1.0, 0.0, 1.0][step];
+        add(&scale(&[1.0, 0.0, 0.0], at(index / 3)), &[0.0, height(index), at(index % 3)])
+    };
+    let corners: Vec<_> = (0..9).map(corner).collect();
+    let triangles = [0, 1, 3, 4].map(|low: u32| [[low, low + 1, low + 4], [low, low + 4, low + 3]]);
+    meshed(&corners, triangles.into_iter().flatten().collect())
+}
+
+fn meshed<N: Real>(corners: &[[f64; 3]], triangles: Vec<[u32; 3]>) -> Form<N, 3> {
+    let mesh = TriMesh::<N, 3>::new(corners.iter().map(point).collect(), triangles.clone());
+    let solid = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
+        Solid::triangle(a, b, c)
+    };
+    let parts: Vec<_> = triangles.iter().map(solid).collect();
+    Form::composite(mesh, &parts)
+}
+
+/// A point of the outer frame as the solid at a pose sees it, by the pose's own matrix.
+pub(crate) fn local<N: Real, const D: usize>(pose: &Pose<N, D>, point: &Point<N, D>) -> [f64; D] {
+    let away = point.coords.map(N::as_f64) - pose.translation.map(N::as_f64);
+    pose.rotation.map(N::as_f64).tr_mul(&away).into()
+}
