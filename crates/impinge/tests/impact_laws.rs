@@ -10,7 +10,7 @@ use impinge::query::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, contact, impact,
     nonlinear_time_of_impact,
 };
-use impinge::shape::{Shape, ShapeKind};
+use impinge::shape::{Compound, Shape, ShapeHandle, ShapeKind};
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 
@@ -226,6 +226,70 @@ where
     assert!(spent[0] < scenes / 50 && spent[1] < scenes / 10, "{spent:?} of {scenes} given up");
 }
 
+/// Solids that are put where they touch with a known normal, and moved back: the impact brings them there again,
+/// alone and as the only part of a composite.
+///
+/// The supporting planes across the normal hold them apart until then. One of them is round, or they stop
+/// before they touch: so there is one normal alone.
+fn known_normals<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy,
+{
+    let (mut tried, mut worst) = (0, (N::ZERO, String::new()));
+    for kinds in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| [*k1, *k2])) {
+        for seed in 0..SEEDS {
+            let random = &mut Random(seed ^ 0x9017, false);
+            let shapes = kinds
+                .map(|kind| ShapeHandle::from_arc((maker.sample)(kind, random, N::ONE).into()));
+            let turns = [0; 2].map(|_| (maker.turn)(random));
+            let normal = random.direction::<N, D>();
+            let touches = seed % 3 > 0 && kinds.iter().any(|kind| is_round(*kind));
+            let target = N::lit(if touches { 0.0 } else { 0.25 });
+            let Some(touch1) = outermost(&*shapes[0], &turns[0], &normal) else { continue };
+            let Some(touch2) = outermost(&*shapes[1], &turns[1], &-normal) else { continue };
+            let toward = -normal + random.vector::<N, D>() * N::lit(0.75);
+            let time = N::lit(random.within(0.5, 3.0));
+            let m1 = Isometry::from_parts((-touch1).into(), turns[0]);
+            let m2 =
+                Isometry::from_parts((normal * target - touch2 - toward * time).into(), turns[1]);
+            let compound = Compound::new(vec![(Isometry::identity(), shapes[1].clone())]);
+            let seconds: [&dyn Shape<N, D>; 2] = [&*shapes[1], &compound];
+            for second in seconds {
+                let (one, two) =
+                    (Moving::still(&m1, &*shapes[0]), Moving::new(&m2, &toward, second));
+                let options = ImpactOptions::new().with_target_distance(target);
+                let found = impact(&one, &two, &options).expect("on the way");
+                assert!((found.toi - time).abs() < N::lit(1e-4), "{found:?} at {time} {kinds:?}");
+                let off = (found.normal.into_inner() - normal).norm() / N::EPSILON;
+                if off > worst.0 {
+                    worst = (off, format!("{kinds:?} {seed} {found:?}"));
+                }
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 1000, "{tried}");
+    assert!(worst.0 < N::lit(1024.0), "epsilon off: {worst:?}");
+}
+
+/// A solid that has one normal alone at each of its points.
+fn is_round(kind: ShapeKind) -> bool {
+    use ShapeKind::{Ball, Capsule, Ellipsoid, Rounded, SupportMap, TaperedCapsule};
+    matches!(kind, Ball | Capsule | Ellipsoid | Rounded | SupportMap | TaperedCapsule)
+}
+
+/// The point of a turned solid that is outermost in a direction; `None` of half-spaces.
+fn outermost<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    turn: &R,
+    toward: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let map = shape.geometry().as_support_map()?;
+    let core = map.core_support(&turn.inverse_transform_vector(toward));
+    Some(turn.transform_vector(&core.coords) + toward * map.rounding())
+}
+
 fn plane<N: Real>() -> Maker<N, UnitComplex<N>, 2> {
     Maker {
         sample: sample2,
@@ -248,6 +312,14 @@ fn space<N: Real>() -> Maker<N, UnitQuaternion<N>, 3> {
                 .with_local_center(center.into())
         },
     }
+}
+
+#[test]
+fn normals_are_those_of_the_time_found() {
+    known_normals(&PLANE, &plane::<f32>());
+    known_normals(&PLANE, &plane::<f64>());
+    known_normals(&SPACE, &space::<f32>());
+    known_normals(&SPACE, &space::<f64>());
 }
 
 #[test]

@@ -158,12 +158,14 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
     is_there.then(|| Arrival::reached(along, found))
 }
 
-/// The separation at the end of a step which used up the gap along the normal of its beginning, where one
-/// of the nearest points from then tells it; `None` says nothing.
+/// The separation at the end of a step which used up the gap along the normal of its beginning, where it has
+/// that normal still and one of the nearest points from then proves it; `None` says nothing.
 ///
 /// Planes across that normal still hold the solids apart by the target distance. So they are that far from
-/// each other if the point of one, on its plane, is that far from the other solid; the plane of a half-space
-/// needs no proof.
+/// each other if the point of one, on its plane, is that far from the other solid; and the normal is that of
+/// now if it is also the one that the other solid has towards that point. Of curved solids it has turned on
+/// the way, by about the square root of the error that the step removed. The plane of a half-space needs no
+/// proof.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     (before, step): (&Separation<N, D>, &Vector<N, D>),
@@ -183,15 +185,20 @@ fn touching<N: Space<D>, const D: usize>(
     if let Kind::Ball(_) | Kind::SupportMap(_) = first {
         return None;
     }
-    let is_there = |distance: &N| (*distance - target).abs() <= tolerance;
-    let distance_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| {
-        (N::tables().seen)(kind, point).map(|seen| seen.distance).filter(is_there)
+    let is_touch = |distance: N, outward: Vector<N, D>| {
+        let turned = max_component(&(outward - normal));
+        (distance - target).abs() <= tolerance && turned <= N::lit(8.0) * N::EPSILON
     };
-    if let Some(distance) = distance_from(*first, &point2) {
-        return Some(Separation { distance, normal, point1: point2 - normal * distance, point2 });
+    let seen_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| (N::tables().seen)(kind, point);
+    let seen = seen_from(*first, &point2);
+    if let Some(seen) = seen.filter(|seen| is_touch(seen.distance, seen.outward)) {
+        let (distance, point1) = (seen.distance, point2 - normal * seen.distance);
+        return Some(Separation { distance, normal, point1, point2 });
     }
-    let distance = distance_from(*second, &pose12.inverse_point(&point1))?;
-    Some(Separation { distance, normal, point1, point2: point1 + normal * distance })
+    let seen = seen_from(*second, &pose12.inverse_point(&point1))?;
+    let point2 = point1 + normal * seen.distance;
+    let is_proved = is_touch(seen.distance, -pose12.vector(&seen.outward));
+    is_proved.then_some(Separation { distance: seen.distance, normal, point1, point2 })
 }
 
 /// The length that tolerances are in proportion to: the sizes of the solids and how far they are.
