@@ -5,8 +5,14 @@ mod query_support;
 
 use composite_support::Pieces;
 use composite_support::scenes::{Maker, Scene};
-use impinge::math::{AbstractRotation, Isometry, Isometry3, Point, Space, Vector};
-use impinge::query::{Impact, ImpactOptions, Moving, distance, impact};
+use std::cell::Cell;
+use std::f64::consts::TAU;
+
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Pose, Space, Vector};
+use impinge::query::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, distance, impact,
+    nonlinear_time_of_impact,
+};
 use impinge::shape::{Cuboid, Shape};
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, sample2, sample3};
@@ -201,4 +207,138 @@ fn what_slides_over_the_floor_meets_the_wall() {
     assert_eq!(impact(&still, &away, &ImpactOptions::new()), None, "nothing on that side");
     let short = ImpactOptions::new().with_max_time(6.5);
     assert_eq!(impact(&still, &slide, &short), None, "too late");
+}
+
+/// A motion that counts how often it is asked where the body is.
+struct Counted<'a, N: Space<D>, const D: usize>(ConstantVelocities<N, D>, &'a Cell<u32>);
+
+impl<N: Space<D>, const D: usize> RigidMotion<N, D> for Counted<'_, N, D>
+where
+    ConstantVelocities<N, D>: RigidMotion<N, D>,
+{
+    fn position_at(&self, time: N) -> N::Isometry {
+        self.0.position_at(time)
+    }
+
+    fn speed_bound(&self, from: N, to: N) -> N {
+        self.0.speed_bound(from, to)
+    }
+
+    fn turn_bound(&self, from: N, to: N) -> N {
+        self.0.turn_bound(from, to)
+    }
+
+    fn pose_about(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
+        self.1.set(self.1.get() + 1);
+        self.0.pose_about(origin, time)
+    }
+
+    fn constant_velocities(&self) -> Option<&ConstantVelocities<N, D>> {
+        Some(&self.0)
+    }
+}
+
+/// The impact of a shape that moves with one that stays at the origin: it is found in at most 500 steps, nothing
+/// touches before it, and at it the shapes are within what counts as near.
+fn slides<N, R, const D: usize>(
+    motion: ConstantVelocities<N, D>,
+    mover: &dyn Shape<N, D>,
+    stays: &dyn Shape<N, D>,
+    options: &ImpactOptions<N>,
+) -> bool
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy + std::fmt::Debug,
+    ConstantVelocities<N, D>: RigidMotion<N, D>,
+{
+    let (here, count) = (Isometry::identity(), Cell::new(0));
+    let (counted, still) = (Counted(motion, &count), ConstantVelocities::<N, D>::still(here));
+    let found = nonlinear_time_of_impact(&counted, mover, &still, stays, options);
+    let steps = count.get();
+    assert!(steps <= 500, "{steps} steps: {found:?} {motion:?}");
+    let end = found.map_or(options.max_time, |found| found.toi);
+    let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
+    for look in 0..24 {
+        let share = N::lit(f64::from(look) / 24.0);
+        // All over the way, and ever closer to its end.
+        for time in [end * share, end * (N::ONE - share * share * share)] {
+            assert!(gap(time) > N::ZERO, "{time} is before {found:?} {motion:?}");
+        }
+    }
+    let Some(found) = found else { return false };
+    assert_eq!(found.status, ImpactStatus::Reached, "{found:?} {motion:?}");
+    let (last, near) = (gap(end), N::lit(32.0 / 1_048_576.0));
+    assert!(last <= near, "{last} at the end {found:?} {motion:?}");
+    true
+}
+
+/// The surface of a thread with the pitch 1 about the second axis: its distance from the axis goes up and down by a
+/// quarter along a helix.
+fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
+    let (around, rows) = (24, 8 * pitches);
+    let mut points = Vec::new();
+    for (row, corner) in (0..=rows).flat_map(|row| (0..around).map(move |corner| (row, corner))) {
+        let height = f64::from(row) / 8.0 - f64::from(pitches) / 2.0;
+        let angle = TAU * f64::from(corner) / f64::from(around);
+        let out = radius + 0.25 * (angle - TAU * height).cos();
+        points
+            .push(Point::<N, 3>::from([angle.sin() * out, height, angle.cos() * out].map(N::lit)));
+    }
+    let index = |row, corner| row * around + corner % around;
+    let cell = |row, corner| {
+        let [a, b] = [index(row, corner), index(row, corner + 1)];
+        let [c, d] = [index(row + 1, corner), index(row + 1, corner + 1)];
+        [[a, b, c], [b, d, c]]
+    };
+    let cells = (0..rows).flat_map(|row| (0..around).map(move |corner| (row, corner)));
+    let triangles: Vec<_> = cells.flat_map(|(row, corner)| cell(row, corner)).collect();
+    Pieces::mesh(&points, &triangles)
+}
+
+/// A screw that turns in its nut, and rises by nearly what a turn asks for: flanks slide on flanks.
+fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
+where
+    ConstantVelocities<N, 3>: RigidMotion<N, 3>,
+{
+    let (screw, nut) = (thread::<N>(1.0, 2), thread::<N>(1.125, 1));
+    let (random, mut hits) = (&mut Random(8, false), 0);
+    for round in 0..6 {
+        let loose = N::lit([0.9, 0.3, 0.03][round % 3]);
+        let rise = N::lit(1.0 / TAU);
+        let linear = (Vector::<N, 3>::y() + random.vector::<N, 3>() * loose) * rise;
+        let angular = Vector::<N, 3>::y() + random.vector::<N, 3>() * (loose * N::lit(0.25));
+        let motion = ConstantVelocities::<N, 3>::new(Isometry3::identity(), linear, angular);
+        let options = ImpactOptions::new().with_max_time(N::lit(3.0));
+        hits += u32::from(slides(motion, &screw, &nut, &options));
+    }
+    assert!(hits >= 2, "{hits}");
+}
+
+/// A round outline of segments that spins within another, and drifts to it far slower than it spins.
+fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
+where
+    ConstantVelocities<N, 2>: RigidMotion<N, 2>,
+{
+    let outline = |radius: f64| {
+        let angle = |corner: i32| TAU * f64::from(corner) / 48.0;
+        let point = |corner| {
+            let (x, y) = (angle(corner).cos() * radius, angle(corner).sin() * radius);
+            Point::<N, 2>::new(N::lit(x), N::lit(y))
+        };
+        Pieces::chain(&(0..=48).map(point).collect::<Vec<_>>())
+    };
+    let (wheel, ring) = (outline(1.0), outline(1.0625));
+    for (drift, spin) in [(0.5, 10.0), (0.1, 5.0), (0.1, -1.0), (0.01, 0.25)] {
+        let linear = Vector::<N, 2>::new(N::lit(0.6 * drift), N::lit(-0.8 * drift));
+        let motion = ConstantVelocities::<N, 2>::new(Isometry2::identity(), linear, N::lit(spin));
+        assert!(slides(motion, &wheel, &ring, &ImpactOptions::new()), "it drifts on to the ring");
+    }
+}
+
+#[test]
+fn surfaces_that_slide_on_each_other() {
+    screw_in_nut::<f32>();
+    screw_in_nut::<f64>();
+    spins_in_ring::<f32>();
+    spins_in_ring::<f64>();
 }

@@ -519,3 +519,45 @@ fn poses_follow_positions() {
     let pose = falls.pose_about(&V2::new(1.0, 4.0), 2.0);
     assert_eq!(pose, Pose::from_translation(V2::new(-1.0, 2.0)), "10 - 4 - 4 high");
 }
+
+#[test]
+fn within_the_tolerance_bodies_count_as_touching() {
+    let (rod, floor, ball) = (rod(0.0, 2.0), half_plane(0.0, 1.0), Ball::new(1.0));
+    let wall = half_plane(0.0, -1.0);
+    let still = Turning2::still(at(7.0, 2.0_f64.sqrt()));
+    let swings = |tolerance: Option<f64>| {
+        let options = tolerance.map_or(FOR_EVER, |length| FOR_EVER.with_tolerance(length));
+        toi((&spins(at(0.0, 0.0), 1.0), &rod), (&still, &wall), &options)
+    };
+    let exact = swings(None);
+    for none in [0.0, -1.0, f64::NAN, 1e-20] {
+        assert_eq!(swings(Some(none)), exact, "{none} counts as rounding");
+    }
+    for tolerance in [0.125, 1e-3] {
+        let early = swings(Some(tolerance));
+        let gap = 2.0_f64.sqrt() - 2.0 * early.sin();
+        assert!(early < exact && gap > 0.0 && gap <= tolerance, "{early}, {gap} of {tolerance}");
+    }
+    // It starts within the tolerance: as what touches.
+    let still = Turning2::still(at(0.0, 0.0));
+    let options = FOR_EVER.with_tolerance(0.125);
+    let cast = |v: V2| {
+        let motion = Turning2::<f64>::new(at(0.0, 1.0625), v, 3.0);
+        both((&motion, &ball), (&still, &floor), &options).map(|found| found.toi)
+    };
+    assert_eq!(cast(-V2::y()), Some(0.0), "approaching");
+    assert_eq!(cast(V2::x()), None, "sliding");
+    assert_eq!(cast(V2::y()), None, "separating");
+}
+
+/// The end of a rod passes a wall by very little, and only bounds of its speed are known.
+#[test]
+fn what_grazes_within_a_millionth_touches() {
+    let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));
+    for gap in [1e-7, 1e-9, 1e-12] {
+        let still = Turning2::still(at(7.0, 2.0 + gap));
+        let found = toi((&Opaque(spins(at(0.0, 0.0), 1.0)), &rod), (&still, &wall), &FOR_EVER);
+        let left = 2.0 + gap - 2.0 * found.sin();
+        assert!(left > 0.0 && left < 16.0 / 1_048_576.0, "{left} at {found}, of {gap}");
+    }
+}

@@ -184,6 +184,13 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         Pair { first: self.seen1.kind(), second: self.seen2.kind(), pose12: self.pose12 }
     }
 
+    /// Where the parts lie, in the frame of the first shape.
+    pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
+        let Pose { rotation, translation } = self.seen1.pose;
+        let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
+        [pose1, pose1.compose(&self.pose12)]
+    }
+
     /// A vector of the frame of the first shape, in that of the first part.
     pub(super) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
         self.seen1.pose.inverse_vector(vector)

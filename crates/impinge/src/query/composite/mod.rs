@@ -23,4 +23,6 @@ pub(in crate::query) use point::surface_point;
 pub(crate) use point::{Near, PartPoint, nearest_part};
 pub(crate) use ray::{RayQuestion, each_hit};
 pub(in crate::query) use separation::separation;
-pub(crate) use separation::{PartSeparation, Wanted, nearest_between};
+pub(crate) use separation::{
+    PairVisitor, PartSeparation, Wanted, nearest_between, visit_near_pairs,
+};

@@ -39,20 +39,44 @@ pub(in crate::query) fn separation<N: Space<D>, const D: usize>(
     found.map(|found| found.separation)
 }
 
-/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit.
-///
-/// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
-/// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
-/// number, as long as parts do not all overlap. Half-spaces that do not lie along an axis have no box:
-/// they are held against every part.
+/// A query that visits pairs of parts, near ones first.
+pub(crate) trait PairVisitor<N: Real, const D: usize> {
+    /// The largest distance at which parts still matter.
+    fn limit(&self) -> N;
+
+    /// The largest distance at which boxes still matter; negative to end the search.
+    fn bound(&self) -> N {
+        loosened(max(self.limit(), N::ZERO))
+    }
+
+    fn visit(&mut self, parts: [u32; 2]);
+}
+
+/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. See
+/// [`visit_near_pairs`] for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
     wanted: Wanted,
 ) -> Option<PartSeparation<N, D>> {
-    let search = Search { between, limit, wanted, best: None };
+    let mut nearest = Nearest { between, limit, wanted, best: None };
+    visit_near_pairs(between, &mut nearest);
+    nearest.best
+}
+
+/// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
+///
+/// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
+/// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
+/// number, as long as parts do not all overlap. Half-spaces that do not lie along an axis have no box:
+/// they are held against every part.
+pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    visitor: &mut dyn PairVisitor<N, D>,
+) {
+    let mut search = Search { between, visitor };
     match between.composites() {
-        [None, None] => search.of_convex(),
+        [None, None] => search.visitor.visit([0, 0]),
         [Some(parts1), None] => search.of_one(1, 0, parts1),
         [None, Some(parts2)] => match between.pair.first {
             Kind::Plane(plane) => search.of_half_space(plane, parts2),
@@ -62,98 +86,76 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     }
 }
 
+struct Search<'a, 'q, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    visitor: &'q mut dyn PairVisitor<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
+    /// A part of one shape, the first or the second, against those of the other that are near.
+    fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+        let aabb = self.between.aabb_in_other(which, part);
+        others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
+            self.visitor.visit(if which == 0 { [part, other] } else { [other, part] });
+            self.visitor.bound()
+        });
+    }
+
+    /// A half-space against all parts, but for those that their corners tell to be farther than matters.
+    fn of_half_space(&mut self, plane: &Plane<N, D>, others: &dyn CompositeShape<N, D>) {
+        let ground = Ground::new(self.between, plane);
+        let aabb = self.between.aabb_in_other(0, 0);
+        others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
+            let limit = self.visitor.limit();
+            let is_farther = ground.gap(&others.part(other)).is_some_and(|gap| gap > limit);
+            if !is_farther {
+                self.visitor.visit([0, other]);
+            }
+            self.visitor.bound()
+        });
+    }
+
+    /// The parts of the composite with fewer of them, each against all of the other.
+    fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
+        let (which, fewer, more) = by_number(parts1, parts2);
+        let bound = self.visitor.bound();
+        if self.between.are_boxes_beyond(bound) {
+            return;
+        }
+        let aabb = self.between.whole_in_other(1 - which);
+        fewer.search().nearest(&aabb, bound, &mut |part, _| {
+            self.of_one(which, part, more);
+            self.visitor.bound()
+        });
+    }
+}
+
 /// The best pair of parts so far.
-struct Search<'a, N: Real, const D: usize> {
+struct Nearest<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
     wanted: Wanted,
     best: Option<PartSeparation<N, D>>,
 }
 
-impl<N: Space<D>, const D: usize> Search<'_, N, D> {
-    fn of_convex(mut self) -> Option<PartSeparation<N, D>> {
-        self.hold([0, 0]);
-        self.best
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for Nearest<'_, N, D> {
+    fn limit(&self) -> N {
+        self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
-    /// One convex solid, which is the first or the second, against all parts of the other shape.
-    fn of_one(
-        mut self,
-        which: usize,
-        part: u32,
-        others: &dyn CompositeShape<N, D>,
-    ) -> Option<PartSeparation<N, D>> {
-        self.each_near(which, part, others);
-        self.best
+    fn bound(&self) -> N {
+        let limit = self.limit();
+        let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
+        if is_known { -N::ONE } else { loosened(max(limit, N::ZERO)) }
     }
 
-    /// A half-space against all parts, but for those that their corners tell to be farther than one before.
-    fn of_half_space(
-        mut self,
-        plane: &Plane<N, D>,
-        others: &dyn CompositeShape<N, D>,
-    ) -> Option<PartSeparation<N, D>> {
-        let ground = Ground::new(self.between, plane);
-        let (aabb, bound) = (self.between.aabb_in_other(0, 0), self.bound());
-        others.search().nearest(&aabb, bound, &mut |other, _| {
-            let is_farther = ground.gap(&others.part(other)).is_some_and(|gap| gap > self.reach());
-            if !is_farther {
-                self.hold([0, other]);
-            }
-            self.bound()
-        });
-        self.best
-    }
-
-    /// The parts of the composite with fewer of them, each against all of the other.
-    fn of_many(
-        mut self,
-        parts1: &dyn CompositeShape<N, D>,
-        parts2: &dyn CompositeShape<N, D>,
-    ) -> Option<PartSeparation<N, D>> {
-        let (which, fewer, more) = by_number(parts1, parts2);
-        let bound = self.bound();
-        if self.between.are_boxes_beyond(bound) {
-            return None;
-        }
-        let aabb = self.between.whole_in_other(1 - which);
-        fewer.search().nearest(&aabb, bound, &mut |part, _| {
-            self.each_near(which, part, more);
-            self.bound()
-        });
-        self.best
-    }
-
-    /// Holds one part of one shape against those of the other that are near.
-    fn each_near(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
-        let aabb = self.between.aabb_in_other(which, part);
-        let bound = self.bound();
-        others.search().nearest(&aabb, bound, &mut |other, _| {
-            self.hold(if which == 0 { [part, other] } else { [other, part] });
-            self.bound()
-        });
-    }
-
-    /// Holds two parts against each other.
-    fn hold(&mut self, parts: [u32; 2]) {
+    fn visit(&mut self, parts: [u32; 2]) {
         let placed = self.between.parts(parts);
-        let Some(found) = of_convex(&placed.pair(), self.reach()) else { return };
+        let Some(found) = of_convex(&placed.pair(), self.limit()) else { return };
         let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
         if self.best.is_none_or(|best| found.is_before(&best)) {
             self.best = Some(found);
         }
-    }
-
-    /// How near parts must be to matter.
-    fn reach(&self) -> N {
-        self.best.map_or(self.limit, |best| best.separation.distance)
-    }
-
-    /// How near boxes must be for their parts to matter; negative if none does any more.
-    fn bound(&self) -> N {
-        let reach = self.reach();
-        let is_known = self.best.is_some() && reach <= N::ZERO && self.wanted == Wanted::Touching;
-        if is_known { -N::ONE } else { loosened(max(reach, N::ZERO)) }
     }
 }
 

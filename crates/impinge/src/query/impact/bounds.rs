@@ -6,7 +6,9 @@
 //! in that body.
 
 use super::motion::{ConstantVelocities, RigidMotion};
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
+use crate::query::composite::PartPair;
 use crate::shape::{Geometry, Shape};
 
 /// At most so many spans are tried to find how far a bound carries.
@@ -21,7 +23,9 @@ pub(super) struct Body<'a, N: Space<D>, const D: usize> {
     /// No point of the core is farther from the centre; infinite for half-spaces and what is made of
     /// them.
     reach: N,
-    /// No point of the body is.
+    /// No point of the core is farther from the axis that the body turns about with a constant velocity.
+    arm: N,
+    /// No point of the body is farther from the centre.
     radius: N,
 }
 
@@ -35,7 +39,35 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
         });
         let slack = N::ONE + N::lit(8.0) * N::EPSILON;
         let radius = min(outer, reach + rounding) * slack;
-        Self { motion, shape: geometry, center, reach: reach * slack, radius }
+        let mut arm = reach;
+        if let Some(constant) = motion.constant_velocities()
+            && (outer * N::TWO).is_finite_number()
+        {
+            arm = min(arm_of_box(&shape.local_aabb(), &center, constant), reach);
+        }
+        Self { motion, shape: geometry, center, reach: reach * slack, arm: arm * slack, radius }
+    }
+
+    /// What one solid of the body would be by itself: `pose` is that of the solid and `center` the
+    /// centre of the motion, which stays that of the body.
+    fn part<'p>(
+        &self,
+        solid: Geometry<'p, N, D>,
+        pose: &Pose<N, D>,
+        center: &Vector<N, D>,
+    ) -> Body<'p, N, D>
+    where
+        'a: 'p,
+    {
+        let extents = solid.as_support_map().map(|map| (map.reach(), map.rounding()));
+        let (extent, rounding) = extents.unwrap_or((N::INFINITY, N::ZERO));
+        let local = pose.inverse_point(&Point::from(*center));
+        let slack = N::ONE + N::lit(8.0) * N::EPSILON;
+        let reach = (length(&local.coords) + extent) * slack;
+        let across = self.constant().map(|motion| motion.across(&(pose.translation - center)));
+        let arm = across.map_or(reach, |across| min((across + extent) * slack, reach));
+        let radius = reach + rounding;
+        Body { motion: self.motion, shape: solid, center: local, reach, arm, radius }
     }
 
     /// A length of the body for tolerances; zero for what is unbounded.
@@ -84,15 +116,20 @@ pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
 
 /// An upper bound of the way made in a time `h`: `speed · h + bend · h²`.
 #[derive(Clone, Copy, Debug)]
-struct Rate<N> {
+pub(super) struct Rate<N> {
     speed: N,
     /// Not negative.
     bend: N,
 }
 
 impl<N: Real> Rate<N> {
+    /// The way made in a time, at most.
+    pub(super) fn way(&self, time: N) -> N {
+        product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
+    }
+
     /// How long it takes to use up a gap; infinite if that never happens.
-    fn time_for(&self, gap: N) -> N {
+    pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
         }
@@ -133,6 +170,37 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         span
     }
 
+    /// [`Self::safe_time`] of one part of each body, for bodies that both have constant velocities.
+    /// `frame` is the one that the parts are placed in, `normal` is from part to part in that of the first.
+    pub(super) fn safe_time_of_parts(
+        &self,
+        parts: &PartPair<'_, N, D>,
+        frame: &Pose<N, D>,
+        normal: &Vector<N, D>,
+        gap: N,
+        to: N,
+    ) -> N {
+        let (pair, poses) = (parts.pair(), parts.poses().map(|pose| frame.compose(&pose)));
+        let [center1, center2] = &self.centers;
+        let part1 = self.bodies[0].part(Geometry(pair.first), &poses[0], center1);
+        let part2 = self.bodies[1].part(Geometry(pair.second), &poses[1], center2);
+        let moment = Moment {
+            normal: poses[0].vector(normal),
+            bodies: [&part1, &part2],
+            origin: self.origin,
+            centers: self.centers,
+            time: self.time,
+            poses,
+        };
+        moment.safe_within(gap, -N::ONE, to)
+    }
+
+    /// The parts of the bodies go their own ways, and it is known how they do.
+    pub(super) fn has_parts_on_known_ways(&self) -> bool {
+        let is_known = self.bodies.iter().all(|body| body.constant().is_some());
+        is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
+    }
+
     /// A span that a bound over it carries through, of any order of magnitude, for bounds that are
     /// infinite over all that remains; zero if there is none.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
@@ -163,13 +231,13 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
     }
 
     /// By the largest speed that a point of either body can have at any time.
-    fn first_order(&self, to: N) -> Rate<N> {
+    pub(super) fn first_order(&self, to: N) -> Rate<N> {
         for (index, body) in self.bodies.iter().enumerate() {
             if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
                 return self.about_unbounded(index, to);
             }
         }
-        let swings = [0, 1].map(|index| self.swing(index, self.bodies[index].reach, to));
+        let swings = [0, 1].map(|index| self.swing(index, self.bodies[index].arm, to));
         let speed = self.drift(self.direction(), to) + swings[0] + swings[1];
         Rate { speed, bend: N::ZERO }
     }
@@ -196,7 +264,7 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
             let fastest = body.shape.as_support_map()?.core_support(&pose.inverse_vector(&slope));
             speed += slope.dot(&(pose.point(&fastest).coords - self.centers[index]));
             let spin = &body.constant()?.spin;
-            bend += N::HALF * length(&spin.tr_mul(&slope)) * body.reach;
+            bend += N::HALF * length(&spin.tr_mul(&slope)) * body.arm;
         }
         Some(Rate { speed, bend })
     }
@@ -210,7 +278,7 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         let turn = self.swing(index, N::ONE, to);
         let distance = length(&(self.centers[1] - self.centers[0])) + other.reach;
         let (along, all) = (self.drift(self.direction(), to), self.drift(None, to));
-        let swing = product(other.turn_bound(self.time, to), other.reach);
+        let swing = product(other.turn_bound(self.time, to), other.arm);
         Rate { speed: along + swing + product(turn, distance), bend: product(turn, all) }
     }
 
@@ -295,6 +363,20 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         let later = body.motion.pose_about(&self.origin, self.time + span);
         later.point(&local).coords - point
     }
+}
+
+/// How far the corners of a box of a body are from the axis that this turns about, at most.
+fn arm_of_box<N: Space<D>, const D: usize>(
+    aabb: &Aabb<N, D>,
+    center: &Point<N, D>,
+    motion: &ConstantVelocities<N, D>,
+) -> N {
+    let (middle, half) = (aabb.center() - center, aabb.half_extents());
+    (0..D).fold(motion.across_local(&middle), |sum, axis| {
+        let mut side = Vector::<N, D>::zeros();
+        side[axis] = half[axis];
+        sum + motion.across_local(&side)
+    })
 }
 
 /// A product in which nothing times infinity is nothing.

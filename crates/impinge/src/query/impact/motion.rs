@@ -1,5 +1,6 @@
 //! How a rigid body moves: where it is at each time, and how fast it can be.
 
+use super::bounds::length;
 use crate::math::{
     Isometry2, Isometry3, Matrix, Point, Pose, Real, Space, Vector, max_component, na, unit,
 };
@@ -153,6 +154,17 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
     fn pose(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
         let rotation = self.turned(time) * N::pose(&self.start).rotation;
         Pose { rotation, translation: self.translation(origin, time, &rotation) }
+    }
+
+    /// How far a point of the body is from the axis that it turns about, by its place seen from the centre, along
+    /// the world's axes.
+    pub(super) fn across(&self, place: &Vector<N, D>) -> N {
+        length(&(self.unit_spin * place))
+    }
+
+    /// The same by its place along the local axes.
+    pub(super) fn across_local(&self, place: &Vector<N, D>) -> N {
+        self.across(&(N::pose(&self.start).rotation * place))
     }
 
     fn speed(&self) -> N {

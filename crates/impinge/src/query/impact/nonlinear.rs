@@ -1,18 +1,30 @@
 //! The first touch of two bodies that move and turn.
 
-use super::bounds::{Body, Moment, length};
+use super::bounds::{Body, Moment, Rate, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion};
 use core::cmp::Ordering;
 use core::iter;
 
-use crate::math::{Pose, Space, Unit, Vector, max, max_component};
+use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
 use crate::query::Pair;
-use crate::query::composite::{Between, PartSeparation, Wanted, nearest_between};
+use crate::query::composite::{
+    Between, PairVisitor, PartSeparation, Wanted, nearest_between, visit_near_pairs,
+};
 use crate::query::pair::{Placed, order};
+use crate::query::separation::separation;
 use crate::shape::Shape;
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 1024;
+
+/// At most so many steps in a row are made while the bodies are so near that it would do, without a tolerance.
+const MAX_NEAR_STEPS: usize = 256;
+
+/// It does when the gap is that much of the sizes and the distance, 2^-20, or so many epsilon of them.
+const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
+
+/// Parts of composites are looked at one by one where they are apart by that much of the sizes at most.
+const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
 /// The first impact of two bodies that move and turn.
 ///
@@ -21,10 +33,10 @@ const MAX_STEPS: usize = 1024;
 ///
 /// *Never late.* The time found is at most that of the first touch, up to the rounding of the bodies'
 /// places and sizes: whatever turns fast or is thin is not missed. *Hardly early.* With
-/// [`ImpactStatus::Reached`] the bodies are then within 8 epsilon times their sizes and their distance
-/// of the target distance, or so near that their motion in the smallest step of the time covers the
+/// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
+/// distance, or so near that their motion in the smallest step of the time covers the
 /// rest. With [`ImpactStatus::StepsSpent`] 1024 steps did not settle the matter: nothing touches before
-/// that time, and what follows is not known. That happens to bodies that graze each other or stay in
+/// that time, and what follows is not known. That happens to bodies that stay in
 /// contact while they turn, to motions that go round for ever without a hit and without a longest
 /// time, and to bounds far above the true speeds; ask again from there, or for less time.
 ///
@@ -43,7 +55,9 @@ const MAX_STEPS: usize = 1024;
 /// normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex polyhedra",
 /// 2006) of the fastest point of the shape and by how much its path can bend, or by spheres around the
 /// bodies while these are apart. A half-space that turns is fastest far out: its speed counts there
-/// where the other body can be. Composites are seen as a whole, by their largest speed.
+/// where the other body can be. Composites are seen as a whole, by their largest speed, until they are within 1/128 of
+/// their sizes; then, for constant velocities, each two of their parts that are so near have a normal and a speed of
+/// their own, so that surfaces that slide on each other take hardly more steps than others.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -99,6 +113,7 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
         origin,
         end: options.max_time,
         target: max(options.target_distance, N::ZERO),
+        tolerance: options.tolerance.map(|tolerance| max(tolerance, N::ZERO)),
         mirrored,
     };
     let found = search.run()?;
@@ -136,6 +151,8 @@ struct Search<'a, N: Space<D>, const D: usize> {
     origin: Vector<N, D>,
     end: N,
     target: N,
+    /// How far from the target distance the bodies may be; zero or more.
+    tolerance: Option<N>,
     /// The bodies are the same at time zero.
     mirrored: bool,
 }
@@ -143,6 +160,8 @@ struct Search<'a, N: Space<D>, const D: usize> {
 /// How the bodies lie at a time.
 struct Sight<'b, 'a, N: Space<D>, const D: usize> {
     moment: Moment<'b, 'a, N, D>,
+    /// The pose of the first body in canonical order; of a ball without its rotation.
+    pose1: Pose<N, D>,
     between: Between<'a, N, D>,
     found: PartSeparation<N, D>,
     /// The nearest points, seen from the origin of the search.
@@ -151,6 +170,8 @@ struct Sight<'b, 'a, N: Space<D>, const D: usize> {
     gap: N,
     /// A length in proportion to the bodies and their distance.
     size: N,
+    /// How much of a gap counts as none.
+    tolerance: N,
 }
 
 /// What the gap is measured from.
@@ -170,15 +191,18 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
             return None;
         }
         let mut mode = Mode::Apart;
-        if sight.gap <= sight.tolerance() {
+        if sight.gap <= sight.tolerance {
             if self.counts_at_start(&sight) {
                 return Some(self.impact(&sight, ImpactStatus::Reached));
             }
             mode = Mode::Contact(sight.gap);
         }
+        let mut near_steps = 0;
         for _ in 0..MAX_STEPS {
             mode = sight.mode_after(mode);
-            if sight.is_hit(mode) {
+            let is_near = self.tolerance.is_none() && sight.is_near(mode);
+            near_steps = if is_near { near_steps + 1 } else { 0 };
+            if sight.is_hit(mode) || near_steps > MAX_NEAR_STEPS {
                 return Some(self.impact(&sight, ImpactStatus::Reached));
             }
             let time = sight.moment.time;
@@ -206,8 +230,28 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
         let moment = &sight.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
         let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
-        let apart = between - radius1 - radius2 - self.target;
-        moment.safe_time(sight.excess(mode), apart, self.end - moment.time)
+        let (excess, apart) = (sight.excess(mode), between - radius1 - radius2 - self.target);
+        let whole = moment.safe_time(excess, apart, self.end - moment.time);
+        let within = N::lit(PARTS_WITHIN) * (self.bodies[0].size() + self.bodies[1].size());
+        if excess < within && moment.has_parts_on_known_ways() {
+            max(self.step_of_parts(sight, excess, within), whole)
+        } else {
+            whole
+        }
+    }
+
+    /// For how long no part of a body comes to where the excess is used up, as far as the parts are looked at.
+    fn step_of_parts(&self, sight: &Sight<'_, '_, N, D>, excess: N, within: N) -> N {
+        let rate = sight.moment.first_order(self.end);
+        let mut safe = SafeStep {
+            sight,
+            spent: sight.found.separation.distance - excess,
+            end: self.end,
+            rate,
+            step: min(rate.time_for(within), self.end - sight.moment.time),
+        };
+        visit_near_pairs(&sight.between, &mut safe);
+        safe.step
     }
 
     /// The bodies at a time; `None` if a pose is not finite, and for composites without parts.
@@ -224,9 +268,13 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
         let found = nearest_between(&between, N::INFINITY, Wanted::Deepest)?;
         let centers = [0, 1].map(|index| self.bodies[index].center_at(&poses[index]));
         let sizes = self.bodies[0].size() + self.bodies[1].size();
+        let size = max_component(&pair.pose12.translation) + sizes;
+        let rounding = N::lit(8.0) * N::EPSILON * size;
         Some(Sight {
             gap: found.separation.distance - self.target,
-            size: max_component(&pair.pose12.translation) + sizes,
+            size,
+            tolerance: self.tolerance.map_or(rounding, |tolerance| max(tolerance, rounding)),
+            pose1: one.pose,
             points: [found.separation.point1, found.separation.point2]
                 .map(|point| one.pose.point(&point).coords),
             moment: Moment {
@@ -246,7 +294,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
         let (closing, noise) = sight.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
-        let deep = sight.gap < -sight.tolerance();
+        let deep = sight.gap < -sight.tolerance;
         closing > noise || (deep && closing >= -noise) || sight.gap == -N::INFINITY
     }
 
@@ -270,11 +318,6 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
-    /// What rounding may make of a gap.
-    fn tolerance(&self) -> N {
-        N::lit(8.0) * N::EPSILON * self.size
-    }
-
     /// By how much a contact may get deeper, or bodies part, and not be told from resting.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
@@ -282,7 +325,13 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
 
     /// What the gap is measured from, now that the bodies may have parted.
     fn mode_after(&self, mode: Mode<N>) -> Mode<N> {
-        if self.gap > self.slack() { Mode::Apart } else { mode }
+        if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
+    }
+
+    /// The bodies have been apart and are so near that it does if more steps bring them no nearer.
+    fn is_near(&self, mode: Mode<N>) -> bool {
+        let share = max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON);
+        matches!(mode, Mode::Apart) && self.gap <= share * self.size
     }
 
     /// How far the bodies may come nearer before it counts.
@@ -296,8 +345,34 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
     /// The excess is used up.
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
-            Mode::Apart => self.gap <= self.tolerance(),
+            Mode::Apart => self.gap <= self.tolerance,
             Mode::Contact(_) => self.excess(mode) <= self.slack() * N::HALF,
         }
+    }
+}
+
+/// The largest step in which no two parts use up the excess.
+struct SafeStep<'s, 'b, 'a, N: Space<D>, const D: usize> {
+    sight: &'s Sight<'b, 'a, N, D>,
+    /// The distance of parts at which the excess is used up.
+    spent: N,
+    end: N,
+    /// How fast any two parts can approach.
+    rate: Rate<N>,
+    step: N,
+}
+
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for SafeStep<'_, '_, '_, N, D> {
+    fn limit(&self) -> N {
+        self.spent + self.rate.way(self.step)
+    }
+
+    fn visit(&mut self, parts: [u32; 2]) {
+        let Sight { moment, between, pose1, .. } = self.sight;
+        let placed = between.parts(parts);
+        let Some(found) = separation(&placed.pair(), self.limit()) else { return };
+        let gap = found.distance - self.spent;
+        let time = moment.safe_time_of_parts(&placed, pose1, &found.normal, gap, self.end);
+        self.step = min(time, self.step);
     }
 }
