@@ -1,6 +1,8 @@
-//! Scaled shapes against their scaled points.
+//! Scaled shapes against their scaled points; and how what contacts cost grows with the parts within reach.
 
+mod growth;
 mod query_support;
+mod slides;
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::shape::Compound as Compound2;

@@ -54,10 +54,24 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         None
     }
 
+    /// Calls `visit` with the number of each corner of a part that others may share: two parts are adjacent
+    /// if they have a number in common, which need not be that of a vertex. None, the default, of solids side
+    /// by side.
+    ///
+    /// Of a triangle mesh or polyline these are its vertices, of which those at one position are one; of a
+    /// height field the points of its grid; of a compound those of its children, kept apart, where these are
+    /// below 2³².
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        let _ = (part, visit);
+    }
+
     /// Two different parts share a corner, so that their touching says nothing: such parts are left
-    /// out when the shape is tested against itself.
-    fn are_adjacent(&self, _part1: u32, _part2: u32) -> bool {
-        false
+    /// out when the shape is tested against itself. The default asks [`Self::each_corner`].
+    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
+        let (mut corners, mut is_shared) = (SmallVec::<[u64; 4]>::new(), false);
+        self.each_corner(part1, &mut |corner| corners.push(corner));
+        self.each_corner(part2, &mut |corner| is_shared |= corners.contains(&corner));
+        is_shared
     }
 
     /// Appends the way to a part.

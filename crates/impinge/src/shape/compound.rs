@@ -263,11 +263,13 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         self.has_surface.then_some(self as &dyn Surface<N, D>)
     }
 
-    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
-        let ((child1, own1), (child2, own2)) =
-            (self.child_of_part(part1), self.child_of_part(part2));
-        let own = self.composite(child1).filter(|_| child1 == child2);
-        own.is_some_and(|composite| composite.are_adjacent(own1, own2))
+    /// Those of the innermost composite, with the number of its first part in the upper half.
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        let (child, own) = self.child_of_part(part);
+        if let Some(composite) = self.composite(child) {
+            let first = u64::from(self.firsts[child]) << 32;
+            composite.each_corner(own, &mut |corner| visit(first.wrapping_add(corner)));
+        }
     }
 
     fn extend_path(&self, part: u32, path: &mut PartPath) {

@@ -68,12 +68,6 @@ impl Joints {
     pub(super) fn are_together<N: Real, const D: usize>(&self, vertices: &[Point<N, D>]) -> bool {
         self.of_vertex.iter().zip(vertices).all(|(&joint, at)| vertices[joint as usize] == *at)
     }
-
-    /// Two parts have a joint in common.
-    pub(super) fn are_joined<const K: usize>(&self, a: &[u32; K], b: &[u32; K]) -> bool {
-        let b = b.map(|vertex| self.of(vertex));
-        a.iter().any(|&vertex| b.contains(&self.of(vertex)))
-    }
 }
 
 /// By vertex: the first one at the same position. Zeros of both signs are one position.
@@ -104,7 +98,5 @@ mod tests {
         assert_eq!(joints.parts(0), [0, 2], "zeros of both signs are equal");
         assert_eq!(joints.parts(1), [0, 1, 2, 3], "the last part only once");
         assert_eq!((joints.parts(4), joints.parts(5)), ([1].as_slice(), [].as_slice()), "others");
-        assert!(joints.are_joined(&[0, 1], &[2, 4]), "through equal positions");
-        assert!(!joints.are_joined(&[0, 0], &[2, 4]), "nothing in common");
     }
 }

@@ -44,9 +44,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
         (self.is_one_sided() || !self.keeps_internal_edges).then_some(self)
     }
 
-    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
-        let [first, second] = [part1, part2].map(|part| &self.segments[part as usize]);
-        self.joints.are_joined(first, second)
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        self.segments[part as usize].iter().for_each(|&end| visit(self.joints.of(end).into()));
     }
 }
 

@@ -31,6 +31,7 @@ mod overlap;
 mod patch;
 mod patch_line;
 mod patch_outline;
+mod patch_shelves;
 mod reduce;
 mod rod_face;
 mod segments;

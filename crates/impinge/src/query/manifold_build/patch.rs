@@ -10,11 +10,12 @@ use smallvec::SmallVec;
 
 use super::super::{ManifoldRequest, PairIds, RawPoint};
 use super::patch_outline::{Choosing, Members};
+use super::patch_shelves::Shelves;
 use crate::math::{Real, Space, Vector, min};
 
 /// Normals that differ by more than this, as vectors, are those of different patches; points that
 /// lie farther from a plane than this part of their distance lie in different planes.
-const SAME: f64 = 1.0 / 1024.0;
+pub(super) const SAME: f64 = 1.0 / 1024.0;
 
 /// A manifold of two shapes one of which is a composite, in the frame of the first shape.
 #[derive(Clone, Debug)]
@@ -90,9 +91,8 @@ pub(in crate::query) fn merge<N: Space<D>, const D: usize>(
     } else {
         let layout = Layout::of(merging);
         for group in &layout.groups {
-            let own = layout.order.iter().filter(|(_, lead)| *lead == group.lead);
             let out = (blank(patches, made, merging.pieces[group.lead].normal), &mut *ids);
-            let pieces = own.map(|(piece, _)| *piece);
+            let pieces = layout.order[group.pieces.clone()].iter().map(|(piece, _)| *piece);
             choosing.fill((group.lead, group.deepest), pieces, &mut members, out);
             made += 1;
         }
@@ -197,16 +197,18 @@ struct Group {
     deepest: usize,
     /// The first of the parts.
     first: [u32; 2],
+    /// Where in the order the pieces are.
+    pieces: Range<usize>,
 }
 
-/// Pieces and the leads of their groups.
+/// Pieces with their deepest points, or with their groups.
 type Order = SmallVec<[(usize, usize); 16]>;
 
 /// Which pieces make which patches.
 struct Layout {
     /// In the order of their first parts.
     groups: SmallVec<[Group; 8]>,
-    /// The deepest first.
+    /// Those of each group together, the deepest first.
     order: Order,
 }
 
@@ -223,24 +225,29 @@ impl Layout {
             let by_value = by_depth(&merging.points[a.1], &merging.points[b.1]);
             by_value.then_with(|| pieces[a.0].parts.cmp(&pieces[b.0].parts))
         });
-        let mut groups: SmallVec<[Group; 8]> = SmallVec::new();
+        let (mut groups, mut shelves) = (SmallVec::<[Group; 8]>::new(), Shelves::of(pieces));
         for (index, found) in &mut order {
             let (piece, deepest) = (&pieces[*index], *found);
-            let is_level = |group: &&mut Group| {
+            let is_level = |&&group: &&usize| {
+                let group: &Group = &groups[group];
                 let leads = [group.deepest, deepest].map(|point| &merging.points[point]);
                 let normals = [&pieces[group.lead].normal, &piece.normal];
                 are_level(normals, leads, merging.tolerance)
             };
-            *found = match groups.iter_mut().find(is_level) {
-                Some(group) => {
-                    group.first = group.first.min(piece.parts);
-                    group.lead
-                }
-                None => {
-                    groups.push(Group { lead: *index, deepest, first: piece.parts });
-                    *index
-                }
-            };
+            let known = shelves.near(&piece.normal).iter().find(is_level).copied();
+            *found = known.unwrap_or(groups.len());
+            if let Some(known) = known {
+                groups[known].first = groups[known].first.min(piece.parts);
+            } else {
+                shelves.put(groups.len(), &piece.normal);
+                groups.push(Group { lead: *index, deepest, first: piece.parts, pieces: 0..0 });
+            }
+        }
+        order.sort_by_key(|&(_, group)| group);
+        let mut end = 0;
+        for own in order.chunk_by(|a, b| a.1 == b.1) {
+            groups[own[0].1].pieces = end..end + own.len();
+            end += own.len();
         }
         groups.retain(|group| merging.points[group.deepest].distance <= merging.request.prediction);
         groups.sort_by_key(|group| group.first);
@@ -249,7 +256,7 @@ impl Layout {
 }
 
 /// So many pieces are held against each other.
-const FEW_PIECES: usize = 12;
+pub(super) const FEW_PIECES: usize = 12;
 
 /// No two of a few pieces have one normal, as on rough ground.
 fn have_own_normals<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> bool {

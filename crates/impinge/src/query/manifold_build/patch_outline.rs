@@ -49,7 +49,12 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             let raw = RawPoint { id, code: 0, ..self.merging.points[deepest] };
             return out.push(PatchPoint { raw, parts: piece.parts });
         }
-        let tangents = (N::tables().tangents)(&piece.normal);
+        let mut tangents = (N::tables().tangents)(&piece.normal);
+        let count: usize =
+            pieces.clone().map(|piece| self.merging.pieces[piece].points.len()).sum();
+        if count > FEW {
+            tangents = askew(&tangents);
+        }
         self.gather((lead, deepest), pieces, &tangents, members);
         let count = self.drop_copies(members);
         let members = &members[..count];
@@ -222,6 +227,16 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
+/// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.
+fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
+    let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
+    // In the plane there is only one.
+    if *second == Vector::<N, D>::zeros() {
+        return [*first, *second];
+    }
+    [first * cosine + second * sine, second * cosine - first * sine]
+}
+
 /// Sorts points along the first tangent, then along the second; equal ones stay as they are.
 #[inline]
 fn sort<N: Real>(members: &mut [Member<N>]) {
@@ -287,17 +302,18 @@ fn thin<N: Real>(
     (mut count, outline): (usize, &mut [u32]),
     tolerance: N,
 ) -> usize {
-    let mut at = 0;
-    while count > 2 && at < count {
-        let before = outline[if at == 0 { count - 1 } else { at - 1 }];
-        let after = outline[if at + 1 == count { 0 } else { at + 1 }];
+    // The corners before `left` stay, those from `at` on are still to be looked at.
+    let (end, mut left) = (count, 0);
+    for at in 0..end {
+        let before = outline[if left == 0 { end - 1 } else { left - 1 }];
+        let after = outline[if at + 1 == end { 0 } else { at + 1 }];
         let way = members[after as usize].flat - members[before as usize].flat;
         let area = beside(members, [before, outline[at], after]);
-        if area.abs() <= tolerance * way.norm() {
-            outline.copy_within(at + 1..count, at);
+        if count > 2 && area.abs() <= tolerance * way.norm() {
             count -= 1;
         } else {
-            at += 1;
+            outline[left] = outline[at];
+            left += 1;
         }
     }
     count

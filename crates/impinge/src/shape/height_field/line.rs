@@ -249,9 +249,10 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
-    /// Segments that share a point.
-    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
-        part1.abs_diff(part2) <= 1
+    /// The points of the field, one after the other.
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        visit(part.into());
+        visit(u64::from(part) + 1);
     }
 }
 

@@ -428,10 +428,11 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
-    /// Triangles around one point of the grid.
-    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
-        let (corners1, corners2) = (self.corners(part1), self.corners(part2));
-        corners1.iter().any(|corner| corners2.contains(corner))
+    /// The points of the grid, row by row.
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        for [row, column] in self.corners(part) {
+            visit((row * self.grid.columns + column) as u64);
+        }
     }
 }
 

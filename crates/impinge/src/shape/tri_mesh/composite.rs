@@ -40,9 +40,9 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
-    fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
-        let [first, second] = [part1, part2].map(|part| &self.triangles[part as usize]);
-        self.topology.joints.are_joined(first, second)
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        let corners = &self.triangles[part as usize];
+        corners.iter().for_each(|&vertex| visit(self.topology.joints.of(vertex).into()));
     }
 }
 

@@ -7,9 +7,6 @@ use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangle};
 
-/// More parts than this are not kept.
-const MOST_KEPT: usize = 64;
-
 /// The room that is searched around a box to find parts for later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Room {
@@ -37,7 +34,8 @@ impl Room {
 /// stays in that.
 ///
 /// Parts that are given by their corners, in the frame of the composite, are kept with these: eight side
-/// by side, in one place of memory, whereas the composite has them wherever its vertices lie.
+/// by side, in one place of memory, whereas the composite has them wherever its vertices lie. That is 36 bytes for
+/// each triangle around the solid with `f32`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Around<N: Real, const D: usize> {
     within: Option<Aabb<N, D>>,
@@ -48,8 +46,6 @@ pub(super) struct Around<N: Real, const D: usize> {
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
-    /// There are too many to keep.
-    is_crowded: bool,
     room: Room,
 }
 
@@ -92,12 +88,12 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
             }
             self.fill(composite, aabb, most);
         }
-        !self.is_crowded
+        true
     }
 
     /// The parts that are kept are all that overlap a box.
     pub(super) fn holds(&self, aabb: &Aabb<N, D>) -> bool {
-        !self.is_crowded && self.within.as_ref().is_some_and(|within| within.contains(aabb))
+        self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
@@ -111,10 +107,6 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
             self.search(composite, &within);
         }
         self.tiles.clear();
-        self.is_crowded = self.parts.len() > MOST_KEPT;
-        if self.is_crowded {
-            self.parts = SmallVec::new();
-        }
         self.parts.sort_unstable();
         self.within = Some(within);
         self.fill_tiles(composite);
@@ -134,7 +126,9 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
             for lane in 0..LANES {
                 let part = composite.part(parts[lane.min(parts.len() - 1)]);
                 let is_first = lane == 0 && self.tiles.is_empty();
-                match corners_of(&part) {
+                // Only what lies in the frame of its composite.
+                let corners = corners_of(&part).filter(|_| part.pose.is_same(&Pose::identity()));
+                match corners {
                     Some((corners, is_segment)) if is_first || is_segment == self.are_segments => {
                         tiles.put(lane, &corners);
                         self.are_segments = is_segment;
@@ -197,12 +191,10 @@ impl<N: Space<D>, const D: usize> Around<N, D> {
     }
 }
 
-/// The corners of a part that lies in its composite's own frame, those of a segment with the second twice,
-/// and whether it is one.
-fn corners_of<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Option<([Point<N, D>; 3], bool)> {
-    if !part.pose.is_same(&Pose::identity()) {
-        return None;
-    }
+/// The corners of a part in its own frame, those of a segment with the second twice, and whether it is one.
+pub(super) fn corners_of<N: Real, const D: usize>(
+    part: &Part<'_, N, D>,
+) -> Option<([Point<N, D>; 3], bool)> {
     match &part.solid {
         PartSolid::Triangle(triangle) => Some((*triangle.corners(), false)),
         PartSolid::Segment(segment) => Some(([*segment.a(), *segment.b(), *segment.b()], true)),

@@ -26,6 +26,8 @@ use crate::shape::{
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
+/// Among so many tiles the segments at a point are looked for; among more the chain itself is asked.
+const MAX_SEARCHED: usize = 8;
 
 /// Brings the contacts of a convex solid and a chain up to date; answers false where that is left to the
 /// general way.
@@ -94,7 +96,7 @@ impl<N: Real> Kept<'_, N> {
 
 impl<N: Real> KnownSegments<N> for Kept<'_, N> {
     fn are_all_at(&self, point: &Point<N, 2>) -> bool {
-        self.within.contains_point(point)
+        self.tiles.len() <= MAX_SEARCHED && self.within.contains_point(point)
     }
 
     fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2])) {

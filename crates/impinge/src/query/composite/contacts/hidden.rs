@@ -9,12 +9,18 @@
 
 use smallvec::SmallVec;
 
+use super::around::corners_of;
 use super::facts::{Finding, Standing};
 use super::scene::Scene;
-use crate::math::{Real, Space, Vector, max};
+use crate::math::{Point, Real, Space, Vector, max, min};
 
 /// Faces whose normals' cosine is above this hide nothing from each other.
 const ALIKE: f64 = 0.99;
+/// Heights up to so many rounding units of the lengths of both parts are rounding errors.
+const ROUNDING: f64 = 16.0;
+/// Of the faces around a corner only so many hide others: those nearest to the solid. Surfaces have six around
+/// most corners, but a fan of triangles has all around one.
+const MAX_HIDING: usize = 16;
 
 /// Where a face lies to the plane of another.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -24,9 +30,23 @@ enum Place {
     Across,
 }
 
-/// Leaves out the contacts of a convex solid with faces that others hide.
+/// A face that is touched.
+struct Face<N: Real, const D: usize> {
+    finding: usize,
+    /// How far its part is from the solid.
+    distance: N,
+    /// Unit, on the side that is touched.
+    normal: Vector<N, D>,
+    /// A segment has its second end twice.
+    corners: [Point<N, D>; 3],
+}
+
+/// The faces, and for each corner of each the number of the corner and the index of the face; in order.
+type Faces<N, const D: usize> = (SmallVec<[Face<N, D>; 8]>, SmallVec<[(u64, usize); 24]>);
+
+/// Leaves out the contacts of a convex solid with faces that others hide, with which they share a corner.
 ///
-/// Cost: quadratic in the number of the parts that are touched on faces of different directions.
+/// Cost: O(n log n) in the number of faces that are touched.
 pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
@@ -40,22 +60,40 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     if all.zip(next).all(|(a, b)| are_alike(&a, &b)) {
         return;
     }
-    let faces = findings.iter().enumerate();
-    let faces: SmallVec<[(usize, Vector<N, D>); 8]> =
-        faces.filter_map(|(index, finding)| Some((index, finding.face?))).collect();
-    let mut hidden: SmallVec<[usize; 8]> = SmallVec::new();
-    for &(back, normal) in &faces {
-        let hides = |&(front, other): &(usize, Vector<N, D>)| {
-            !are_alike(&normal, &other)
-                && is_hidden(scene, (&findings[back], &normal), (&findings[front], &other))
-        };
-        if faces.iter().any(hides) {
-            hidden.push(back);
+    let (faces, mut corners) = faces_of(scene, findings);
+    for star in corners.chunk_by_mut(|a, b| a.0 == b.0) {
+        if star.len() > MAX_HIDING {
+            let distance = |&(_, face): &(u64, usize)| faces[face].distance.as_f64();
+            star.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        for (at, (_, first)) in star.iter().enumerate().take(MAX_HIDING) {
+            for (_, second) in &star[at + 1..] {
+                if let Some(hidden) = hidden_of(&faces[*first], &faces[*second]) {
+                    findings[hidden].standing = Standing::Left;
+                }
+            }
         }
     }
-    for index in hidden {
-        findings[index].standing = Standing::Left;
+}
+
+/// The faces that are touched.
+fn faces_of<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    findings: &[Finding<N, D>],
+) -> Faces<N, D> {
+    let (mut faces, mut shared) = Faces::default();
+    for (finding, Finding { distance, face, piece, .. }) in findings.iter().enumerate() {
+        let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
+            continue;
+        };
+        // What has no corners, as parts of a user's surface may be, hides nothing.
+        let Some((corners, _)) = corners_of(&part) else { continue };
+        let corners = corners.map(|corner| part.pose.point(&corner));
+        scene.each_corner(piece.parts[1], |corner| shared.push((corner, faces.len())));
+        faces.push(Face { finding, distance: *distance, normal, corners });
     }
+    shared.sort_unstable();
+    (faces, shared)
 }
 
 /// Faces with these normals hide nothing from each other.
@@ -63,28 +101,34 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// The part of `back` is behind that of `front`, which it hangs together with, but not the other way
-/// round.
-fn is_hidden<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
-    (back, back_normal): (&Finding<N, D>, &Vector<N, D>),
-    (front, front_normal): (&Finding<N, D>, &Vector<N, D>),
-) -> bool {
-    let (part, other) = (back.parts()[1], front.parts()[1]);
+/// Which of two contacts is hidden: its face is behind the other, but the other is not behind it.
+fn hidden_of<N: Real, const D: usize>(a: &Face<N, D>, b: &Face<N, D>) -> Option<usize> {
+    if are_alike(&a.normal, &b.normal) {
+        return None;
+    }
+    let (back, front) = match (place(a, b), place(b, a)) {
+        (Place::Back, Place::Front) => (a, b),
+        (Place::Front, Place::Back) => (b, a),
+        _ => return None,
+    };
     // What is farther hides nothing, so that the prediction never changes what overlaps.
-    front.distance <= max(back.distance, N::ZERO)
-        && scene.are_adjacent(part, other)
-        && place(scene, (part, other, front_normal)) == Place::Back
-        && place(scene, (other, part, back_normal)) == Place::Front
+    (front.distance <= max(back.distance, N::ZERO)).then_some(back.finding)
 }
 
-/// Where a part of the second shape lies to the plane of another, whose normal is given.
-fn place<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
-    (part, plane, normal): (u32, u32, &Vector<N, D>),
-) -> Place {
-    let Some((low, high, room)) = scene.heights(part, plane, normal) else { return Place::Across };
-    match (low < -room, high > room) {
+/// Where a part lies to the plane of another.
+fn place<N: Real, const D: usize>(part: &Face<N, D>, plane: &Face<N, D>) -> Place {
+    let origin = plane.corners[0];
+    let (mut low, mut high, mut level) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
+    let mut size = N::ZERO;
+    for (corner, own) in part.corners.iter().zip(&plane.corners) {
+        let (arm, own) = (corner - origin, own - origin);
+        let rise = plane.normal.dot(&arm);
+        (low, high) = (min(low, rise), max(high, rise));
+        level = max(level, plane.normal.dot(&own));
+        size = max(size, arm.norm_squared() + own.norm_squared());
+    }
+    let room = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
+    match (low - level < -room, high - level > room) {
         (true, false) => Place::Back,
         (false, true) => Place::Front,
         _ => Place::Across,

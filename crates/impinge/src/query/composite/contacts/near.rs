@@ -7,7 +7,7 @@
 use super::super::between::Between;
 use super::around::Around;
 use super::sight::Sight;
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SupportMap};
@@ -105,7 +105,10 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
                 is_in(&corners, within)
                     .then(|| self.of_corners(&corners, &to_segment(&corners, &self.center)))
             }
-            PartSolid::Shape(_) => Some(Bound { from_middle: N::ZERO, is_beyond: false }),
+            PartSolid::Shape(shape) => {
+                let is_in = |within: &Aabb<N, D>| within.intersects(&shape.aabb(&pose));
+                within.is_none_or(is_in).then_some(Bound { from_middle: N::ZERO, is_beyond: false })
+            }
         }
     }
 

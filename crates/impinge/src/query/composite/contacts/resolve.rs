@@ -9,13 +9,17 @@ use crate::math::{Real, Space, Vector, max};
 /// Normals whose cosine is above this say the same.
 const ALIKE: f64 = 0.99;
 
+/// So many ways of different directions are known at a time.
+const MAX_WAYS: usize = 32;
+
 /// A way to part the two shapes as far as some of their parts know: a normal and a depth along it.
 struct Way<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
-type Ways<N, const D: usize> = SmallVec<[Way<N, D>; 16]>;
+/// Ways to part the shapes, found shallowest first: the longest of each direction.
+struct Ways<N: Real, const D: usize>(SmallVec<[Way<N, D>; MAX_WAYS]>);
 
 /// Leaves the contacts that hold for the whole.
 ///
@@ -41,47 +45,64 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(findings, notes);
 }
 
-/// Leaves out contacts with faces that other contacts explain.
+/// Leaves out contacts with faces that other contacts explain, first such as are none beyond a ridge.
+///
+/// Cost: O(n log n) in the number of contacts, each held against a limited number of ways.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     findings: &mut [Finding<N, D>],
     notes: &Notes<N, D>,
 ) {
-    let mut ways = Ways::new();
-    for finding in findings.iter().filter(|finding| finding.standing == Standing::Own) {
-        note(&mut ways, finding);
-    }
-    for standing in [Standing::Snapped, Standing::Beyond] {
-        for index in shallowest_first(findings, standing) {
+    use Standing::{Beyond, Own, Snapped};
+    for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
+        let known = shallowest_first(findings, |standing| explaining.contains(&standing));
+        let (mut known, mut ways) = (known.into_iter().peekable(), Ways(SmallVec::new()));
+        for index in shallowest_first(findings, |standing| standing == asked) {
+            let is_shallower = |&other: &usize| depth(&findings[other]) <= depth(&findings[index]);
+            while let Some(other) = known.next_if(is_shallower) {
+                ways.note(&findings[other]);
+            }
             if is_explained(scene, &findings[index], &ways, notes) {
                 findings[index].standing = Standing::Left;
             } else {
-                note(&mut ways, &findings[index]);
+                ways.note(&findings[index]);
             }
         }
     }
 }
 
-/// The findings of a standing.
+/// How deep a contact is.
+fn depth<N: Real, const D: usize>(finding: &Finding<N, D>) -> N {
+    -finding.lowest
+}
+
+/// The findings of some standings.
 fn shallowest_first<N: Real, const D: usize>(
     findings: &[Finding<N, D>],
-    standing: Standing,
+    is_meant: impl Fn(Standing) -> bool,
 ) -> SmallVec<[usize; 16]> {
     let mut order: SmallVec<[usize; 16]> = SmallVec::new();
-    order.extend((0..findings.len()).filter(|&index| findings[index].standing == standing));
-    order.sort_by(|&a, &b| {
-        let lowest = |index: usize| findings[index].lowest.as_f64();
-        lowest(b).total_cmp(&lowest(a)).then(findings[a].parts().cmp(&findings[b].parts()))
-    });
+    order.extend((0..findings.len()).filter(|&index| is_meant(findings[index].standing)));
+    // Findings come in the order of their parts.
+    order.sort_by(|&a, &b| depth(&findings[a]).as_f64().total_cmp(&depth(&findings[b]).as_f64()));
     order
 }
 
-/// Takes note of a contact as a way to part the shapes; of those along one normal the farthest.
-fn note<N: Real, const D: usize>(ways: &mut Ways<N, D>, finding: &Finding<N, D>) {
-    let (normal, depth) = (finding.piece.normal, -finding.lowest);
-    match ways.iter_mut().find(|way| way.normal == normal) {
-        Some(way) => way.depth = max(way.depth, depth),
-        None => ways.push(Way { normal, depth }),
+impl<N: Real, const D: usize> Ways<N, D> {
+    /// Takes note of a contact that is no shallower than those before, in the place of one along about its
+    /// normal; or, where there are too many, of the one that was first.
+    fn note(&mut self, finding: &Finding<N, D>) {
+        let (normal, depth) = (finding.piece.normal, depth(finding));
+        if depth <= N::ZERO {
+            return;
+        }
+        let is_alike = |way: &Way<N, D>| way.normal.dot(&normal) >= N::lit(ALIKE);
+        if let Some(old) = self.0.iter().position(is_alike) {
+            self.0.remove(old);
+        } else if self.0.len() == MAX_WAYS {
+            self.0.remove(0);
+        }
+        self.0.push(Way { normal, depth });
     }
 }
 
@@ -90,22 +111,19 @@ fn note<N: Real, const D: usize>(ways: &mut Ways<N, D>, finding: &Finding<N, D>)
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     finding: &Finding<N, D>,
-    ways: &[Way<N, D>],
+    ways: &Ways<N, D>,
     notes: &Notes<N, D>,
 ) -> bool {
-    let (normal, depth) = (finding.piece.normal, -finding.lowest);
-    if depth <= finding.tolerance {
+    let normal = finding.piece.normal;
+    if depth(finding) <= finding.tolerance {
         return false;
     }
     let is_beyond = finding.standing == Standing::Beyond;
-    let is_asked = |way: &&Way<N, D>| {
-        let is_other = is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
-        is_other && way.depth > N::ZERO && way.depth <= depth
-    };
+    let is_asked = |way: &&Way<N, D>| is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
     // The plane that is known to part the two best may do so well enough once they are moved.
     let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
     let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -finding.tolerance);
-    for way in ways.iter().filter(is_asked) {
+    for way in ways.0.iter().filter(is_asked) {
         if rest(way) > room {
             return true;
         }

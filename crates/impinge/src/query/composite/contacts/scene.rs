@@ -149,32 +149,17 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         }
     }
 
-    /// Two parts of the second shape hang together.
-    pub(super) fn are_adjacent(&self, part: u32, other: u32) -> bool {
+    /// A part of the second shape, if that is a composite.
+    pub(super) fn second_part(&self, part: u32) -> Option<Part<'a, N, D>> {
         let [_, composite] = self.between.composites();
-        composite.is_some_and(|composite| composite.are_adjacent(part, other))
+        Some(self.part2(composite?, part))
     }
 
-    /// How low and how high a part of the second shape lies over the plane of another with a given
-    /// normal, and what counts as rounding. `None` of half-spaces.
-    pub(super) fn heights(
-        &self,
-        part: u32,
-        plane: u32,
-        normal: &Vector<N, D>,
-    ) -> Option<(N, N, N)> {
-        let composite = self.between.composites()[1]?;
-        let (part, plane) = (self.part2(composite, part), self.part2(composite, plane));
-        let origin = anchor(&plane);
-        let (part, plane) = (moved(&part, &origin), moved(&plane, &origin));
-        let top = |body: &Body<'_, N, D>, along: &Vector<N, D>| {
-            let map = Geometry(body.kind()).as_support_map()?;
-            let point = body.pose.point(&map.support_point(&body.pose.inverse_vector(along)));
-            Some((along.dot(&point.coords), map.reach()))
-        };
-        let (level, reach1) = top(&plane, normal)?;
-        let ((high, reach2), (low, _)) = (top(&part, normal)?, top(&part, &-normal)?);
-        Some((-low - level, high - level, N::lit(16.0) * N::EPSILON * (reach1 + reach2)))
+    /// Calls with the corners of a part of the second shape that others may share.
+    pub(super) fn each_corner(&self, part: u32, mut visit: impl FnMut(u64)) {
+        if let [_, Some(composite)] = self.between.composites() {
+            composite.each_corner(part, &mut visit);
+        }
     }
 
     /// The separations of a convex solid from triangles of a surface that are kept side by side, if there

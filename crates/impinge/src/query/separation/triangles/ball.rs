@@ -26,6 +26,8 @@ const CORNER: f64 = 3.0;
 const ROUNDING: f64 = 128.0;
 /// A height of more than so many rounding units of all coordinates is no rounding.
 const HEIGHT: f64 = 64.0;
+/// What hides a triangle is looked for among so many eights before and after its own.
+const MAX_APART: usize = 8;
 
 /// A ball among triangles.
 pub(crate) struct BallQuestion<'a, N: Real> {
@@ -90,7 +92,9 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize;
             asked &= asked - 1;
-            if is_hidden::<S, N, V>(simd, question, &places, (own, lane)) {
+            let around =
+                &places[at.saturating_sub(MAX_APART)..places.len().min(at + 1 + MAX_APART)];
+            if is_hidden::<S, N, V>(simd, question, around, (own, lane)) {
                 seen.near[at].1[1] |= 1 << lane;
                 seen.hidden_from = min(seen.hidden_from, own.least[lane]);
             }
