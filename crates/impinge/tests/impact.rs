@@ -147,6 +147,13 @@ fn starts_in_contact_count_by_their_velocities() {
         let resting = deep.then_some(0.0);
         assert_eq!(cast(V2::x()), resting, "sliding {what}");
         assert_eq!(cast(V2::zeros()), resting, "at rest {what}");
+        let always = options.with_contact_at_start(true);
+        for v in [-V2::y(), V2::y(), V2::new(5.0, 1e-3), V2::x(), V2::zeros()] {
+            let hit = onto_with(still, (at(3.0, height), v, shape), &always).map(|i| i.toi);
+            assert_eq!(hit, Some(0.0), "{v} {what}, if every contact counts");
+            let above = (at(3.0, height + 1e-3), V2::y(), shape);
+            assert!(deep || onto_with(still, above, &always).is_none(), "none {what}");
+        }
     }
 }
 
@@ -261,6 +268,13 @@ fn overlapping_starts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
             assert_eq!(hit.normal, found.normal, "{kind1:?} {kind2:?}");
             assert_eq!(cast(normal), None, "separating {kind1:?} {kind2:?}");
             assert_eq!(cast(Vector::<N, D>::zeros()), Some(hit), "at rest {kind1:?} {kind2:?}");
+            let always = ImpactOptions::new().with_contact_at_start(true);
+            for v in [normal, -normal, Vector::<N, D>::zeros()] {
+                let (one, two) = (Moving::still(&m1, &*shape1), Moving::new(&m2, &v, &*shape2));
+                assert_eq!(impact(&one, &two, &always), Some(hit), "{kind1:?} {kind2:?} by {v}");
+                let swapped = impact(&two, &one, &always).map(|hit| hit.flipped());
+                assert_eq!(swapped, Some(hit), "in either order");
+            }
         }
     }
     assert!(tried > kinds.len() * kinds.len(), "{tried} overlapped");

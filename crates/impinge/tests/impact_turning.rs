@@ -344,6 +344,12 @@ fn overlapping_starts() {
     assert_eq!(cast(V2::zeros(), 9.0), Some(0.0), "at rest");
     assert_eq!(cast(V2::y(), 9.0), Some(0.0), "sliding");
     assert_eq!(cast(V2::x(), 9.0), None, "separating");
+    for (x, v) in [(1.5, V2::x()), (1.5, V2::zeros()), (2.0, V2::x()), (2.0, V2::y())] {
+        let motion = Turning2::<f64>::new(at(x, 0.0), v, 3.0);
+        let always = until(9.0).with_contact_at_start(true);
+        let hit = both((&motion, &ball), (&still, &ball), &always).map(|found| found.toi);
+        assert_eq!(hit, Some(0.0), "by {v} at {x}, if every contact counts");
+    }
     let twins = Turning2::<f64>::new(at(0.0, 0.0), V2::x(), 0.0);
     assert_eq!(both((&twins, &ball), (&still, &ball), &until(9.0)), None, "apart from its twin");
 }

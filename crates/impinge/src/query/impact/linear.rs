@@ -19,6 +19,8 @@ pub(crate) struct Path<N: Real, const D: usize> {
     pub(crate) end: N,
     /// The distance at which the solids touch; zero or more.
     pub(crate) target: N,
+    /// A contact at the start counts, whatever the velocity.
+    pub(crate) contact_at_start: bool,
     /// The solids are the same at the same place: every normal is as good as its opposite.
     pub(crate) mirrored: bool,
 }
@@ -54,6 +56,9 @@ impl<N: Real, const D: usize> Path<N, D> {
     /// Whether a contact at the start counts: one that gets deeper does; one that is neither deep nor
     /// gets deeper, or gets less deep, does not. What overlaps without bound is never parted.
     fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
+        if self.contact_at_start {
+            return true;
+        }
         let (closing, noise) = (self.closing(normal), self.noise());
         let deep = gap < -tolerance;
         closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
@@ -231,7 +236,13 @@ mod tests {
             let target = [N::ZERO, N::lit(size * 0.1)][usize::from(round % 3 == 0)];
             let (start, path) = (
                 Pair { first, second, pose12 },
-                Path { velocity, end: N::INFINITY, target, mirrored: false },
+                Path {
+                    velocity,
+                    end: N::INFINITY,
+                    target,
+                    contact_at_start: false,
+                    mirrored: false,
+                },
             );
             let tolerance = N::lit(8.0) * N::EPSILON * super::size(&start);
             let found = separation(&start, N::INFINITY).expect("finite");

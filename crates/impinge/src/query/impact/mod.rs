@@ -24,6 +24,17 @@ use crate::math::{
 use crate::shape::{FeatureId, Shape};
 
 /// A solid that moves along a straight line, with the same velocity at all times, and does not turn.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::query::{ImpactOptions, Moving, impact};
+/// use impinge::dim2::shape::Ball;
+///
+/// let ball = Ball::new(1.0_f64);
+/// let still = Moving::still(&Isometry::identity(), &ball);
+/// let flies = Moving::new(&Isometry::translation(-6.0, 0.0), &Vector::new(2.0, 0.0), &ball);
+/// assert_eq!(impact(&still, &flies, &ImpactOptions::new()).map(|hit| hit.toi), Some(2.0));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a, N: Real, const D: usize> {
     pub(crate) placed: Placed<'a, N, D>,
@@ -79,13 +90,21 @@ pub struct ImpactOptions<N: Real> {
     /// on each other, within a millionth of the sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths are
     /// always followed up to rounding.
     pub tolerance: Option<N>,
+    /// Solids that touch or overlap at time zero are an impact then, whatever their velocities; false by
+    /// default, when those that part, and those that touch and slide, are none.
+    pub contact_at_start: bool,
 }
 
 impl<N: Real> ImpactOptions<N> {
     /// Impacts at any time, at a distance of zero.
     #[must_use]
     pub const fn new() -> Self {
-        Self { max_time: N::INFINITY, target_distance: N::ZERO, tolerance: None }
+        Self {
+            max_time: N::INFINITY,
+            target_distance: N::ZERO,
+            tolerance: None,
+            contact_at_start: false,
+        }
     }
 
     /// The same with another [`Self::max_time`].
@@ -105,6 +124,12 @@ impl<N: Real> ImpactOptions<N> {
     pub const fn with_tolerance(self, tolerance: N) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
+
+    /// The same with another [`Self::contact_at_start`].
+    #[must_use]
+    pub const fn with_contact_at_start(self, contact_at_start: bool) -> Self {
+        Self { contact_at_start, ..self }
+    }
 }
 
 impl<N: Real> Default for ImpactOptions<N> {
@@ -114,6 +139,17 @@ impl<N: Real> Default for ImpactOptions<N> {
 }
 
 /// How sure an impact is.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::query::{ImpactOptions, ImpactStatus, Moving, impact};
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, start) = (Ball::new(1.0_f64), Isometry::translation(-6.0, 0.0));
+/// let (one, two) = (Moving::still(&Isometry::identity(), &ball), Moving::new(&start, &Vector::x(), &ball));
+/// let hit = impact(&one, &two, &ImpactOptions::new()).expect("head on");
+/// assert_eq!(hit.status, ImpactStatus::Reached);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactStatus {
@@ -128,6 +164,18 @@ pub enum ImpactStatus {
 ///
 /// The points and the normal are in the world frame, at the time of impact: for solids that stand
 /// where they have moved to.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::query::{ImpactOptions, Moving, impact};
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, start) = (Ball::new(1.0_f64), Isometry::translation(-6.0, 0.0));
+/// let (one, two) = (Moving::new(&start, &Vector::x(), &ball), Moving::still(&Isometry::identity(), &ball));
+/// let hit = impact(&one, &two, &ImpactOptions::new()).expect("head on");
+/// assert_eq!((hit.toi, hit.world1.x, hit.world2.x), (4.0, -1.0, -1.0), "when, and where by then");
+/// assert_eq!(*hit.normal, Vector::x(), "from the first to the second");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact<N: Real, const D: usize> {
     /// The time of impact: zero or more, at most the longest time asked for.
@@ -192,6 +240,9 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// | overlap, or are nearer than the target distance | impact at zero | impact at zero | `None` |
 /// | just touch, or are at the target distance, up to rounding | impact at zero | `None` | `None` |
 ///
+/// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero: ncollide and,
+/// by default, parry answer so.
+///
 /// Convex solids that do not approach each other never will, so `None` is the end of it. A box that
 /// slides along the floor it stands on does not hit the floor; one that has sunk into it does, until it
 /// is moved out. Slower than 8 epsilon times the relative speed counts as no approach. Half-spaces that
@@ -235,6 +286,18 @@ pub fn impact<N: Space<D>, const D: usize>(
 ///
 /// The time of [`impact`] with the options left as they are: see there for starts in contact, the
 /// accuracy and the cost.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Vector};
+/// use impinge::dim3::query::time_of_impact;
+/// use impinge::dim3::shape::Ball;
+///
+/// let (ball, rest) = (Ball::new(1.0_f32), Vector::zeros());
+/// let (here, there) = (Isometry::identity(), Isometry::translation(5.0, 0.0, 0.0));
+/// let toi = |velocity| time_of_impact(&here, &velocity, &ball, &there, &rest, &ball);
+/// assert_eq!(toi(Vector::x()), Some(3.0));
+/// assert_eq!(toi(-Vector::x()), None, "the other way");
+/// ```
 #[must_use]
 pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
@@ -309,6 +372,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
             velocity: first.placed.pose.inverse_vector(&(velocity / scale)),
             end: options.max_time * scale,
             target: max(options.target_distance, N::ZERO),
+            contact_at_start: options.contact_at_start,
             mirrored,
         };
         Some(Self { first, ordered, pair, path, scale })

@@ -1,5 +1,7 @@
 //! How a rigid body moves: where it is at each time, and how fast it can be.
 
+use core::fmt;
+
 use super::bounds::length;
 use crate::math::{
     Isometry2, Isometry3, Matrix, Point, Pose, Real, Space, Vector, max_component, na, unit,
@@ -93,7 +95,7 @@ pub trait RigidMotion<N: Space<D>, const D: usize> {
 /// let corner = motion.position_at(2.0) * Point::new(1.0, 0.0, 0.0);
 /// assert!((corner - Point::new(2.0 + 1.0_f64.cos(), 1.0_f64.sin(), 0.0)).norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct ConstantVelocities<N: Space<D>, const D: usize> {
     start: N::Isometry,
     local_center: Point<N, D>,
@@ -104,6 +106,17 @@ pub struct ConstantVelocities<N: Space<D>, const D: usize> {
     unit_spin: Matrix<N, D>,
     /// Radians per unit of time; not negative.
     turn: N,
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for ConstantVelocities<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ConstantVelocities")
+            .field("position", &self.start)
+            .field("local_center", &self.local_center)
+            .field("linear", &self.linear)
+            .field("turn", &self.turn)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {

@@ -114,6 +114,7 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
         end: options.max_time,
         target: max(options.target_distance, N::ZERO),
         tolerance: options.tolerance.map(|tolerance| max(tolerance, N::ZERO)),
+        contact_at_start: options.contact_at_start,
         mirrored,
     };
     let found = search.run()?;
@@ -153,6 +154,8 @@ struct Search<'a, N: Space<D>, const D: usize> {
     target: N,
     /// How far from the target distance the bodies may be; zero or more.
     tolerance: Option<N>,
+    /// A contact at time zero counts, whatever the velocities.
+    contact_at_start: bool,
     /// The bodies are the same at time zero.
     mirrored: bool,
 }
@@ -292,6 +295,9 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
     fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
+        if self.contact_at_start {
+            return true;
+        }
         let (closing, noise) = sight.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         let deep = sight.gap < -sight.tolerance;
