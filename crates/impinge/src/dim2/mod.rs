@@ -200,7 +200,7 @@ pub mod shape {
 
 /// Shapes from points.
 pub mod transformation {
-    pub use crate::transformation::convex_hull2 as convex_hull;
+    pub use crate::transformation::{convex_hull2 as convex_hull, convex_shape2 as convex_shape};
 }
 
 /// The outlines of the shapes, as points.

@@ -200,7 +200,9 @@ pub mod shape {
 
 /// Shapes from points.
 pub mod transformation {
-    pub use crate::transformation::{IndexedHull, convex_hull3 as convex_hull};
+    pub use crate::transformation::{
+        IndexedHull, convex_hull3 as convex_hull, convex_shape3 as convex_shape,
+    };
 }
 
 /// The surfaces of the shapes, as triangles.

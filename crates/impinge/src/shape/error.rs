@@ -6,6 +6,14 @@ use super::ShapeKind;
 use crate::math::{Real, Vector};
 
 /// Why a constructor refused its numbers. Values are given as `f64`, exactly.
+///
+/// ```
+/// use impinge::dim2::shape::{Ball, ShapeError};
+///
+/// let refused = Ball::try_new(-2.5_f32).expect_err("no radius");
+/// assert!(matches!(refused, ShapeError::Negative { value: -2.5, .. }));
+/// assert_eq!(refused.to_string(), "the radius is -2.5, below zero");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShapeError {
@@ -45,6 +53,25 @@ pub enum ShapeError {
         /// The index of the point.
         index: usize,
     },
+    /// A face of a solid names a point that there is not.
+    NoSuchPoint {
+        /// The index of the face.
+        face: usize,
+        /// The index that it names.
+        point: u32,
+        /// How many points there are.
+        points: usize,
+    },
+    /// The faces of a solid do not close: a side of one is not that of exactly one other.
+    NotClosed {
+        /// The index of the face.
+        face: usize,
+    },
+    /// A face of a solid is not on the convex hull of its points, so the solid is not convex.
+    FaceNotOnHull {
+        /// The index of the face.
+        face: usize,
+    },
     /// A shape of this kind is not bounded and convex, so it has no rounded variant.
     NotRoundable {
         /// The kind of the shape.
@@ -61,6 +88,13 @@ pub enum ShapeError {
     TooManyParts {
         /// How many they would be.
         needed: u64,
+    },
+    /// A height field with fewer heights along an axis than a cell has.
+    TooFewHeights {
+        /// How many there are along the axis.
+        given: usize,
+        /// How many it takes.
+        needed: usize,
     },
     /// The number of heights is not that of the rows times that of the columns.
     WrongHeightCount {
@@ -98,6 +132,15 @@ impl fmt::Display for ShapeError {
             Self::NotRoundable { kind } => {
                 write!(f, "{kind:?} is not a bounded convex solid and cannot be rounded")
             }
+            Self::NoSuchPoint { face, point, points } => {
+                write!(f, "face {face} names point {point}, but there are {points}")
+            }
+            Self::NotClosed { face } => {
+                write!(f, "a side of face {face} is not that of exactly one other face")
+            }
+            Self::FaceNotOnHull { face } => {
+                write!(f, "face {face} is not on the convex hull of the points")
+            }
             Self::NotConvex { index } => write!(f, "the outline is not convex at point {index}"),
             Self::NoChildren => write!(f, "a compound needs a child at least"),
             Self::ChildPoseNotFinite { index } => {
@@ -105,6 +148,9 @@ impl fmt::Display for ShapeError {
             }
             Self::TooManyParts { needed } => {
                 write!(f, "{needed} parts are more than 32 bits can number")
+            }
+            Self::TooFewHeights { given, needed } => {
+                write!(f, "a height field needs {needed} heights along each axis, {given} is given")
             }
             Self::WrongHeightCount { given, needed } => {
                 write!(f, "{given} heights were given, {needed} are needed")

@@ -7,6 +7,15 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
 
 /// A convex hull, in terms of the points it was made of.
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::transformation::convex_hull;
+///
+/// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, 0.2, 0.2]];
+/// let hull = convex_hull(&corners.map(Point::<f32>::from)).expect("they span a solid");
+/// assert_eq!((hull.vertices, hull.faces.len()), (vec![0, 1, 2, 3], 4));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndexedHull<N: Real> {
     /// The indices of the points that are vertices, ascending.

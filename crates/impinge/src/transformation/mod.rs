@@ -5,13 +5,16 @@
 //! would be kept: the noise of computed coordinates, a few rounding units of the largest one.
 
 mod exact;
+mod given;
 mod hull2;
 mod hull3;
 mod hull_faces;
 mod outline;
 mod quickhull;
 mod span;
+mod spanned;
 
 pub(crate) use exact::{area, volume};
 pub use hull2::convex_hull2;
 pub use hull3::{IndexedHull, convex_hull3};
+pub use spanned::{convex_shape2, convex_shape3};

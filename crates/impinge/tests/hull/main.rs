@@ -2,6 +2,7 @@
 
 mod checks;
 mod corpus;
+mod given;
 mod large;
 mod plane;
 mod points;

@@ -15,6 +15,17 @@ const ORDERED_FROM: usize = 256;
 /// Rays that are asked about together, with what all of them have in common.
 ///
 /// See [`RayCast::cast_local_rays`](super::RayCast::cast_local_rays).
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point, Vector};
+/// use impinge::dim2::query::{Ray, RayBatch, RayCast};
+/// use impinge::dim2::shape::Ball;
+///
+/// let rays = [0.0, 0.5, 5.0].map(|y| Ray::new(Point::new(-4.0_f64, y), Vector::x()));
+/// let mut hits = [None; 3];
+/// Ball::new(1.0).cast_rays(&Isometry::identity(), &RayBatch::new(&rays).until(10.0), &mut hits);
+/// assert_eq!(hits.map(|hit| hit.is_some()), [true, true, false]);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct RayBatch<'a, N: Real, const D: usize> {
     /// The rays.

@@ -40,9 +40,20 @@ use crate::bounding_volume::Ray;
 use crate::math::{
     AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max, max_component, min,
 };
-use crate::shape::{FeatureId, Geometry, Kind, Shape, Triangle};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape, Triangle};
 
 /// Where and when a ray first meets a solid.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point, Vector};
+/// use impinge::dim2::query::{Ray, RayCast};
+/// use impinge::dim2::shape::Ball;
+///
+/// let ray = Ray::new(Point::new(-5.0_f32, 0.0), Vector::new(2.0, 0.0));
+/// let hit = Ball::new(1.0).toi_and_normal_with_ray(&Isometry::identity(), &ray, true);
+/// let hit = hit.expect("straight ahead");
+/// assert_eq!((hit.toi, ray.point_at(hit.toi), hit.normal), (2.0, Point::new(-1.0, 0.0), -Vector::x()));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayIntersection<N: Real, const D: usize> {
     /// The time of impact, zero or more, in units of the length of the ray's direction: the point
@@ -81,6 +92,20 @@ pub struct RayIntersection<N: Real, const D: usize> {
 ///
 /// Cost on a composite: a search of the parts along the ray, up to the hit. [`Self::intersects_ray`]
 /// ends at any part that is hit.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::{Ray, RayCast};
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let (cube, place) = (Cuboid::new(Vector::repeat(1.0_f32)), Isometry::translation(5.0, 0.0, 0.0));
+/// let ray = Ray::new(Point::origin(), Vector::x());
+/// assert_eq!(cube.toi_with_ray(&place, &ray, true), Some(4.0));
+/// assert!(cube.first_hit_with_ray(&place, &ray, 3.0, true).is_none(), "too short");
+/// let inner = Ray::new(Point::new(5.0, 0.0, 0.0), Vector::x());
+/// assert_eq!(cube.toi_with_ray(&place, &inner, true), Some(0.0), "solid");
+/// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
+/// ```
 pub trait RayCast<N: Real, const D: usize> {
     /// The first hit in the local frame.
     ///
@@ -189,6 +214,41 @@ pub trait RayCast<N: Real, const D: usize> {
         Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
     }
 
+    /// The first hit by `max_time` that `counts`, on the shape placed at `m`; the others are passed by. Of a
+    /// composite the first hits on its parts are held out, each at most once and in no particular order, and of
+    /// a convex solid its first hit. The normals are in the world frame.
+    ///
+    /// It culls back faces: a triangle in space is hit on its `Face(0)` from the front, where it is seen
+    /// counter-clockwise, and on its `Face(1)` from behind.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Isometry, Point, Vector};
+    /// use impinge::dim3::query::{Ray, RayCast};
+    /// use impinge::dim3::shape::{Cuboid, FeatureId, TriMesh};
+    /// use impinge::procedural::space;
+    ///
+    /// let surface = space::cuboid(&Cuboid::new(Vector::repeat(1.0_f32)));
+    /// let (room, here) = (TriMesh::try_from(surface).expect("good triangles"), Isometry::identity());
+    /// let ray = Ray::new(Point::new(-3.0, 0.25, 0.5), Vector::x());
+    /// let hit = |is_seen: fn(FeatureId) -> bool| {
+    ///     let found = room.first_hit_where(&here, &ray, 10.0, true, |hit| is_seen(hit.feature));
+    ///     found.map(|hit| (hit.toi, hit.normal.x))
+    /// };
+    /// assert_eq!(hit(|_| true), Some((2.0, -1.0)), "the near wall");
+    /// assert_eq!(hit(|feature| feature != FeatureId::Face(0)), Some((4.0, -1.0)), "the far wall, from inside");
+    /// assert_eq!(hit(|feature| feature != FeatureId::Face(1)), Some((2.0, -1.0)), "from outside");
+    /// ```
+    fn first_hit_where<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+        counts: impl Fn(&RayIntersection<N, D>) -> bool,
+    ) -> Option<RayIntersection<N, D>> {
+        self.all_hits_with_ray(m, ray, max_time, solid).into_iter().find(|hit| counts(hit))
+    }
+
     /// [`Self::local_ray_hits`] on the shape placed at `m`, with normals in the world frame.
     ///
     /// ```
@@ -284,6 +344,28 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits
     }
 
+    fn first_hit_where<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+        counts: impl Fn(&RayIntersection<N, D>) -> bool,
+    ) -> Option<RayIntersection<N, D>> {
+        let pose = Pose::from_isometry(m);
+        let local = ray.inverse_transformed_by(&pose);
+        let in_world = |hit: RayIntersection<N, D>| RayIntersection {
+            normal: pose.vector(&hit.normal),
+            ..hit
+        };
+        let counts = |hit: &RayIntersection<N, D>| counts(&in_world(*hit));
+        let first = match self.geometry().as_composite() {
+            Some(parts) => first_that(parts, &RayQuestion { ray: local, max_time, solid }, counts),
+            None => self.cast_local_ray_until(&local, max_time, solid).filter(counts),
+        };
+        first.map(in_world)
+    }
+
     fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
         let Some(parts) = self.geometry().as_composite() else {
             return self.cast_local_ray_until(ray, max_time, true).is_some();
@@ -311,19 +393,28 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
 ) -> Option<RayIntersection<N, D>> {
     let kind = geometry.0;
     if let Kind::Composite(parts) = kind {
-        let mut first: Option<RayIntersection<N, D>> = None;
-        let question = RayQuestion { ray: *ray, max_time, solid };
-        (N::tables().each_hit)(parts, &question, &mut |hit| {
-            let is_first = first.is_none_or(|first| is_before(&hit, &first));
-            first = if is_first { Some(hit) } else { first };
-            first.map_or(max_time, |first| first.toi)
-        });
-        return first;
+        return first_that(parts, &RayQuestion { ray: *ray, max_time, solid }, |_| true);
     }
     let surface_point = |point: &_| (N::tables().surface_point)(kind, point).projection(point);
     let project = |point: &_| may_hold(kind, point).then(|| surface_point(point));
     let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(kind, ray));
     hit.filter(|hit| hit.toi <= max_time)
+}
+
+/// The first hit on a part that counts.
+#[inline]
+fn first_that<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    question: &RayQuestion<N, D>,
+    counts: impl Fn(&RayIntersection<N, D>) -> bool,
+) -> Option<RayIntersection<N, D>> {
+    let mut first: Option<RayIntersection<N, D>> = None;
+    (N::tables().each_hit)(parts, question, &mut |hit| {
+        let is_first = first.is_none_or(|first| is_before(&hit, &first));
+        first = if is_first && counts(&hit) { Some(hit) } else { first };
+        first.map_or(question.max_time, |first| first.toi)
+    });
+    first
 }
 
 /// Earlier, or at the same time on a part of lower number. No two hits are on one part, and no time is

@@ -1,0 +1,107 @@
+//! Convex polyhedra whose faces are known already: checked, and made from their points.
+
+use crate::math::{Point, Real, Vector, max, max_component};
+use crate::shape::{ConvexHull, ShapeError};
+
+/// The middle of a face may lie so many rounding units of the largest coordinate below the hull: what
+/// rounded corners make of a flat face.
+const SLACK: f64 = 64.0;
+
+impl<N: Real> ConvexHull<N> {
+    /// The solid with these corners and faces; see [`Self::try_new`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new<F: AsRef<[u32]>>(points: &[Point<N, 3>], faces: &[F]) -> Self {
+        match Self::try_new(points, faces) {
+            Ok(hull) => hull,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The solid with these corners and faces, which are triangles or other polygons, each by the indices of
+    /// its corners in order, either way round.
+    ///
+    /// The hull is made from the points, as by [`Self::try_from_points`]: faces in one plane become one, and
+    /// corners that are none are left out, so vertices and faces are numbered anew. The faces given say that
+    /// the solid is what it is taken for: each must lie on the hull, up to 64 rounding units of the largest
+    /// coordinate in its middle, and together they must close.
+    ///
+    /// Costs the hull, and a look at all of its faces for each one given.
+    ///
+    /// ```
+    /// use impinge::dim3::math::Point;
+    /// use impinge::dim3::shape::{ConvexHull, ShapeError};
+    ///
+    /// let corners: Vec<Point<f32>> =
+    ///     (0..8_u8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f32::from).into()).collect();
+    /// let mut quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    /// let cube = ConvexHull::new(&corners, &quads);
+    /// assert_eq!((cube.vertices().len(), cube.faces().len(), cube.edges().len()), (8, 6, 12));
+    ///
+    /// quads.pop();
+    /// assert!(matches!(ConvexHull::try_new(&corners, &quads), Err(ShapeError::NotClosed { .. })));
+    /// ```
+    ///
+    /// # Errors
+    /// If a face has fewer than three corners or names a point that there is not; if a side is not one of
+    /// two faces; if a face is not on the hull, as of solids that are not convex; and as
+    /// [`Self::try_from_points`].
+    pub fn try_new<F: AsRef<[u32]>>(
+        points: &[Point<N, 3>],
+        faces: &[F],
+    ) -> Result<Self, ShapeError> {
+        check_corners(points.len(), faces)?;
+        check_closed(faces)?;
+        let hull = Self::try_from_points(points)?;
+        let size = points.iter().map(|point| max_component(&point.coords)).fold(N::ZERO, max);
+        let lowest = -N::lit(SLACK) * N::EPSILON * size;
+        let is_on_hull = |face: &F| {
+            let middle = middle(points, face.as_ref());
+            hull.faces().iter().any(|plane| plane.height_of(&middle) >= lowest)
+        };
+        match faces.iter().position(|face| !is_on_hull(face)) {
+            // A face whose middle is on the boundary of a convex set lies there wholly.
+            Some(face) => Err(ShapeError::FaceNotOnHull { face }),
+            None => Ok(hull),
+        }
+    }
+}
+
+/// Faces have three corners at least, all of which there are.
+fn check_corners<F: AsRef<[u32]>>(points: usize, faces: &[F]) -> Result<(), ShapeError> {
+    for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
+        if corners.len() < 3 {
+            return Err(ShapeError::TooFewPoints { given: corners.len(), needed: 3 });
+        }
+        if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {
+            return Err(ShapeError::NoSuchPoint { face, point, points });
+        }
+    }
+    Ok(())
+}
+
+/// Each side belongs to two faces.
+fn check_closed<F: AsRef<[u32]>>(faces: &[F]) -> Result<(), ShapeError> {
+    let mut sides = Vec::new();
+    for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
+        let next = corners.iter().cycle().skip(1);
+        sides.extend(corners.iter().zip(next).map(|(&a, &b)| ([a.min(b), a.max(b)], face)));
+    }
+    sides.sort_unstable();
+    let alone = sides.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() != 2);
+    match alone {
+        Some(same) => Err(ShapeError::NotClosed { face: same[0].1 }),
+        None => Ok(()),
+    }
+}
+
+/// The mean of the corners of a face.
+fn middle<N: Real>(points: &[Point<N, 3>], corners: &[u32]) -> Point<N, 3> {
+    let count = u32::try_from(corners.len()).map_or(f64::INFINITY, f64::from);
+    let share = N::ONE / N::lit(count);
+    let sum = |sum, &corner: &u32| sum + points[corner as usize].coords * share;
+    Point::from(corners.iter().fold(Vector::<N, 3>::zeros(), sum))
+}

@@ -1,0 +1,102 @@
+//! The convex hull of points as the shape that it is: a solid, or what is left of one without volume.
+
+use super::convex_hull2;
+use super::span::{Scaled, first_three, first_two};
+use crate::math::{Point, Real, Space};
+use crate::shape::{
+    ConvexHull, ConvexPolygon, Segment, ShapeError, ShapeHandle, TriMesh, Triangle,
+};
+
+/// The convex hull of one point or more: a [`ConvexPolygon`]; a [`Segment`] if all points lie on a line; one
+/// of no length if they coincide. "On a line" is within rounding, as [`convex_hull2`] has it.
+///
+/// # Errors
+/// If there is no point, or a coordinate is not finite.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::Segment;
+/// use impinge::dim2::transformation::convex_shape;
+///
+/// let line = [[0.0_f32, 0.0], [2.0, 2.0], [1.0, 1.0]].map(Point::from);
+/// let shape = convex_shape(&line).expect("finite");
+/// assert_eq!(shape.as_shape::<Segment<f32>>().map(|segment| *segment.b()), Some(line[1]));
+/// ```
+pub fn convex_shape2<N: Real>(points: &[Point<N, 2>]) -> Result<ShapeHandle<N, 2>, ShapeError> {
+    match ConvexPolygon::try_from_points(points) {
+        Ok(polygon) => Ok(ShapeHandle::new(polygon)),
+        Err(error) => {
+            without_volume(error)?;
+            segment(&Scaled::of(points, 1)?, points)
+        }
+    }
+}
+
+/// The convex hull of one point or more: a [`ConvexHull`]; in a plane a [`Triangle`] or, with more corners,
+/// the [`TriMesh`] of a flat polygon with two sides; on a line a [`Segment`]; one of no length if all points
+/// coincide. "In a plane" is within rounding, as [`convex_hull3`](super::convex_hull3) has it.
+///
+/// # Errors
+/// If there is no point, or a coordinate is not finite.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::distance;
+/// use impinge::dim3::shape::{Ball, TriMesh};
+/// use impinge::dim3::transformation::convex_shape;
+///
+/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]];
+/// let square = square.map(|[x, y]| Point::new(x, y, 3.0_f64));
+/// let shape = convex_shape(&square).expect("finite");
+/// assert_eq!(shape.as_shape::<TriMesh<f64>>().map(|mesh| mesh.num_triangles()), Some(2));
+/// let (here, ball) = (Isometry::identity(), Ball::new(1.0));
+/// assert_eq!(distance(&here, &*shape, &here, &ball), 2.0);
+/// ```
+pub fn convex_shape3<N: Real>(points: &[Point<N, 3>]) -> Result<ShapeHandle<N, 3>, ShapeError> {
+    match ConvexHull::try_from_points(points) {
+        Ok(hull) => Ok(ShapeHandle::new(hull)),
+        Err(error) => {
+            without_volume(error)?;
+            let scaled = Scaled::of(points, 1)?;
+            flat_polygon(&scaled, points).map_or_else(|| segment(&scaled, points), Ok)
+        }
+    }
+}
+
+/// The error says no more than that the points span no solid, perhaps because they are few.
+fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
+    match error {
+        ShapeError::Degenerate { .. } | ShapeError::TooFewPoints { given: 1.., .. } => Ok(()),
+        ShapeError::TooFewPoints { given, .. } => {
+            Err(ShapeError::TooFewPoints { given, needed: 1 })
+        }
+        other => Err(other),
+    }
+}
+
+/// The segment between the points that are farthest apart along the axis on which all spread most.
+fn segment<N: Real, const D: usize>(
+    scaled: &Scaled<D>,
+    points: &[Point<N, D>],
+) -> Result<ShapeHandle<N, D>, ShapeError> {
+    let [low, high] = first_two(scaled).unwrap_or([0, 0]);
+    Ok(ShapeHandle::new(Segment::try_new(points[low], points[high])?))
+}
+
+/// The polygon of points in a plane; `None` if they lie on a line. Its corners are found in the coordinate
+/// plane that faces it most, where no coordinate is rounded.
+fn flat_polygon<N: Space<3>>(
+    scaled: &Scaled<3>,
+    points: &[Point<N, 3>],
+) -> Option<ShapeHandle<N, 3>> {
+    let [a, b, c] = first_three(scaled).ok()?.map(|index| scaled.points[index]);
+    let across = (b - a).cross(&(c - a)).iamax();
+    let seen = points.iter().map(|p| Point::<N, 2>::new(p[(across + 1) % 3], p[(across + 2) % 3]));
+    let ring = convex_hull2(&seen.collect::<Vec<_>>()).ok()?;
+    let corners: Vec<_> = ring.iter().map(|&index| points[index]).collect();
+    if let [a, b, c] = corners[..] {
+        return Triangle::try_new(a, b, c).ok().map(ShapeHandle::new);
+    }
+    let fan = (1_u32..).take(corners.len() - 2).map(|corner| [0, corner, corner + 1]);
+    TriMesh::try_new(corners, fan.collect()).ok().map(ShapeHandle::new)
+}
