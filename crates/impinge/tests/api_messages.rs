@@ -5,10 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use impinge::dim2::bounding_volume::Aabb;
 use impinge::dim2::broad_phase::{BroadPhase, DBVTBroadPhase};
 use impinge::dim2::na::{Isometry2, Point2, Vector2};
+use impinge::dim2::narrow_phase::DefaultNarrowPhase;
+use impinge::dim2::query::ConstantVelocities;
 use impinge::dim2::shape::{
-    Ball, Capsule, ConvexPolygon, ConvexPolyhedron, Cuboid, FeatureId, Segment, ShapeHandle,
+    Ball, Capsule, Compound, ConvexPolygon, ConvexPolyhedron, Cuboid, FeatureId, HeightField,
+    Polyline, Segment, ShapeHandle, TriMesh,
 };
-use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+use impinge::dim2::world::{CollisionGroups, CollisionObject, CollisionWorld, GeometricQueryType};
 
 /// What a call panics with.
 fn message<R>(call: impl FnOnce() -> R) -> String {
@@ -108,4 +111,126 @@ fn features_that_are_not_there_are_named() {
     names(&["no vertex", "Vertex(4)"], || cuboid.vertex(FeatureId::Vertex(4)));
     names(&["no face", "Edge(0)"], || cuboid.edge(FeatureId::Edge(0)));
     names(&["Face(4)"], || cuboid.feature_normal(FeatureId::Face(4)));
+}
+
+/// Fields and marks of the insides of types, which tell users nothing.
+const INSIDES: [&str; 22] = [
+    "state",
+    "blocks",
+    "quartets",
+    "fans",
+    "tree",
+    "lanes",
+    "pyramid",
+    "marks",
+    "topology",
+    "bends",
+    "joints",
+    "identity",
+    "raw",
+    "placement",
+    "slots",
+    "records",
+    "finder",
+    "table",
+    "entries",
+    "rule",
+    "2147483647",
+    "4294967295",
+];
+
+/// What a value prints, which holds all of `parts` and nothing of the insides.
+#[track_caller]
+fn prints(value: &dyn std::fmt::Debug, parts: &[&str]) {
+    let text = format!("{value:?}");
+    for part in parts {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+    for inside in INSIDES {
+        assert!(!text.contains(inside), "{inside} is in {text}");
+    }
+    assert!(text.len() < 2000, "{} characters: {text}", text.len());
+}
+
+#[test]
+fn worlds_print_what_users_know() {
+    let mut world = CollisionWorld::new(0.02_f64);
+    let (ball, groups) = (ShapeHandle::new(Ball::new(0.5)), CollisionGroups::new());
+    let query = GeometricQueryType::Contacts(0.0, 0.0);
+    prints(&world, &["num_objects: 0", "pending: []"]);
+    let [a, b] = [0.0, 0.5].map(|x| world.add(at(x, 0.0), ball.clone(), groups, query, "name"));
+    prints(&world, &["num_objects: 2", "num_pairs: 0", "changed objects: 2"]);
+    world.update();
+    prints(&world, &["num_pairs: 1", "pending: []"]);
+    prints(
+        world.collision_object(a).expect("there"),
+        &["Ball { radius: 0.5 }", "query_type", "\"name\""],
+    );
+    prints(&world.contact_pair(a, b), &["num_contacts: 1"]);
+    for (_, _, view) in world.contact_views() {
+        prints(&view, &["depth: 0.5"]);
+    }
+    for (_, _, manifold) in world.contact_manifolds() {
+        prints(manifold, &["depth: 0.5", "local1"]);
+    }
+    world.set_position(a, at(0.0, 0.0));
+    prints(&world, &["pending: []"]);
+    world.set_position(a, at(0.1, 0.0));
+    world.unregister_broad_phase_pair_filter("none");
+    prints(&world, &["changed objects: 1\"]"]);
+    world.remove(&[a]);
+    type Object = CollisionObject<f64, &'static str>;
+    world.register_broad_phase_pair_filter("all", |_: &Object, _: &Object| true);
+    world.set_broad_phase(Box::new(DBVTBroadPhase::new(0.1)));
+    world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
+    let pending = ["events of removed objects: 1", "other filters", "broad phase", "narrow phase"];
+    prints(&world, &pending);
+    assert!(!format!("{world:?}").contains("changed objects"), "it is gone");
+    world.update();
+    prints(&world, &["num_objects: 1", "filters: [\"all\"]", "pending: []"]);
+    prints(&DefaultNarrowPhase::<f64>::new(), &["pairs: 0"]);
+    let mut broad_phase = DBVTBroadPhase::<f64, Aabb<f64>, ()>::new(0.1);
+    broad_phase.create_proxy(Aabb::new(Point2::origin(), Point2::origin()), ());
+    prints(&broad_phase, &["num_proxies: 1", "num_pairs: 0", "margin: 0.1"]);
+}
+
+#[test]
+fn shapes_print_what_they_were_made_of() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point2::<f64>::from);
+    let ball = ShapeHandle::new(Ball::new(0.5));
+    prints(&ball, &["radius: 0.5"]);
+    prints(&Compound::new(vec![(at(1.0, 2.0), ball)]), &["children", "radius: 0.5"]);
+    prints(&ConvexPolygon::new(&square), &["ConvexPolygon", "[1.0, 1.0]"]);
+    prints(
+        &Polyline::<f64>::open(square.to_vec()).one_sided(),
+        &["num_segments: 3", "is_one_sided: true"],
+    );
+    let mesh = TriMesh::new(square.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+    prints(&mesh, &["num_vertices: 4", "num_triangles: 2"]);
+    prints(mesh.tree(), &["BoxTree"]);
+    let field = HeightField::<f64>::new(vec![0.0; 100_000], Vector2::new(1.0, 1.0));
+    prints(&field, &["num_heights: 100000", "is_one_sided: false"]);
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let corners = corners.map(impinge::dim3::math::Point::<f32>::from);
+    let hull = impinge::dim3::shape::ConvexHull::from_points(&corners);
+    prints(&hull, &["ConvexHull", "faces", "[0.0, 0.0, 1.0]"]);
+    prints(hull.polytope(), &["Polytope", "faces"]);
+    prints(&impinge::dim3::shape::Tetrahedron::new(corners), &["corners"]);
+    let turning = ConstantVelocities::<f64>::new(at(1.0, 0.0), Vector2::x(), 0.5);
+    prints(&turning, &["linear", "turn: 0.5"]);
+}
+
+#[test]
+fn what_is_too_little_is_said_in_the_words_of_the_shape() {
+    names(&["line", "two", "1 is given"], || Polyline::<f64>::open(vec![Point2::origin()]));
+    names(&["line", "two", "0 is given"], || Polyline::<f64>::closed(Vec::new()));
+    names(&["no part", "polyline a segment"], || Polyline::<f64>::new(vec![], vec![]));
+    names(&["no part", "mesh needs a triangle"], || TriMesh::<f64>::new(vec![], vec![]));
+    names(&["height field", "2", "1 is given"], || {
+        HeightField::<f64>::new(vec![0.0], Vector2::new(1.0, 1.0))
+    });
+    names(&["compound", "child"], || Compound::<f64>::new(Vec::new()));
+    names(&["part 0", "vertex 7", "1 vertices"], || {
+        Polyline::<f64>::new(vec![Point2::origin()], vec![[0, 7]])
+    });
 }

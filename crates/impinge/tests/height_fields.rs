@@ -38,7 +38,7 @@ fn bad_numbers_are_refused_by_name() {
     let refused = |rows, columns, heights, scale| {
         Field::try_new(rows, columns, heights, scale).expect_err("they make no field")
     };
-    let few = ShapeError::TooFewPoints { given: 1, needed: 2 };
+    let few = ShapeError::TooFewHeights { given: 1, needed: 2 };
     assert_eq!(refused(1, 5, vec![0.0; 5], unit), few, "one row");
     assert_eq!(refused(5, 1, vec![0.0; 5], unit), few, "one column");
     let count = ShapeError::WrongHeightCount { given: 5, needed: 6 };

@@ -9,6 +9,16 @@ use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 ///
 /// `mins ≤ maxs` on every axis and nothing is NaN. Faces may be infinite: such a box is unbounded.
 /// Zero extents are allowed.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::{Aabb, BoundingVolume};
+/// use impinge::dim2::math::{Point, Vector};
+///
+/// let left = Aabb::new(Point::new(0.0_f32, 0.0), Point::new(2.0, 1.0));
+/// let right = Aabb::from_half_extents(Point::new(3.0, 0.5), Vector::new(1.0, 0.5));
+/// assert!(left.intersects(&right), "touching counts");
+/// assert_eq!(left.merged(&right).maxs(), &Point::new(4.0, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb<N: Real, const D: usize> {
     mins: Point<N, D>,
@@ -16,6 +26,14 @@ pub struct Aabb<N: Real, const D: usize> {
 }
 
 /// Why two corners make no box. Values are given as `f64`, exactly.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::{Aabb, AabbError};
+/// use impinge::dim2::math::Point;
+///
+/// let refused = Aabb::try_new(Point::new(2.0_f32, 0.0), Point::new(1.0, 1.0)).expect_err("inverted");
+/// assert_eq!(refused, AabbError::Inverted { axis: 0, min: 2.0, max: 1.0 });
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AabbError {
@@ -85,6 +103,30 @@ impl<N: Real, const D: usize> Aabb<N, D> {
             }
         }
         Ok(Self { mins, maxs })
+    }
+
+    /// The box around `center` that reaches `half_extents` to both sides along each axis, up to rounding.
+    ///
+    /// # Panics
+    /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn from_half_extents(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
+        match Self::try_from_half_extents(center, half_extents) {
+            Ok(aabb) => aabb,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The box around `center` that reaches `half_extents` to both sides along each axis, up to rounding.
+    ///
+    /// # Errors
+    /// If a coordinate is NaN or a half extent negative.
+    pub fn try_from_half_extents(
+        center: Point<N, D>,
+        half_extents: Vector<N, D>,
+    ) -> Result<Self, AabbError> {
+        Self::try_new(center - half_extents, center + half_extents)
     }
 
     /// The box around `center` that reaches `half_extents` along each axis; for trusted numbers.

@@ -13,6 +13,15 @@ use crate::math::Real;
 /// A volume that a broad phase can keep in place of an object.
 ///
 /// All tests are closed: volumes that only touch intersect.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::{Aabb, BoundingVolume};
+/// use impinge::dim2::math::{Point, Vector};
+///
+/// let volume = Aabb::new(Point::new(0.0_f32, 0.0), Point::new(1.0, 1.0));
+/// assert!(volume.loosened(0.5).contains_point(&Point::new(-0.5, -0.5)));
+/// assert!(volume.swept(&Vector::new(2.0, 0.0), 1.0).contains_point(&Point::new(3.0, 1.0)));
+/// ```
 pub trait BoundingVolume<N: Real>: Clone {
     /// The points of the space that the volume lies in.
     type Point;

@@ -5,6 +5,14 @@ use crate::math::{Point, Pose, Real, Vector};
 /// The points `origin + t · dir` for `t ≥ 0`.
 ///
 /// `dir` need not be unit; times are in units of its length. A zero `dir` makes the ray a point.
+///
+/// ```
+/// use impinge::dim2::math::{Point, Vector};
+/// use impinge::dim2::query::Ray;
+///
+/// let ray = Ray::new(Point::new(1.0_f32, 0.0), Vector::new(0.0, 2.0));
+/// assert_eq!(ray.point_at(1.5), Point::new(1.0, 3.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray<N: Real, const D: usize> {

@@ -8,6 +8,15 @@ use crate::math::{Point, Pose, Real, Vector, max, unit};
 /// The points within `radius` of `center`.
 ///
 /// The radius may be zero (a point) or infinite (everything).
+///
+/// ```
+/// use impinge::dim3::bounding_volume::{BoundingSphere, BoundingVolume};
+/// use impinge::dim3::math::Point;
+///
+/// let sphere = BoundingSphere::new(Point::origin(), 2.0_f32);
+/// assert!(sphere.contains_point(&Point::new(0.0, 2.0, 0.0)));
+/// assert!(sphere.intersects(&BoundingSphere::new(Point::new(3.0, 0.0, 0.0), 1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingSphere<N: Real, const D: usize> {
     center: Point<N, D>,
@@ -15,6 +24,14 @@ pub struct BoundingSphere<N: Real, const D: usize> {
 }
 
 /// Why a centre and a radius make no sphere.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::{BoundingSphere, BoundingSphereError};
+/// use impinge::dim2::math::Point;
+///
+/// let refused = BoundingSphere::try_new(Point::origin(), -1.0_f32);
+/// assert_eq!(refused, Err(BoundingSphereError::Radius(-1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BoundingSphereError<N: Real> {

@@ -1,5 +1,7 @@
 //! The tree over a user's own boxes.
 
+use core::fmt;
+
 use super::boxes::{around, check, count};
 use super::{Best, BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, Ray};
@@ -37,7 +39,7 @@ use crate::math::{Point, Real, Space, Vector, max};
 /// assert_eq!(tree.first_hit(&ray, f32::INFINITY), Some((6, 2.5)));
 /// assert_eq!(tree.nearest(&Point::<f32, 2>::new(27.0, 1.0), f32::INFINITY), Some((3, 3.0)));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct BoxTree<N: Real, const D: usize> {
     boxes: Vec<Aabb<N, D>>,
     /// Around all boxes; `None` if there are none.
@@ -46,6 +48,12 @@ pub struct BoxTree<N: Real, const D: usize> {
     /// The boxes that no finite `f32` box encloses, ascending.
     unbounded: Vec<u32>,
     lanes: Lanes,
+}
+
+impl<N: Real, const D: usize> fmt::Debug for BoxTree<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BoxTree").field("boxes", &self.boxes).finish()
+    }
 }
 
 /// What a search without an order of its own asks.

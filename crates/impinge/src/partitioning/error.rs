@@ -5,6 +5,16 @@ use core::fmt;
 use crate::bounding_volume::AabbError;
 
 /// Why a [`BoxTree`](super::BoxTree) refused its boxes.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::partitioning::{BoxTree, BoxTreeError};
+///
+/// let boxes = [Aabb::new(Point::origin(), Point::new(1.0_f32, 1.0))];
+/// let refused = BoxTree::from_boxes(&boxes).try_refit(&[]);
+/// assert_eq!(refused, Err(BoxTreeError::WrongCount { given: 0, needed: 1 }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BoxTreeError {

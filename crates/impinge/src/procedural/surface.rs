@@ -4,6 +4,14 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{MeshError, Polyline, TriMesh};
 
 /// A closed line through points of the plane, counter-clockwise; the last leads back to the first.
+///
+/// ```
+/// use impinge::dim2::procedural;
+/// use impinge::dim2::shape::Ball;
+///
+/// let outline = procedural::ball(&Ball::new(1.0_f32), 8);
+/// assert_eq!(outline.points.len(), 8);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Outline<N: Real> {
@@ -15,6 +23,16 @@ pub struct Outline<N: Real> {
 ///
 /// Triangles share their vertices: each edge belongs to two triangles, once in each direction. Where
 /// the surface has a crease, the triangles on its two sides differ in their normals only.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::procedural;
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let surface = procedural::cuboid(&Cuboid::new(Vector::repeat(1.0_f32)));
+/// assert_eq!((surface.vertices.len(), surface.triangles.len()), (8, 12));
+/// assert_eq!(surface.corners().len(), 12);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TriangleSurface<N: Real> {

@@ -10,6 +10,17 @@ use crate::math::{Point, Pose, Real, Vector};
 ///
 /// Radius zero is a point. Scaled by factors of different magnitudes it is an [`Ellipsoid`]. Its only
 /// feature is `Face(0)`.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Ball;
+///
+/// let ball = Ball::new(2.0_f32);
+/// let place = Isometry::translation(5.0, 0.0, 0.0);
+/// assert_eq!(ball.distance_to_point(&place, &Point::origin(), true), 3.0);
+/// assert!(Ball::try_new(-1.0_f32).is_err());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball<N: Real> {
     radius: N,

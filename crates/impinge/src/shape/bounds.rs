@@ -10,6 +10,15 @@ use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector, Wide, m
 
 /// The box around a shape placed at `pose`, in the frame that the pose leads to; as small as is
 /// cheap. Unbounded for a half-space, but for the axis that its normal lies along exactly.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::aabb;
+/// use impinge::dim2::math::{Isometry, Point};
+/// use impinge::dim2::shape::Ball;
+///
+/// let around = aabb(&Ball::new(1.0_f32), &Isometry::translation(3.0, 0.0));
+/// assert_eq!((around.mins().x, around.maxs().x), (2.0, 4.0));
+/// ```
 pub fn aabb<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Isometry<N, R, D>,
@@ -19,6 +28,17 @@ pub fn aabb<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 
 /// The sphere around a shape placed at `pose`, in the frame that the pose leads to; infinite for a
 /// half-space.
+///
+/// ```
+/// use impinge::dim3::bounding_volume::bounding_sphere;
+/// use impinge::dim3::math::{Isometry, Vector};
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let (cube, place) = (Cuboid::new(Vector::repeat(1.0_f64)), Isometry::translation(3.0, 0.0, 0.0));
+/// let sphere = bounding_sphere(&cube, &place);
+/// assert_eq!(sphere.center().x, 3.0);
+/// assert!(sphere.radius() >= 3.0_f64.sqrt());
+/// ```
 pub fn bounding_sphere<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Isometry<N, R, D>,

@@ -13,6 +13,16 @@ use crate::math::{Point, Pose, Real, Vector};
 ///
 /// Radius and length may be zero: a capsule of no length is a ball, one of no radius a segment.
 /// Vertices: 0 and 1 are the round ends; the round side is `Edge(0)`, in the plane too.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Capsule;
+///
+/// let capsule = Capsule::<f32>::new(1.0, 0.5);
+/// assert_eq!((capsule.half_height(), capsule.radius()), (1.0, 0.5));
+/// assert!(capsule.contains_point(&Isometry::identity(), &Point::new(0.0, 1.5, 0.0)), "its tip");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule<N: Real, const D: usize> {
     segment: Segment<N, D>,
@@ -49,6 +59,12 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         finite("a coordinate of the second end", &b.coords)?;
         let radius = size("the radius", radius)?;
         Ok(Self { segment: Segment::try_new(a, b)?, radius })
+    }
+
+    /// Half of the length of the segment in the middle: what [`Self::new`] was given.
+    #[must_use]
+    pub fn half_height(&self) -> N {
+        self.segment.half_length()
     }
 
     /// The segment in the middle.

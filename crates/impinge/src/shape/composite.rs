@@ -19,6 +19,17 @@ pub type PartPath = SmallVec<[u32; 4]>;
 /// Implement it, and [`Shape::geometry`] by [`Geometry::composite`], for a composite of your own: keep
 /// a [`BoxTree`](crate::partitioning::BoxTree) over the boxes of the parts and give it as the search.
 /// All is in the frame of the composite.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{CompositeShape, PartSolid, Polyline};
+///
+/// let line: Polyline<f32> = Polyline::open([0.0, 1.0, 2.0].map(|x| Point::new(x, 0.0)).to_vec());
+/// assert_eq!(line.num_parts(), 2);
+/// let PartSolid::Segment(last) = line.part(1).solid else { panic!("parts are segments") };
+/// assert_eq!(last.b().x, 2.0);
+/// assert!(line.are_adjacent(0, 1));
+/// ```
 pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// How many parts there are; they are numbered from 0.
     fn num_parts(&self) -> u32;
@@ -81,6 +92,17 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
 }
 
 /// One of the solids that a composite is made of.
+///
+/// ```
+/// use impinge::dim3::math::Isometry;
+/// use impinge::dim3::shape::{Ball, CompositeShape, Compound, ShapeHandle};
+///
+/// let ball = ShapeHandle::new(Ball::new(0.5_f32));
+/// let pair = Compound::new([-1.0, 1.0].map(|x| (Isometry::translation(x, 0.0, 0.0), ball.clone())).to_vec());
+/// let part = pair.part(1);
+/// assert_eq!(part.pose.translation.x, 1.0);
+/// assert_eq!(part.solid.as_shape().local_aabb().maxs().x, 0.5, "in its own frame");
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a, N: Real, const D: usize> {
     /// Where it lies in the frame of the composite.
@@ -90,6 +112,16 @@ pub struct Part<'a, N: Real, const D: usize> {
 }
 
 /// What a part is: made on the fly, or kept by the composite.
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::shape::{CompositeShape, PartSolid, TriMesh};
+///
+/// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::<f32>::from);
+/// let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
+/// let PartSolid::Triangle(triangle) = mesh.part(0).solid else { panic!("parts are triangles") };
+/// assert_eq!(triangle.corners(), &corners);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub enum PartSolid<'a, N: Real, const D: usize> {
     /// A triangle.
@@ -123,6 +155,18 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// Parts are proposed by their boxes, which may be larger than they are: whoever asks looks at each.
 /// Each part is proposed at most once; near ones first is better, but no order is promised. What is
 /// not finite, except for the faces of an unbounded box, is near nothing.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::math::{Point, Vector};
+/// use impinge::dim2::shape::{CompositeShape, Polyline};
+///
+/// let line: Polyline<f32> = Polyline::open((0..10).map(|x| Point::new(x as f32, 0.0)).collect());
+/// let mut found = Vec::new();
+/// let place = Aabb::from_half_extents(Point::new(4.5, 0.0), Vector::repeat(0.25));
+/// line.search().overlapping(&place, &mut |part| found.push(part));
+/// assert_eq!(found, [4]);
+/// ```
 pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     /// A box around all parts, as small as is cheap: it is asked for in every query.
     ///
@@ -156,6 +200,18 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 ///
 /// Seen one by one, triangles of a floor have edges that a sliding box would catch on. A surface
 /// knows which normals its parts have as pieces of the whole. All is in the frame of the composite.
+///
+/// ```
+/// use impinge::dim2::math::{Point, Vector};
+/// use impinge::dim2::shape::{CompositeShape, FeatureId, Polyline};
+///
+/// let flat: Polyline<f32> = Polyline::open([0.0, 1.0, 2.0].map(|x| Point::new(x, 0.0)).to_vec());
+/// let surface = flat.surface().expect("its segments are one line");
+/// let (seam, slanted) = (FeatureId::Vertex(1), Vector::new(0.6, 0.8));
+/// assert!(surface.admits(0, seam, &Vector::y()));
+/// assert!(!surface.admits(0, seam, &slanted), "there is no corner to catch on");
+/// assert_eq!(surface.snapped(0, &slanted), Some(Vector::y()));
+/// ```
 pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// The unit vector `normal`, away from the part, is one that the whole surface has at the
     /// feature of the part: the face's own; at a seam where the surface bends outwards, one between

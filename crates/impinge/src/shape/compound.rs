@@ -43,7 +43,7 @@ use crate::partitioning::BoxTree;
 /// // Part 3 is the second solid of the second child.
 /// assert_eq!(rack.path_to_part(3).as_slice(), [1, 1]);
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Compound<N: Space<D>, const D: usize> {
     children: Vec<(N::Isometry, ShapeHandle<N, D>)>,
     pub(super) poses: Vec<Pose<N, D>>,

@@ -21,6 +21,16 @@ use crate::math::{Point, Pose, Real, Vector, max, min, unit};
 /// As features the base is an octagon inscribed in it, whose vertices and sides all bear the name of
 /// the rim; the round side is the segment on it that faces the direction, from the rim to the apex.
 /// A cone of no height is a disk: its upper side is the octagon turned over, named `Face(1)`.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Cone;
+///
+/// let cone = Cone::new(1.0_f64, 0.5);
+/// assert!(cone.contains_point(&Isometry::identity(), &Point::new(0.0, 1.0, 0.0)), "the apex");
+/// assert!(!cone.contains_point(&Isometry::identity(), &Point::new(0.5, 1.0, 0.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone<N: Real> {
     half_height: N,

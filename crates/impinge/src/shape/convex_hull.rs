@@ -12,7 +12,16 @@ use crate::math::{Point, Pose, Real, Vector};
 ///
 /// Vertices are in the order in which the points were given; faces are polygons, counter-clockwise
 /// seen from outside. Everything that can be asked of a [`Polytope`] can be asked of it.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::shape::ConvexHull;
+///
+/// let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.1, 0.1, 0.1]];
+/// let hull = ConvexHull::from_points(&points.map(Point::<f32>::from));
+/// assert_eq!((hull.vertices().len(), hull.faces().len()), (4, 4), "one point lies inside");
+/// ```
+#[derive(Clone, PartialEq)]
 pub struct ConvexHull<N: Real> {
     polytope: Polytope<N, 3>,
 }

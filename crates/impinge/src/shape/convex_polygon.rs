@@ -12,7 +12,17 @@ use crate::math::{Point, Pose, Real, Vector};
 ///
 /// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next. Everything
 /// that can be asked of a [`Polytope`] can be asked of it.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::ConvexPolygon;
+///
+/// let outline = [[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Point::<f32>::from);
+/// let polygon = ConvexPolygon::new(&outline);
+/// assert_eq!(polygon.vertices(), outline);
+/// assert_eq!(polygon.faces()[0].normal.y, -1.0, "the side below");
+/// ```
+#[derive(Clone, PartialEq)]
 pub struct ConvexPolygon<N: Real> {
     polytope: Polytope<N, 2>,
 }

@@ -23,6 +23,12 @@ use crate::math::{Point, Real, Vector};
 /// Faces are given with their vertices counter-clockwise seen from outside (in the plane with the
 /// box on the left), so in the plane the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
 /// 1, 3, 2, 0. A face without width is given as the segment or the point that it is.
+///
+/// ```
+/// use impinge::dim2::{math::Vector, shape::Cuboid, shape::Shape};
+/// let brick = Cuboid::new(Vector::new(2.0_f32, 1.0));
+/// assert_eq!(brick.local_aabb().maxs().x, 2.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid<N: Real, const D: usize> {
     half_extents: Vector<N, D>,

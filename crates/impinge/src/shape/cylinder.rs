@@ -20,6 +20,16 @@ use crate::math::{Point, Pose, Real, Vector};
 ///
 /// As features the caps are octagons inscribed in them, whose vertices and sides all bear the name of
 /// the rim; the round side is the segment on it that faces the direction, its ends named as the rims.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::{Ray, RayCast};
+/// use impinge::dim3::shape::Cylinder;
+///
+/// let cylinder = Cylinder::new(1.0_f64, 0.5);
+/// let down = Ray::new(Point::new(0.25, 5.0, 0.0), -Vector::y());
+/// assert_eq!(cylinder.toi_with_ray(&Isometry::identity(), &down, true), Some(4.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<N: Real> {
     half_height: N,

@@ -9,6 +9,18 @@ use crate::math::{Point, Real, Vector};
 /// In the plane a polygon has vertices and faces (its sides); edges occur in space only. The curved
 /// parts of a surface are faces too, except that the core of a capsule is a segment: an edge in
 /// space and a face in the plane. Each shape documents its numbering.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::{Ray, RayCast};
+/// use impinge::dim3::shape::{ConvexPolyhedron, Cuboid, FeatureId};
+///
+/// let cube = Cuboid::new(Vector::repeat(1.0_f32));
+/// let ray = Ray::new(Point::new(-5.0, 0.5, 0.5), Vector::x());
+/// let hit = cube.toi_and_normal_with_ray(&Isometry::identity(), &ray, true).expect("ahead");
+/// assert!(matches!(hit.feature, FeatureId::Face(_)));
+/// assert_eq!(cube.feature_normal(hit.feature), hit.normal);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FeatureId {
     /// A corner.
@@ -45,6 +57,16 @@ impl FeatureId {
 /// The part of a core that faces some direction, as a point, a segment or a flat convex polygon.
 ///
 /// All in the local frame of the solid, roundings left out.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::shape::{ConvexPolyhedron, Cuboid, Feature};
+///
+/// let (cube, mut top) = (Cuboid::new(Vector::repeat(1.0_f32)), Feature::default());
+/// cube.support_face_toward(&Vector::y(), &mut top);
+/// assert_eq!((top.vertices.len(), top.normal), (4, Some(Vector::y())));
+/// assert!(top.vertices.iter().all(|corner| corner.y == 1.0));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature<N: Real, const D: usize> {
     /// Its name.

@@ -10,6 +10,14 @@ use super::{
 use crate::math::{Point, Pose, Real, Space, max};
 
 /// The kinds of solid that the pair table knows, in the order in which pairs are named.
+///
+/// ```
+/// use impinge::dim3::shape::{Ball, Capsule, Shape, ShapeKind};
+///
+/// let kind = |shape: &dyn Shape<f32, 3>| shape.geometry().kind();
+/// assert_eq!(kind(&Ball::new(1.0)), ShapeKind::Ball);
+/// assert_eq!(kind(&Capsule::new(1.0, 0.5)), ShapeKind::Capsule);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum ShapeKind {
@@ -44,6 +52,17 @@ pub enum ShapeKind {
 }
 
 /// A shape as queries see it. Users get one from a built-in shape or from [`Self::support_map`].
+///
+/// ```
+/// use impinge::dim2::math::Vector;
+/// use impinge::dim2::shape::{Cuboid, Shape, SupportMap};
+///
+/// let square = Cuboid::new(Vector::new(1.0_f32, 1.0));
+/// let geometry = square.geometry();
+/// let map = geometry.as_support_map().expect("it is bounded and convex");
+/// assert_eq!(map.core_support(&Vector::new(1.0, 2.0)).coords, Vector::new(1.0, 1.0));
+/// assert!(geometry.as_composite().is_none());
+/// ```
 #[derive(Clone, Copy)]
 pub struct Geometry<'a, N: Real, const D: usize>(pub(crate) Kind<'a, N, D>);
 

@@ -7,6 +7,16 @@ use super::{ScaleError, Shape};
 use crate::math::{Real, Vector};
 
 /// A counted reference to an immutable shape; cloning it is cheap and shares the shape.
+///
+/// ```
+/// use impinge::dim2::shape::{Ball, Cuboid, Shape, ShapeHandle};
+///
+/// let handle: ShapeHandle<f32> = ShapeHandle::new(Ball::new(1.0));
+/// assert!(handle.is_same(&handle.clone()), "shared, not copied");
+/// assert_eq!(handle.as_shape::<Ball<f32>>().map(Ball::radius), Some(1.0));
+/// assert!(handle.as_shape::<Cuboid<f32>>().is_none());
+/// assert_eq!(handle.local_aabb().maxs().x, 1.0, "all that a shape can do");
+/// ```
 #[derive(Clone, Debug)]
 pub struct ShapeHandle<N: Real, const D: usize>(Arc<dyn Shape<N, D>>);
 

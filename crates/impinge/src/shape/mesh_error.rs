@@ -6,11 +6,25 @@ use crate::math::{Point, Real, Vector};
 
 /// Why a [`TriMesh`](super::TriMesh) or a [`Polyline`](super::Polyline) refused its input. Parts are
 /// its triangles or segments.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{MeshError, Polyline};
+///
+/// let refused = Polyline::<f32>::try_open(vec![Point::origin()]).expect_err("one vertex");
+/// assert_eq!(refused, MeshError::TooFewVertices { given: 1 });
+/// assert_eq!(refused.to_string(), "a line through vertices needs two of them, 1 is given");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
     /// There is no part.
     Empty,
+    /// A line from vertex to vertex has fewer vertices than a segment.
+    TooFewVertices {
+        /// How many were given.
+        given: usize,
+    },
     /// A coordinate of a vertex is NaN or infinite.
     VertexNotFinite {
         /// The index of the vertex.
@@ -49,12 +63,19 @@ pub enum MeshError {
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => write!(f, "there is no triangle or segment"),
+            Self::Empty => {
+                write!(f, "no part is given: a mesh needs a triangle, a polyline a segment")
+            }
+            Self::TooFewVertices { given } => {
+                write!(f, "a line through vertices needs two of them, {given} is given")
+            }
             Self::VertexNotFinite { vertex } => write!(f, "vertex {vertex} is not finite"),
             Self::NoSuchVertex { part, vertex, vertices } => {
-                write!(f, "part {part} names vertex {vertex}, but there are {vertices}")
+                write!(f, "part {part} names vertex {vertex}, but there are {vertices} vertices")
             }
-            Self::TooMany { given } => write!(f, "{given} are more than 32 bits can number"),
+            Self::TooMany { given } => {
+                write!(f, "{given} vertices or parts are more than 32 bits can number")
+            }
             Self::WrongCount { given, needed } => {
                 write!(f, "{given} vertices were given for {needed}")
             }

@@ -19,6 +19,7 @@ mod convex_hull;
 mod convex_polygon;
 mod cuboid;
 mod cylinder;
+mod debug;
 mod ellipsoid;
 mod error;
 mod face_ring;
@@ -109,6 +110,16 @@ use crate::math::{Pose, Real, Vector};
 ///
 /// Implement it for a type of your own to put that type into a world: give its box and say through
 /// [`Shape::geometry`] how queries shall see it.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{Ball, Polyline, Shape};
+///
+/// let line: Polyline<f32> = Polyline::open(vec![Point::new(-2.0, 0.0), Point::new(2.0, 1.0)]);
+/// let shapes: [Box<dyn Shape<f32, 2>>; 2] = [Box::new(Ball::new(1.0)), Box::new(line)];
+/// let widths = shapes.each_ref().map(|shape| 2.0 * shape.local_aabb().half_extents().x);
+/// assert_eq!(widths, [2.0, 4.0]);
+/// ```
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
     /// geometry of a built-in shape that yours stands for.

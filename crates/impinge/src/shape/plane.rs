@@ -8,6 +8,17 @@ use crate::math::{Pose, Real, Unit, Vector};
 /// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
 ///
 /// Its only feature is `Face(0)`.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Unit, Vector};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Plane;
+///
+/// let ground = Plane::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
+/// let above = Point::new(7.0, 2.0, -3.0);
+/// assert_eq!(ground.distance_to_point(&Isometry::identity(), &above, true), 2.0);
+/// assert!(ground.contains_point(&Isometry::identity(), &Point::new(0.0, -9.0, 0.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane<N: Real, const D: usize> {
     normal: Unit<Vector<N, D>>,

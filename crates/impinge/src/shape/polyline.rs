@@ -40,7 +40,7 @@ use crate::partitioning::{BoxTree, BoxTreeError};
 /// assert_eq!(room.segments()[3], [3, 0]);
 /// assert!(room.are_adjacent(0, 3) && !room.are_adjacent(0, 2));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Polyline<N: Real, const D: usize> {
     pub(super) vertices: Vec<Point<N, D>>,
     pub(super) segments: Vec<[u32; 2]>,
@@ -76,7 +76,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// If a coordinate is not finite, there are fewer than two vertices, or more than 32 bits can
     /// number.
     pub fn try_open(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
-        let segments = chain(vertices.len());
+        let segments = chain(vertices.len())?;
         Self::try_new(vertices, segments)
     }
 
@@ -95,7 +95,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// # Errors
     /// As [`Self::try_open`].
     pub fn try_closed(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
-        let mut segments = chain(vertices.len());
+        let mut segments = chain(vertices.len())?;
         if let Some(&[_, last]) = segments.last() {
             segments.push([last, 0]);
         }
@@ -284,9 +284,12 @@ fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     surplus.iter().all(|&starts| starts == 0)
 }
 
-/// From each vertex to the next; the vertices are counted later.
-fn chain(vertices: usize) -> Vec<[u32; 2]> {
-    (1..).take(vertices.saturating_sub(1)).map(|next| [next - 1, next]).collect()
+/// From each vertex to the next, of which there must be one; too many vertices are found later.
+fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
+    if vertices < 2 {
+        return Err(MeshError::TooFewVertices { given: vertices });
+    }
+    Ok((1..).take(vertices - 1).map(|next| [next - 1, next]).collect())
 }
 
 fn boxes_of<N: Real, const D: usize>(

@@ -20,9 +20,21 @@ use crate::math::{Point, Real, Vector, max, unit};
 ///
 /// Features are named by their place in [`Self::vertices`], [`Self::edges`] and [`Self::faces`].
 /// Finding a support point takes time in proportion to the number of vertices.
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::shape::ConvexHull;
+///
+/// let cube: Vec<Point<f32>> =
+///     (0..8_u8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f32::from).into()).collect();
+/// let hull = ConvexHull::<f32>::from_points(&cube);
+/// let top = hull.faces().iter().find(|face| face.normal.y > 0.5).expect("a cube has one");
+/// let corners = hull.face_vertices(top);
+/// assert!(corners.iter().all(|&corner| hull.vertices()[corner as usize].y == 1.0));
+/// ```
 // What questions about small solids read lies in front and in one piece: among thousands of solids each further
 // place is a wait for memory.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[repr(C)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(super) center: Point<N, D>,
@@ -75,6 +87,15 @@ pub(crate) struct Planes<N: Real, const D: usize> {
 }
 
 /// A flat face.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::ConvexPolygon;
+///
+/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point::<f64>::from);
+/// let right = &ConvexPolygon::new(&square).faces()[1];
+/// assert_eq!((right.normal.x, right.offset), (1.0, 2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PolytopeFace<N: Real, const D: usize> {
     /// The unit vector out of the solid.
@@ -93,6 +114,16 @@ impl<N: Real, const D: usize> PolytopeFace<N, D> {
 }
 
 /// An edge between two faces, in space.
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::shape::ConvexHull;
+///
+/// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let hull = ConvexHull::from_points(&corners.map(Point::<f32>::from));
+/// assert_eq!(hull.edges().len(), 6);
+/// assert!(hull.edges().iter().all(|edge| edge.faces[0] != edge.faces[1]));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PolytopeEdge {
     /// Its ends: the loop of the first face runs from the first to the second.

@@ -7,6 +7,16 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 
 /// Why a shape was not scaled.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::shape::{Cylinder, ScaleError, ShapeHandle};
+///
+/// let cylinder = ShapeHandle::new(Cylinder::new(1.0_f32, 0.5));
+/// assert!(cylinder.scaled(&Vector::new(2.0, 5.0, 2.0)).is_ok());
+/// let refused = cylinder.scaled(&Vector::new(2.0, 1.0, 1.0)).expect_err("not round");
+/// assert!(matches!(refused, ScaleError::NotSuch { .. }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ScaleError {

@@ -11,6 +11,16 @@ use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
 /// The points between `a` and `b`, which may coincide.
 ///
 /// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in the plane too.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Segment;
+///
+/// let segment = Segment::new(Point::new(0.0_f32, 0.0, 0.0), Point::new(4.0, 0.0, 0.0));
+/// let distance = segment.distance_to_point(&Isometry::identity(), &Point::new(1.0, 2.0, 0.0), true);
+/// assert_eq!(distance, 2.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<N: Real, const D: usize> {
     a: Point<N, D>,
@@ -56,6 +66,11 @@ impl<N: Real, const D: usize> Segment<N, D> {
     #[must_use]
     pub const fn b(&self) -> &Point<N, D> {
         &self.b
+    }
+
+    /// Half of the length, halved before it is measured: the difference of large ends may overflow.
+    pub(super) fn half_length(&self) -> N {
+        length_of(&(self.b.coords * N::HALF - self.a.coords * N::HALF))
     }
 }
 

@@ -9,6 +9,14 @@ use crate::math::{Point, Real, Vector, perp, unit};
 
 /// Which sides the segments of a chain have: what a [`Surface`] in the plane says so that contacts need not
 /// ask it about each segment. Chains of this library have one.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{CompositeShape, Polyline, Surface};
+///
+/// let line: Polyline<f32> = Polyline::open(vec![Point::origin(), Point::new(1.0, 0.0)]);
+/// assert!(line.surface().and_then(|surface| surface.siding()).is_some());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Siding {
     /// The front is on the left of a segment, seen from its first end to its second.

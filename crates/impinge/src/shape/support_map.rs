@@ -5,6 +5,17 @@ use super::{Feature, FeatureId};
 use crate::math::{Matrix, Point, Real, Vector, max, unit};
 
 /// Where the support point of a curved part lies, and how it moves.
+///
+/// ```
+/// use impinge::dim2::math::Vector;
+/// use impinge::dim2::shape::{Ellipse, SupportMap};
+///
+/// let disk = Ellipse::new(Vector::new(2.0_f64, 2.0));
+/// let (east, near) = (Vector::x(), disk.core_support(&Vector::new(1.0, 0.1)));
+/// let support = disk.curved_support(&near, &east).expect("it is curved everywhere");
+/// assert_eq!(support.point.x, 2.0);
+/// assert_eq!((support.bend.m22, support.bend.m11), (2.0, 0.0), "the radius, across");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvedSupport<N: Real, const D: usize> {
     /// The point of the part farthest along the direction.
@@ -17,6 +28,15 @@ pub struct CurvedSupport<N: Real, const D: usize> {
 /// A convex solid: a core, known by its support points, swollen by a rounding radius.
 ///
 /// All in the local frame. Without rounding (the default) the core is the solid itself.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::shape::{Capsule, SupportMap};
+///
+/// let capsule = Capsule::<f32>::new(2.0, 0.5);
+/// assert_eq!(capsule.core_support(&Vector::new(1.0, 1.0, 0.0)).y, 2.0, "of the segment");
+/// assert_eq!(capsule.rounding(), 0.5, "by which it is swollen");
+/// ```
 pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// A point of the core farthest along `direction`.
     ///
@@ -110,6 +130,16 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
 ///
 /// All in the local frame, of the core (for a rounded solid the faces lie `rounding` inside its
 /// surface). Asking for a feature that the solid does not have panics, and the message names it.
+///
+/// ```
+/// use impinge::dim2::math::{Point, Vector};
+/// use impinge::dim2::shape::{ConvexPolyhedron, Cuboid, FeatureId};
+///
+/// let square = Cuboid::new(Vector::new(1.0_f32, 1.0));
+/// let corner = square.support_feature_id_toward(&Vector::new(0.6, 0.8));
+/// assert!(matches!(corner, FeatureId::Vertex(_)));
+/// assert_eq!(square.vertex(corner), Point::new(1.0, 1.0));
+/// ```
 pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// The position of a vertex.
     ///

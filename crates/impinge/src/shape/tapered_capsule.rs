@@ -73,6 +73,12 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         Ok(Self { segment, radii })
     }
 
+    /// Half of the distance between the centres of the balls: what [`Self::new`] was given.
+    #[must_use]
+    pub fn half_height(&self) -> N {
+        self.segment.half_length()
+    }
+
     /// The segment between the centres of the balls.
     #[inline]
     #[must_use]

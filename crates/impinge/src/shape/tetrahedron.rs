@@ -40,7 +40,7 @@ pub(super) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3],
 /// assert_eq!(corner.feature_normal(FeatureId::Face(3)).z, -1.0);
 /// assert_eq!(corner.edge(FeatureId::Edge(3)).map(|(vertex, _)| vertex), [1, 2].map(FeatureId::Vertex));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Tetrahedron<N: Real> {
     corners: [Point<N, 3>; 4],
     /// Of one without volume only the names in it are right.

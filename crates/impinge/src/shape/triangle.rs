@@ -20,6 +20,17 @@ use crate::math::{Point, Pose, Real, Vector, centroid, max};
 /// side, and in space on an edge, lies in the triangle's plane and points out. A triangle without
 /// area has its longest side as its only feature besides the vertices, a triangle without extent its
 /// first vertex.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point};
+/// use impinge::dim2::query::PointQuery;
+/// use impinge::dim2::shape::Triangle;
+///
+/// let triangle =
+///     Triangle::new(Point::new(0.0_f32, 0.0), Point::new(4.0, 0.0), Point::new(0.0, 4.0));
+/// assert_eq!(triangle.corners()[1], Point::new(4.0, 0.0));
+/// assert!(triangle.contains_point(&Isometry::identity(), &Point::new(1.0, 1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle<N: Real, const D: usize> {
     corners: [Point<N, D>; 3],

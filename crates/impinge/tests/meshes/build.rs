@@ -21,7 +21,7 @@ fn bad_meshes_are_refused_by_name() {
     assert_eq!(refused(&SQUARE, &[]), MeshError::Empty, "no triangle");
     let named = MeshError::NoSuchVertex { part: 1, vertex: 4, vertices: 4 };
     assert_eq!(refused(&SQUARE, &[[0, 1, 2], [0, 4, 2]]), named, "out of range");
-    assert_eq!(named.to_string(), "part 1 names vertex 4, but there are 4", "in words");
+    assert_eq!(named.to_string(), "part 1 names vertex 4, but there are 4 vertices", "in words");
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
         let mut vertices = SQUARE;
         vertices[3][1] = bad;
@@ -29,10 +29,11 @@ fn bad_meshes_are_refused_by_name() {
         assert_eq!(refused(&vertices, &[[0, 1, 2]]), expected, "{bad}, though unused");
     }
     let lines = |vertices: &[[f64; 2]]| Polyline::<f64, 2>::try_open(points(vertices));
-    assert_eq!(lines(&[]).expect_err("nothing"), MeshError::Empty, "no vertex");
-    assert_eq!(lines(&[[0.0; 2]]).expect_err("a point"), MeshError::Empty, "one vertex");
+    let few = |given| MeshError::TooFewVertices { given };
+    assert_eq!(lines(&[]).expect_err("nothing"), few(0), "no vertex");
+    assert_eq!(lines(&[[0.0; 2]]).expect_err("a point"), few(1), "one vertex");
     let closed = Polyline::<f64, 2>::try_closed(points(&[[1.0, 2.0]]));
-    assert_eq!(closed.expect_err("a point"), MeshError::Empty, "one vertex");
+    assert_eq!(closed.expect_err("a point"), few(1), "one vertex");
     let infinite = lines(&[[0.0, 1.0], [f64::INFINITY, 0.0]]).expect_err("infinite");
     assert_eq!(infinite, MeshError::VertexNotFinite { vertex: 1 }, "the second");
     let segments = Polyline::<f32, 3>::try_new(points(&SQUARE), vec![[0, 1], [7, 0]]);

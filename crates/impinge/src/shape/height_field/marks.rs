@@ -4,6 +4,16 @@
 ///
 /// Seen from the front with columns to the right and rows downwards. Triangle 0 is the one with the side
 /// between the two corners of the lower column.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::shape::{Diagonal, HeightField};
+///
+/// let mut field = HeightField::new(2, 2, vec![0.0_f32, 0.0, 0.0, 1.0], Vector::repeat(1.0));
+/// assert_eq!(field.diagonal(0, 0), Diagonal::Forward);
+/// field.set_diagonal(0, 0, Diagonal::Backward);
+/// assert_eq!(field.diagonal(0, 0), Diagonal::Backward);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Diagonal {
     /// From (row, column) to (row + 1, column + 1).
@@ -14,6 +24,15 @@ pub enum Diagonal {
 }
 
 /// The diagonals of the cells of a height field.
+///
+/// ```
+/// use impinge::dim3::math::Vector;
+/// use impinge::dim3::shape::{Diagonals, HeightField};
+///
+/// let field = HeightField::new(2, 3, vec![0.0_f32; 6], Vector::repeat(1.0));
+/// let field = field.with_diagonals(Diagonals::Zigzag);
+/// assert_ne!(field.diagonal(0, 0), field.diagonal(0, 1));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Diagonals {
     /// All forward.

@@ -65,7 +65,7 @@ use crate::math::{Real, Vector};
 /// roof.set_hole(0, 1, true);
 /// assert_eq!(roof.toi_with_ray(&Isometry3::identity(), &down, true), None);
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct HeightField<N: Real, const D: usize> {
     grid: Grid<N>,
     pyramid: Pyramid<N>,
@@ -171,7 +171,7 @@ fn check_heights<N: Real>(heights: &[N], columns: usize, y_scale: N) -> Result<(
 
 /// Two along an axis at least.
 fn check_count(given: usize) -> Result<(), ShapeError> {
-    if given < 2 { Err(ShapeError::TooFewPoints { given, needed: 2 }) } else { Ok(()) }
+    if given < 2 { Err(ShapeError::TooFewHeights { given, needed: 2 }) } else { Ok(()) }
 }
 
 /// So many parts can be numbered.

@@ -60,7 +60,7 @@ use crate::partitioning::BoxTree;
 /// assert_eq!(floor.normal(0), Some([0.0, 1.0, 0.0].into()));
 /// assert!(!floor.is_closed() && floor.is_oriented());
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct TriMesh<N: Real, const D: usize> {
     vertices: Vec<Point<N, D>>,
     triangles: Vec<[u32; 3]>,

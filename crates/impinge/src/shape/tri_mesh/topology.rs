@@ -6,6 +6,16 @@ use crate::math::{Point, Real};
 /// What lies across a side of a triangle of a mesh.
 ///
 /// Sides belong together by the positions of their ends, not by the indices.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{Neighbor, TriMesh};
+///
+/// let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point::<f32>::from);
+/// let square = TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+/// assert_eq!(square.neighbor(0, 0), Neighbor::Border);
+/// assert_eq!(square.neighbor(0, 2), Neighbor::Triangle { index: 1, is_flipped: false });
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Neighbor {
     /// Nothing: the side is on the border. So is a side without length.
