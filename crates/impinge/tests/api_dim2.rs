@@ -248,6 +248,10 @@ fn a_narrow_phase_of_ones_own() {
     assert_eq!(world.proximity_events().len(), 2, "the new one knows of no proximity: they end");
     let ended = world.proximity_events().iter().all(|e| e.new_status == Proximity::Disjoint);
     assert!(ended, "they end");
+    let seen = world.contacts_with(second).map(|(other, point)| (other.handle(), point));
+    let seen: Vec<_> = seen.collect();
+    assert!(!seen.is_empty() && seen.iter().all(|(other, _)| *other == first), "{seen:?}");
+    assert_eq!(world.proximities_with(area).count(), 0, "of which it knows nothing");
     world.remove(&[area, first]);
     world.update();
     assert_eq!(world.contact_events(), [ContactEvent::Stopped(first, second)], "as ever");

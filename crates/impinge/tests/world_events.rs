@@ -9,6 +9,7 @@ use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, DefaultNarrowPh
 use impinge::query::{ContactId, Proximity};
 use impinge::shape::ShapeHandle;
 use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_reference::random::Random;
 use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step};
 
 use ContactEvent::{Started, Stopped};
@@ -288,7 +289,89 @@ fn half_spaces_overlap_without_points<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Started(ground, ceiling)], "antiparallel ones do touch");
 }
 
+/// Which pairs are open, by the events alone: each starts and stops in turn.
+#[derive(Default)]
+struct Ledger {
+    touching: Vec<(CollisionObjectHandle, CollisionObjectHandle)>,
+    near: Vec<((CollisionObjectHandle, CollisionObjectHandle), Proximity)>,
+    stopped: usize,
+}
+
+impl Ledger {
+    fn enter<N: Space<D>, const D: usize>(&mut self, world: &World<N, D>) {
+        for event in world.contact_events() {
+            let known = self.touching.iter().position(|pair| *pair == event.handles());
+            match (event, known) {
+                (Started(..), None) => self.touching.push(event.handles()),
+                (Stopped(..), Some(place)) => drop(self.touching.swap_remove(place)),
+                _ => panic!("{event:?} comes twice"),
+            }
+            self.stopped += usize::from(known.is_some());
+        }
+        for event in world.proximity_events() {
+            let pair = (event.collider1, event.collider2);
+            let known = self.near.iter().position(|(other, _)| *other == pair);
+            let before = known.map_or(Disjoint, |place| self.near.swap_remove(place).1);
+            assert_eq!(event.prev_status, before, "{event:?}");
+            if event.new_status != Disjoint {
+                self.near.push((pair, event.new_status));
+            }
+        }
+    }
+
+    fn agrees_with<N: Space<D>, const D: usize>(&mut self, world: &World<N, D>) {
+        self.touching.sort_unstable();
+        let mut found: Vec<_> =
+            world.contact_manifolds().map(|(a, b, _)| (a.handle(), b.handle())).collect();
+        found.dedup();
+        assert_eq!(self.touching, found, "what touches");
+    }
+}
+
+/// Worlds that lose some objects, and all, again and again: whatever started stops once, also of objects
+/// that went and came under the same index between two updates.
+fn clearing_and_retaining_end_every_pair_once<N: Stage<D>, const D: usize>() {
+    let (mut random, mut world) = (Random::new(3), World::<N, D>::default());
+    let (mut ledger, mut handles) = (Ledger::default(), Vec::new());
+    for round in 0..120 {
+        for _ in 0..6 {
+            let query = if random.chance(0.4) { near(0.25) } else { contacts(0.1) };
+            let position = N::at(std::array::from_fn(|_| random.grid(2, 4)));
+            let shape = if random.chance(0.5) { ball(0.6) } else { cube(0.4) };
+            let handle = world.add(position, shape, CollisionGroups::new(), query, ());
+            assert!(!handles.contains(&handle), "no handle is given twice");
+            handles.push(handle);
+        }
+        match round % 5 {
+            4 => world.clear(),
+            1 | 3 => {
+                let (before, mut asked) = (world.len(), Vec::new());
+                world.retain(|object| {
+                    asked.push(object.handle());
+                    random.chance(0.5)
+                });
+                assert!(asked.is_sorted() && asked.len() == before, "each once, in order");
+            }
+            _ => {}
+        }
+        if random.chance(0.8) {
+            step(&mut world);
+            ledger.enter(&world);
+            ledger.agrees_with(&world);
+        }
+    }
+    world.clear();
+    world.clear();
+    assert!(world.is_empty() && !handles.iter().any(|handle| world.contains(*handle)), "empty");
+    step(&mut world);
+    ledger.enter(&world);
+    assert!(ledger.touching.is_empty() && ledger.near.is_empty(), "all has stopped");
+    assert!(ledger.stopped > 50, "and there was much: {}", ledger.stopped);
+    assert_eq!(step(&mut world), [], "once");
+}
+
 in_tests! {
+    clearing_and_retaining_end_every_pair_once,
     proximity_goes_through_all_transitions,
     contacts_start_with_the_first_point_and_stop_with_the_last,
     one_contact_to_many_is_not_reported,

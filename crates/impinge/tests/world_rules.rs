@@ -12,6 +12,7 @@ use impinge::dim2;
 use impinge::dim3;
 use impinge::math::{Real, Space};
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, ProximityEvent};
+use impinge::query::{ManifoldView, Proximity};
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_reference::random::Random;
 use world_stage::{Stage, ball, contacts, cube, near, step};
@@ -191,7 +192,67 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_manifolds().count(), pairs.len(), "each with a contact");
 }
 
-in_tests! { groups_decide_who_meets, margins_never_change_an_answer, order_is_canonical }
+/// What one object is told is what all pairs say of it, seen from its side; nothing of stale handles and of
+/// objects that no update has seen.
+fn an_object_sees_its_pairs_from_its_side<N: Stage<D>, const D: usize>() {
+    let (mut random, mut world) = (Random::new(5), World::<N, D>::new(N::lit(0.02)));
+    for number in 0..60 {
+        let shape = if number % 2 == 0 { ball(0.75) } else { cube(0.5) };
+        let query = if number % 4 == 0 { near(0.25) } else { contacts(0.125) };
+        let position = N::at(std::array::from_fn(|_| random.grid(2, 6)));
+        world.add(position, shape, CollisionGroups::new(), query, ());
+    }
+    world.update();
+    let mut seen = [0; 2];
+    for object in world.collision_objects() {
+        let handle = object.handle();
+        let own: Vec<_> = world.contacts_with(handle).map(|(o, p)| (o.handle(), p)).collect();
+        let mut expected = Vec::new();
+        for (first, second, view) in world.contact_manifolds().filter_map(|(first, second, m)| {
+            Some((first.handle(), second.handle(), ManifoldView::of_manifold(m)?))
+        }) {
+            if first == handle {
+                expected.extend(view.contacts().map(|point| (second, point)));
+            } else if second == handle {
+                expected.extend(view.contacts().map(|point| (first, point.flipped())));
+            }
+        }
+        expected.sort_by_key(|(other, _)| *other);
+        assert_eq!(own, expected, "{handle:?}");
+        for (_, point) in &own {
+            let outwards = point.contact.normal.dot(&(point.contact.world1 - point.contact.world2));
+            let depth = point.contact.depth;
+            assert!(outwards * depth >= N::ZERO, "away from {handle:?}: {point:?}");
+        }
+        let near: Vec<_> = world.proximities_with(handle).map(|(o, p)| (o.handle(), p)).collect();
+        assert!(near.is_sorted_by_key(|(other, _)| *other), "in order");
+        for other in world.collision_objects().map(CollisionObject::handle) {
+            let known = world.proximity_pair(other, handle).map(|pair| pair.proximity());
+            let known = known.filter(|proximity| *proximity != Proximity::Disjoint);
+            let told = near.iter().find(|(found, _)| *found == other).map(|(_, p)| *p);
+            assert_eq!(told, known, "{handle:?} and {other:?}");
+        }
+        seen[0] += own.len();
+        seen[1] += near.len();
+    }
+    assert!(seen[0] > 100 && seen[1] > 50, "there is much to see: {seen:?}");
+    let (gone, new) = (world.collision_objects().next().expect("many").handle(), ball(1.0));
+    world.remove(&[gone]);
+    let new = world.add(N::at([0.0; D]), new, CollisionGroups::new(), contacts(0.0), ());
+    for handle in [gone, new] {
+        assert_eq!(world.contacts_with(handle).count(), 0, "{handle:?}");
+        assert_eq!(world.proximities_with(handle).count(), 0, "{handle:?}");
+    }
+    let others = world.collision_objects().flat_map(|object| world.contacts_with(object.handle()));
+    assert!(others.map(|(other, _)| other.handle()).all(|other| other != gone), "it is gone");
+}
+
+in_tests! {
+    groups_decide_who_meets,
+    margins_never_change_an_answer,
+    order_is_canonical,
+    an_object_sees_its_pairs_from_its_side,
+}
 
 /// The world is what the user's data are.
 #[test]

@@ -1,6 +1,6 @@
 //! The default broad phase: the pair finder, with handles and the user's data.
 
-use core::fmt::Debug;
+use core::fmt::{self, Debug};
 
 use super::error::or_panic;
 use super::handle::Handles;
@@ -55,13 +55,39 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// Costs O(changed · log n) with temporal coherence. Of an object that stays where it is and has no pairs,
 /// about 60 bytes are kept beside its volume, the loosened one and the data. [`PairFinder`] describes the
 /// layout.
-#[derive(Clone, Debug)]
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::broad_phase::{BroadPhase, DBVTBroadPhase};
+/// use impinge::dim2::math::{Point, Vector};
+///
+/// let mut broad_phase = DBVTBroadPhase::new(0.1_f32);
+/// let [a, b] = ["a", "b"].map(|name| {
+///     broad_phase.create_proxy(Aabb::from_half_extents(Point::origin(), Vector::repeat(1.0)), name)
+/// });
+///
+/// let mut events = Vec::new();
+/// broad_phase.update(&mut |_, _| true, &mut |&first, &second, started| events.push((first, second, started)));
+/// assert_eq!((broad_phase.num_interferences(), &events[..]), (1, &[("a", "b", true)][..]));
+/// # assert!(a < b);
+/// ```
+#[derive(Clone)]
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     handles: Handles,
     /// By index of the handle; `None` where there is no object.
     proxies: Proxies<T>,
     finder: BV::Finder,
     recent: Recent,
+}
+
+impl<N: Space<D>, const D: usize, T> Debug for DBVTBroadPhase<N, Aabb<N, D>, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DBVTBroadPhase")
+            .field("margin", &self.margin())
+            .field("num_proxies", &self.proxies.iter().flatten().count())
+            .field("num_pairs", &self.num_interferences())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {

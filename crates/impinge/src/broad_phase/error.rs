@@ -5,6 +5,14 @@ use core::fmt;
 use super::ProxyHandle;
 
 /// Why a call to a broad phase was refused. Nothing has changed then.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::broad_phase::{BroadPhaseError, DBVTBroadPhase};
+///
+/// let refused = DBVTBroadPhase::<f32, Aabb<f32>, ()>::try_new(-1.0).err();
+/// assert_eq!(refused, Some(BroadPhaseError::BadMargin(-1.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BroadPhaseError {

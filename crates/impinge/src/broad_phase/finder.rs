@@ -1,5 +1,7 @@
 //! The broad phase without the user's data: numbers and boxes in, changes of pairs out.
 
+use core::fmt;
+
 use super::BroadPhaseError;
 use super::events::Verdict;
 use super::sieve::{Kept, Sieve};
@@ -43,7 +45,7 @@ pub(super) struct Waiting<N: Real, const D: usize> {
 ///
 /// All arrays are by id. Objects that have not changed for a while move to a second tree, which
 /// is then joined only with what changed.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
     /// As given, at the last update.
@@ -84,6 +86,15 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// Where the search for objects at rest goes on.
     pub(super) cursor: usize,
     pub(super) recent: Recent,
+}
+
+impl<N: Real, const D: usize> fmt::Debug for PairFinder<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PairFinder")
+            .field("margin", &self.margin)
+            .field("num_pairs", &self.pairs.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {

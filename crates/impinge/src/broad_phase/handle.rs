@@ -8,6 +8,21 @@ use crate::memory::Look;
 /// A handle is never given out twice: that of a removed object stays distinct from those of all
 /// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses the handles of another one like
 /// stale ones, unless one is a clone of the other. Ordered by [`Self::uid`], then by age.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::broad_phase::{BroadPhase, DBVTBroadPhase};
+/// use impinge::dim2::math::{Point, Vector};
+///
+/// let mut broad_phase = DBVTBroadPhase::new(0.1_f32);
+/// let [a, b] = ["a", "b"].map(|name| {
+///     broad_phase.create_proxy(Aabb::from_half_extents(Point::origin(), Vector::repeat(1.0)), name)
+/// });
+///
+/// assert_eq!((a.uid(), b.uid()), (0, 1));
+/// broad_phase.remove(&[a], &mut |_, _| ());
+/// assert!(broad_phase.proxy(a).is_none() && broad_phase.proxy(b).is_some());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProxyHandle {
     index: u32,

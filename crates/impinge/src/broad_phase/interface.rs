@@ -24,6 +24,27 @@ pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
 ///   overlap. When it changes, [`Self::deferred_recompute_all_proximities`] must be called.
 /// * **Canonical order**: data of the object with the smaller [`ProxyHandle::uid`] comes first, and
 ///   pairs come in ascending order of the two uids, started and stopped ones mixed.
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::broad_phase::{BroadPhase, DBVTBroadPhase};
+/// use impinge::dim2::math::{Point, Vector};
+///
+/// let mut broad_phase = DBVTBroadPhase::new(0.1_f32);
+/// let [a, b] = ["a", "b"].map(|name| {
+///     broad_phase.create_proxy(Aabb::from_half_extents(Point::origin(), Vector::repeat(1.0)), name)
+/// });
+///
+/// broad_phase.update(&mut |_, _| true, &mut |_, _, _| ());
+/// let away = Aabb::from_half_extents(Point::new(9.0, 0.0), Vector::repeat(1.0));
+/// broad_phase.deferred_set_bounding_volume(b, away);
+/// assert_eq!(broad_phase.num_interferences(), 1, "not before the next update");
+/// let mut found = Vec::new();
+/// broad_phase.update(&mut |_, _| true, &mut |_, _, _| ());
+/// broad_phase.interferences_with_point(&Point::origin(), &mut found);
+/// assert_eq!((broad_phase.num_interferences(), found), (0, vec![&"a"]));
+/// # assert!(a < b);
+/// ```
 pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// Adds an object, or says why not.
     ///

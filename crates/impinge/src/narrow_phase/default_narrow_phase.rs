@@ -25,6 +25,16 @@ use crate::shape::Shape;
 /// Pairs of the library's own algorithms lie in dense arrays, one per pair of shape kinds, and are
 /// updated as a batch, without a virtual call or an allocation per pair; pairs that a custom
 /// dispatcher serves are updated one by one. Pairs of which neither object changed are skipped.
+///
+/// ```
+/// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
+/// use impinge::dim3::world::CollisionWorld;
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// // What a new world has anyway.
+/// world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
+/// world.update();
+/// ```
 pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) contact_dispatcher: Box<dyn ContactDispatcher<N, D>>,
     pub(super) proximity_dispatcher: Box<dyn ProximityDispatcher<N, D>>,

@@ -7,6 +7,21 @@ use crate::query::Proximity;
 use crate::shape::Shape;
 
 /// The nearness of any two built-in solids.
+///
+/// ```
+/// use impinge::dim2::events::Proximity;
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::narrow_phase::{
+///     DefaultProximityDispatcher, PairProximityDetector, ProximityDetector,
+/// };
+/// use impinge::dim2::shape::Ball;
+///
+/// let mut detector = PairProximityDetector::new();
+/// let (dispatcher, ball) = (DefaultProximityDispatcher::new(), Ball::new(1.0_f32));
+/// let (detector, here): (&mut dyn ProximityDetector<f32, 2>, _) = (&mut detector, Isometry::identity());
+/// detector.update(&dispatcher, &here, &ball, &here, &ball, 0.0);
+/// assert_eq!(detector.proximity(), Proximity::Intersecting);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PairProximityDetector {
     proximity: Proximity,
@@ -52,6 +67,21 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
 }
 
 /// Chooses the library's own algorithm for every two solids.
+///
+/// ```
+/// use impinge::dim2::events::Proximity;
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::narrow_phase::{
+///     DefaultProximityDispatcher, ProximityDetector, ProximityDispatcher,
+/// };
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, dispatcher) = (Ball::new(1.0_f32), DefaultProximityDispatcher::new());
+/// let mut detector = dispatcher.get_proximity_algorithm(&ball, &ball).expect("every pair has one");
+/// let there = Isometry::translation(2.25, 0.0);
+/// detector.update(&dispatcher, &Isometry::identity(), &ball, &there, &ball, 0.5);
+/// assert_eq!(detector.proximity(), Proximity::WithinMargin);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DefaultProximityDispatcher<const D: usize>;
 

@@ -1,10 +1,31 @@
 //! What changed between two updates.
 
+use core::fmt;
+
 use super::CollisionObjectHandle;
 use crate::memory::Look;
 use crate::query::Proximity;
 
 /// A pair came to have contact points, or lost its last.
+///
+/// ```
+/// use impinge::dim2::events::ContactEvent;
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let ball = ShapeHandle::new(Ball::new(1.0));
+/// let [a, b] = [0.0, 1.0].map(|x| {
+///     let query = GeometricQueryType::Contacts(0.0, 0.0);
+///     world.add(Isometry::translation(x, 0.0), ball.clone(), CollisionGroups::new(), query, ())
+/// });
+/// world.update();
+/// assert_eq!(world.contact_events(), [ContactEvent::Started(a, b)]);
+/// world.set_position(b, Isometry::translation(9.0, 0.0));
+/// world.update();
+/// assert_eq!(world.contact_events(), [ContactEvent::Stopped(a, b)]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactEvent {
@@ -25,6 +46,24 @@ impl ContactEvent {
 }
 
 /// The proximity of a pair changed.
+///
+/// ```
+/// use impinge::dim2::events::{Proximity, ProximityEvent};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let ball = ShapeHandle::new(Ball::new(1.0));
+/// let [collider1, collider2] = [0.0, 1.0].map(|x| {
+///     let query = GeometricQueryType::Proximity(0.0);
+///     world.add(Isometry::translation(x, 0.0), ball.clone(), CollisionGroups::new(), query, ())
+/// });
+/// world.update();
+/// let (prev_status, new_status) = (Proximity::Disjoint, Proximity::Intersecting);
+/// let enters = ProximityEvent { collider1, collider2, prev_status, new_status };
+/// assert_eq!(world.proximity_events(), [enters]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProximityEvent {
@@ -42,12 +81,29 @@ pub struct ProximityEvent {
 ///
 /// Order within a batch: first what removals queued, then all else; each part sorted by handles,
 /// events of the same pair in the order in which they happened.
-#[derive(Clone, Debug, Default)]
+///
+/// ```
+/// use impinge::dim2::events::Events;
+///
+/// // What a narrow phase of one's own is given to report in.
+/// let events = Events::default();
+/// assert!(events.contacts().is_empty() && events.proximities().is_empty());
+/// ```
+#[derive(Clone, Default)]
 pub struct Events {
     contacts: Vec<ContactEvent>,
     proximities: Vec<ProximityEvent>,
     /// How many events at the front of each list came from removals.
     removed: (usize, usize),
+}
+
+impl fmt::Debug for Events {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Events")
+            .field("contacts", &self.contacts)
+            .field("proximities", &self.proximities)
+            .finish()
+    }
 }
 
 impl Events {

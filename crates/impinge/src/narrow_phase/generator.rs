@@ -1,5 +1,7 @@
 //! The library's own contact algorithm as an object, for use alone.
 
+use core::fmt;
+
 use super::IdAllocator;
 use super::likeness::{Asked, Question};
 use super::state::{CompositeState, ContactState, Posed, poses_within};
@@ -20,7 +22,27 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
 ///
 /// One type serves all pairs: it looks the algorithm up by the kinds of the solids at each update,
 /// so it may even be given other solids from one update to the next.
-#[derive(Clone, Debug)]
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::narrow_phase::{
+///     ContactManifoldGenerator, DefaultContactDispatcher, IdAllocator, PairManifoldGenerator,
+/// };
+/// use impinge::dim2::query::ContactPrediction;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let square = Cuboid::new(Vector::new(1.0_f64, 1.0));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(0.0, 1.75));
+/// let (dispatcher, mut ids) = (DefaultContactDispatcher::new(), IdAllocator::new());
+///
+/// let mut generator = PairManifoldGenerator::default();
+/// let prediction = ContactPrediction::new(0.0, 0.0, 0.0);
+/// generator.update(&dispatcher, &here, &square, &there, &square, &prediction, &mut ids);
+/// let mut manifolds = Vec::new();
+/// generator.contacts(&mut manifolds);
+/// assert_eq!(manifolds[0].len(), 2);
+/// ```
+#[derive(Clone)]
 pub struct PairManifoldGenerator<N: Real, const D: usize> {
     state: ContactState<N, D>,
     /// Where one of the solids is a composite.
@@ -47,6 +69,15 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
             manifolds: Vec::new(),
             asked: None,
         }
+    }
+}
+
+impl<N: Real, const D: usize> fmt::Debug for PairManifoldGenerator<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PairManifoldGenerator")
+            .field("max_points", &self.max_points)
+            .field("manifolds", &self.manifolds)
+            .finish_non_exhaustive()
     }
 }
 
@@ -110,6 +141,25 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
 }
 
 /// Chooses the library's own algorithm for every two solids.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::narrow_phase::{
+///     ContactDispatcher, ContactManifoldGenerator, DefaultContactDispatcher, IdAllocator,
+/// };
+/// use impinge::dim2::query::ContactPrediction;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let square = Cuboid::new(Vector::new(1.0_f64, 1.0));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(0.0, 1.75));
+/// let (dispatcher, mut ids) = (DefaultContactDispatcher::new(), IdAllocator::new());
+///
+/// let algorithm = dispatcher.get_contact_algorithm(&square, &square);
+/// let mut algorithm = algorithm.expect("every pair of built-in shapes has one");
+/// let prediction = ContactPrediction::new(0.0, 0.0, 0.0);
+/// assert!(algorithm.update(&dispatcher, &here, &square, &there, &square, &prediction, &mut ids));
+/// assert_eq!(algorithm.num_contacts(), 2);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct DefaultContactDispatcher<const D: usize> {
     max_points: usize,

@@ -13,6 +13,22 @@ use crate::generation::Generation;
 /// Ordered by the index in the handle table, then by generation: this is the canonical order of
 /// pairs, events and query results.
 ///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+/// let mut add = || world.add(Isometry::identity(), ball.clone(), CollisionGroups::new(), query, ());
+/// let (first, second) = (add(), add());
+/// assert!(first < second && (first.uid(), second.uid()) == (0, 1));
+/// world.remove(&[first]);
+/// let third = world.add(Isometry::identity(), ball, CollisionGroups::new(), query, ());
+/// assert_eq!(third.uid(), first.uid(), "the index is used again");
+/// assert!(third != first && !world.contains(first), "the handle is not");
+/// ```
+///
 /// [`CollisionWorld::counterpart`]: crate::world::CollisionWorld::counterpart
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -4,6 +4,13 @@
 ///
 /// A contact is named by its pair's number and a number within the pair, so that names need no
 /// coordination between pairs that are updated at the same time.
+///
+/// ```
+/// use impinge::dim2::narrow_phase::IdAllocator;
+///
+/// let mut ids = IdAllocator::new();
+/// assert_ne!(ids.allocate(), ids.allocate());
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct IdAllocator {
     next: u64,

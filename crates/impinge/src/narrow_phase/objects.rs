@@ -1,6 +1,8 @@
 //! What the narrow phase reads of the objects that have pairs: a structure of arrays apart from the users'
 //! data.
 
+use core::fmt;
+
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::math::{Pose, Real, Space};
 use crate::memory::Look;
@@ -19,7 +21,28 @@ const NONE: u32 = u32::MAX;
 ///
 /// The table also knows which rows were written in the update under way: pairs of rows that
 /// stand still need no new query.
-#[derive(Clone, Debug)]
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// world.set_position(b, Isometry::translation(9.0, 9.0));
+/// let object = world.collision_object(b).expect("it is there");
+/// assert_eq!(object.position().translation.x, 9.0, "the world knows at once");
+/// // The table of the narrow phase follows at the next update.
+/// world.update();
+/// # assert!(world.contains(a));
+/// ```
+#[derive(Clone)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By handle index: where the row stands, or [`NONE`].
     rows: Vec<u32>,
@@ -41,6 +64,13 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     changed: Vec<u32>,
     /// How many rows were lent since they were in order.
     lent: usize,
+}
+
+impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let num_objects = self.handles.len() - self.free.len();
+        f.debug_struct("ObjectTable").field("num_objects", &num_objects).finish_non_exhaustive()
+    }
 }
 
 /// What every query of a pair reads of an object: of `f32` in space one cache line.

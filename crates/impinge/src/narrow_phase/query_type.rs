@@ -5,6 +5,13 @@ use crate::math::Real;
 /// What the narrow phase computes for the pairs of an object.
 ///
 /// If either object of a pair has the type `Proximity`, only proximity is computed for the pair.
+///
+/// ```
+/// use impinge::dim2::world::GeometricQueryType;
+///
+/// let (body, sensor) = (GeometricQueryType::Contacts(0.1_f32, 0.0), GeometricQueryType::Proximity(0.5));
+/// assert_eq!((body.query_limit(), sensor.query_limit()), (0.1, 0.5));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum GeometricQueryType<N: Real> {

@@ -21,6 +21,13 @@ use super::state::KeptContacts;
 use crate::math::{Pose, Real, Space, max, min};
 
 /// A tolerance of motion is negative, infinite or NaN.
+///
+/// ```
+/// use impinge::dim3::narrow_phase::{DefaultNarrowPhase, ReuseError};
+///
+/// let refused = DefaultNarrowPhase::<f32>::new().try_reusing(-1.0).err();
+/// assert_eq!(refused, Some(ReuseError { value: -1.0 }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReuseError {
     /// The number, exactly.

@@ -6,6 +6,13 @@ use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
 
 /// How far ahead contacts are wanted.
+///
+/// ```
+/// use impinge::dim3::query::ContactPrediction;
+///
+/// let prediction = ContactPrediction::new(0.25_f32, 0.09, 0.0);
+/// assert_eq!((prediction.linear(), prediction.angular1()), (0.25, 0.09));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPrediction<N: Real> {
@@ -42,6 +49,25 @@ impl<N: Real> ContactPrediction<N> {
 }
 
 /// Contacts of one pair of solids, kept from update to update.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::narrow_phase::{
+///     ContactDispatcher, ContactManifoldGenerator, DefaultContactDispatcher, IdAllocator,
+/// };
+/// use impinge::dim2::query::ContactPrediction;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let square = Cuboid::new(Vector::new(1.0_f64, 1.0));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(0.0, 1.75));
+/// let (dispatcher, mut ids) = (DefaultContactDispatcher::new(), IdAllocator::new());
+///
+/// let algorithm = dispatcher.get_contact_algorithm(&square, &square);
+/// let mut algorithm = algorithm.expect("every pair of built-in shapes has one");
+/// let prediction = ContactPrediction::new(0.0, 0.0, 0.0);
+/// assert!(algorithm.update(&dispatcher, &here, &square, &there, &square, &prediction, &mut ids));
+/// assert_eq!(algorithm.num_contacts(), 2);
+/// ```
 pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the contacts of `a` placed at `ma` with `b` placed at `mb`.
     ///
@@ -68,6 +94,25 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
 }
 
 /// Chooses a contact algorithm for two solids.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::narrow_phase::{
+///     ContactDispatcher, ContactManifoldGenerator, DefaultContactDispatcher, IdAllocator,
+/// };
+/// use impinge::dim2::query::ContactPrediction;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let square = Cuboid::new(Vector::new(1.0_f64, 1.0));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(0.0, 1.75));
+/// let (dispatcher, mut ids) = (DefaultContactDispatcher::new(), IdAllocator::new());
+///
+/// let algorithm = dispatcher.get_contact_algorithm(&square, &square);
+/// let mut algorithm = algorithm.expect("every pair of built-in shapes has one");
+/// let prediction = ContactPrediction::new(0.0, 0.0, 0.0);
+/// assert!(algorithm.update(&dispatcher, &here, &square, &there, &square, &prediction, &mut ids));
+/// assert_eq!(algorithm.num_contacts(), 2);
+/// ```
 pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     /// A new algorithm for the contacts of `a` with `b`; `None` if there shall be none.
     fn get_contact_algorithm(
@@ -85,6 +130,21 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
 }
 
 /// The nearness of one pair of solids, kept from update to update.
+///
+/// ```
+/// use impinge::dim2::events::Proximity;
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::narrow_phase::{
+///     DefaultProximityDispatcher, ProximityDetector, ProximityDispatcher,
+/// };
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, dispatcher) = (Ball::new(1.0_f32), DefaultProximityDispatcher::new());
+/// let mut detector = dispatcher.get_proximity_algorithm(&ball, &ball).expect("every pair has one");
+/// let there = Isometry::translation(2.25, 0.0);
+/// detector.update(&dispatcher, &Isometry::identity(), &ball, &there, &ball, 0.5);
+/// assert_eq!(detector.proximity(), Proximity::WithinMargin);
+/// ```
 pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the proximity of `a` placed at `ma` and `b` placed at `mb`: `margin` apart at most is within the margin.
     ///
@@ -105,6 +165,21 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
 }
 
 /// Chooses a proximity algorithm for two solids.
+///
+/// ```
+/// use impinge::dim2::events::Proximity;
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::narrow_phase::{
+///     DefaultProximityDispatcher, ProximityDetector, ProximityDispatcher,
+/// };
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, dispatcher) = (Ball::new(1.0_f32), DefaultProximityDispatcher::new());
+/// let mut detector = dispatcher.get_proximity_algorithm(&ball, &ball).expect("every pair has one");
+/// let there = Isometry::translation(2.25, 0.0);
+/// detector.update(&dispatcher, &Isometry::identity(), &ball, &there, &ball, 0.5);
+/// assert_eq!(detector.proximity(), Proximity::WithinMargin);
+/// ```
 pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     /// A new algorithm for the proximity of `a` and `b`; `None` if there shall be none.
     fn get_proximity_algorithm(

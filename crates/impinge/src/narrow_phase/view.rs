@@ -36,6 +36,25 @@ impl<'a, N: Space<D>, I: Iterator<Item = View<'a, N, D>>, const D: usize> Iterat
 }
 
 /// The contacts of a pair of objects, as of the last update.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let pair = world.contact_pair(a, b).expect("their boxes meet");
+/// let mut manifolds = Vec::new();
+/// pair.contacts(&mut manifolds);
+/// assert_eq!((manifolds.len(), pair.num_contacts()), (1, 2));
+/// ```
 #[derive(Clone, Copy)]
 pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
 
@@ -134,6 +153,24 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ContactPair<'_, N, D> {
 }
 
 /// The proximity of a pair of objects, as of the last update.
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// use impinge::dim2::events::Proximity;
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let ball = ShapeHandle::new(Ball::new(1.0));
+/// let [a, b] = [0.0, 2.25].map(|x| {
+///     let query = GeometricQueryType::Proximity(0.25);
+///     world.add(Isometry::translation(x, 0.0), ball.clone(), CollisionGroups::new(), query, ())
+/// });
+/// world.update();
+/// let pair = world.proximity_pair(a, b).expect("their boxes meet");
+/// assert_eq!(pair.proximity(), Proximity::WithinMargin);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProximityPair(Proximity);
 
@@ -299,6 +336,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
         let order = self.order.get_or_init(|| sorted(&self.pairs, |_| true));
         order.iter().map(|&index| index as usize)
+    }
+
+    /// The objects that have a pair with this one, sorted by handle index.
+    pub(crate) fn partners(&self, object: u32) -> Vec<u32> {
+        let mut partners: Vec<_> =
+            self.pairs.partners(object).map(|(partner, _)| partner).collect();
+        partners.sort_unstable();
+        partners
     }
 
     /// How many pairs there are.

@@ -5,6 +5,18 @@ use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
 
 /// The nearest points of two solids.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point};
+/// use impinge::dim2::query::{ClosestPoints, closest_points};
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, here) = (Ball::new(1.0_f32), Isometry::identity());
+/// let nearest = |x| closest_points(&here, &ball, &Isometry::translation(x, 0.0), &ball, 2.0);
+/// assert_eq!(nearest(1.0), ClosestPoints::Intersecting);
+/// assert_eq!(nearest(3.0), ClosestPoints::WithinMargin(Point::new(1.0, 0.0), Point::new(2.0, 0.0)));
+/// assert_eq!(nearest(9.0), ClosestPoints::Disjoint);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClosestPoints<N: Real, const D: usize> {
     /// The solids touch or overlap.

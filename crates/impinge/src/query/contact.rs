@@ -7,6 +7,18 @@ use crate::shape::Shape;
 /// Where two solids touch, overlap or come close, in the world frame.
 ///
 /// `world2 = world1 − depth · normal` up to rounding.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::query::contact;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, there) = (Ball::new(1.0_f32), Isometry::translation(1.5, 0.0));
+/// let found = contact(&Isometry::identity(), &ball, &there, &ball, 0.0).expect("they overlap");
+/// assert_eq!((found.depth, *found.normal), (0.5, Vector::x()), "from the first to the second");
+/// assert_eq!((found.world1.x, found.world2.x), (1.0, 0.5));
+/// assert_eq!(found.flipped().world1, found.world2);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<N: Real, const D: usize> {
     /// The point on the surface of the first solid.

@@ -5,6 +5,8 @@ mod side;
 #[cfg(test)]
 mod tests;
 
+use core::fmt;
+
 pub use self::own::ContactSide;
 use self::side::Side;
 use super::{Contact, Pair, RawPoint};
@@ -13,6 +15,17 @@ use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, m
 use crate::shape::{FeatureId, Geometry};
 
 /// What the core of a solid looks like near a contact, in its local frame.
+///
+/// ```
+/// use impinge::dim2::math::Vector;
+/// use impinge::dim2::query::{ContactSide, NeighborhoodGeometry};
+/// use impinge::dim2::shape::FeatureId;
+///
+/// // The upper side of a box, for a contact that an algorithm of one's own has found.
+/// let geometry = NeighborhoodGeometry::Plane(Vector::<f32>::y());
+/// let side = ContactSide { feature: FeatureId::Face(1), geometry, rounding: 0.0 };
+/// assert_ne!(side.geometry, NeighborhoodGeometry::Point);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NeighborhoodGeometry<N: Real, const D: usize> {
     /// A point that moves with the solid.
@@ -41,7 +54,27 @@ enum NormalRule<N: Real, const D: usize> {
 ///
 /// All in the local frames of the solids, on their cores; the rounding radii are added at the end. A
 /// round side counts as its axis, rounded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let (_, _, manifold) = world.contact_manifolds().next().expect("they overlap");
+/// let kinematic = manifold.contacts()[0].kinematic;
+/// let moved = kinematic.contact(&Isometry::identity(), &Isometry::translation(0.125, 1.5));
+/// assert_eq!(moved.depth, 0.5, "without a new query");
+/// # assert!(world.contains(a) && world.contains(b));
+/// ```
+#[derive(Clone, Copy, PartialEq)]
 pub struct ContactKinematic<N: Real, const D: usize> {
     pub(crate) feature1: FeatureId,
     pub(crate) feature2: FeatureId,
@@ -59,6 +92,17 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     rule: NormalRule<N, D>,
     /// The frame of each solid turns with it; that of a ball does not.
     turns: [bool; 2],
+}
+
+impl<N: Real, const D: usize> fmt::Debug for ContactKinematic<N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ContactKinematic")
+            .field("feature1", &self.feature1)
+            .field("feature2", &self.feature2)
+            .field("local1", &self.local1)
+            .field("local2", &self.local2)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Two points of the cores, in the frame of the first solid.

@@ -8,6 +8,29 @@ use crate::math::{Pose, Real, Unit, Vector};
 ///
 /// A contact that moved between two updates keeps its id. The id says nothing else; its order is
 /// that of creation within one pair.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let ids = |world: &CollisionWorld<f64, ()>| -> Vec<_> {
+///     world.contact_views().flat_map(|(_, _, view)| view.contacts().map(|point| point.id)).collect()
+/// };
+/// let before = ids(&world);
+/// world.set_position(b, Isometry::translation(0.0, 1.8125));
+/// world.update();
+/// assert_eq!(ids(&world), before, "the same contacts, moved");
+/// # assert!(world.contains(a));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId {
@@ -28,6 +51,29 @@ impl ContactId {
 }
 
 /// A contact, how it moves, and its name.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let (_, _, manifold) = world.contact_manifolds().next().expect("they overlap");
+/// for tracked in manifold.contacts() {
+///     assert_eq!(tracked.contact.depth, 0.25);
+///     // Had the upper one been lifted by an eighth:
+///     let lifted = tracked.kinematic.contact(&Isometry::identity(), &Isometry::translation(0.0, 1.875));
+///     assert_eq!(lifted.depth, 0.125);
+/// }
+/// # assert!(world.contains(a) && world.contains(b));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackedContact<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
@@ -62,6 +108,26 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// one point. The deepest pair of points of the two solids is always among them, so that
 /// [`Self::deepest_contact`] is the answer of the query for one contact. Empty means that the solids
 /// are farther apart than the prediction.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let (_, _, manifold) = world.contact_manifolds().next().expect("they overlap");
+/// assert_eq!(manifold.len(), 2, "the ends of the side that they share");
+/// let deepest = manifold.deepest_contact().expect("it holds two");
+/// assert_eq!((deepest.contact.depth, *deepest.contact.normal), (0.25, Vector::y()));
+/// # assert!(world.contains(a) && world.contains(b));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
     /// On the heap: most pairs have fewer contacts than the most that there may be.

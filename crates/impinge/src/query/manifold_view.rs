@@ -1,5 +1,7 @@
 //! Manifolds read where they are kept.
 
+use core::fmt;
+
 use super::manifold::placed;
 use super::manifold_build::Patch;
 use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
@@ -8,6 +10,26 @@ use crate::shape::FeatureId;
 
 /// A contact as [`ManifoldView`] gives it: a [`TrackedContact`](super::TrackedContact) without its
 /// kinematic.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// for (_, point) in world.contacts_with(b) {
+///     assert_eq!((point.contact.depth, point.contact.normal.y), (0.25, -1.0), "away from b");
+///     assert_eq!(point.flipped().contact.normal.y, 1.0, "away from a");
+/// }
+/// # assert_eq!(world.contacts_with(a).count(), 2);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
@@ -24,13 +46,47 @@ pub struct ContactPoint<N: Real, const D: usize> {
     pub part2: u32,
 }
 
+impl<N: Real, const D: usize> ContactPoint<N, D> {
+    /// The same contact with the solids swapped.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        Self {
+            contact: self.contact.flipped(),
+            id: self.id,
+            feature1: self.feature2,
+            feature2: self.feature1,
+            part1: self.part2,
+            part2: self.part1,
+        }
+    }
+}
+
 /// A [`ContactManifold`] read where the narrow phase keeps it: each contact is placed in the world
 /// when it is asked for, and nothing is stored.
 ///
 /// It gives the same contacts, to the bit and in the same order, as the manifold that it stands for,
 /// but not their kinematics. To read every contact of a world once, as a solver does, it is
 /// several times faster: it moves a fifth of the memory. It always holds a contact.
-#[derive(Clone, Copy, Debug)]
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// let (_, _, view) = world.contact_views().next().expect("they overlap");
+/// assert_eq!((view.len(), *view.normal()), (2, Vector::y()));
+/// assert!(view.contacts().all(|point| point.contact.depth == 0.25));
+/// # assert!(world.contains(a) && world.contains(b));
+/// ```
+#[derive(Clone, Copy)]
 pub struct ManifoldView<'a, N: Real, const D: usize>(Kept<'a, N, D>);
 
 /// What a view looks at.
@@ -42,6 +98,13 @@ enum Kept<'a, N: Real, const D: usize> {
     Patch(&'a Patch<N, D>, Placement<'a, N, D>),
     /// What an algorithm of the user's own has found.
     Made(&'a ContactManifold<N, D>),
+}
+
+impl<N: Real, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let contacts: Vec<_> = self.contacts().collect();
+        f.debug_struct("ManifoldView").field("contacts", &contacts).finish()
+    }
 }
 
 impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
@@ -152,10 +215,6 @@ fn point<N: Real, const D: usize>(
     let contact = placed(own, raw, placement.pose1, *normal);
     let id = ContactId { pair: placement.pair, number: raw.id };
     let (feature1, feature2) = (raw.feature1, raw.feature2);
-    if placement.is_swapped {
-        let contact = contact.flipped();
-        let (feature1, feature2, part1, part2) = (feature2, feature1, part2, part1);
-        return ContactPoint { contact, id, feature1, feature2, part1, part2 };
-    }
-    ContactPoint { contact, id, feature1, feature2, part1, part2 }
+    let point = ContactPoint { contact, id, feature1, feature2, part1, part2 };
+    if placement.is_swapped { point.flipped() } else { point }
 }

@@ -5,6 +5,18 @@ use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 
 /// Whether two solids touch, are near, or are neither.
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::query::{Proximity, proximity};
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, here) = (Ball::new(1.0_f32), Isometry::identity());
+/// let near = |x| proximity(&here, &ball, &Isometry::translation(x, 0.0), &ball, 1.0);
+/// assert_eq!(near(2.0), Proximity::Intersecting, "touching counts");
+/// assert_eq!(near(3.0), Proximity::WithinMargin, "and so does the margin itself");
+/// assert_eq!(near(3.5), Proximity::Disjoint);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Proximity {

@@ -11,6 +11,18 @@ use crate::shape::{FeatureId, Shape};
 /// belong to.
 ///
 /// `point2 = point1 + distance · normal` up to rounding.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::query::witness;
+/// use impinge::dim2::shape::{Ball, Cuboid, FeatureId};
+///
+/// let (square, ball) = (Cuboid::new(Vector::new(1.0_f64, 1.0)), Ball::new(1.0));
+/// let there = Isometry::translation(4.0, 0.0);
+/// let found = witness(&Isometry::identity(), &square, &there, &ball, 5.0).expect("near enough");
+/// assert_eq!((found.distance, found.point1.x, found.point2.x), (2.0, 1.0, 3.0));
+/// assert!(matches!(found.feature1, FeatureId::Face(_)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Witness<N: Real, const D: usize> {
     /// The point on the surface of the first shape, in the world frame.

@@ -287,6 +287,11 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         core::mem::take(&mut self.self_changed)
     }
 
+    /// How many objects changed that are still there.
+    pub(crate) fn num_present(&self) -> usize {
+        self.entries.iter().filter(|entry| entry.index != GONE).count()
+    }
+
     /// How many objects changed.
     pub(crate) const fn len(&self) -> usize {
         self.entries.len()

@@ -1,7 +1,5 @@
 //! The world: objects in, changes by handle, everything else at the next update.
 
-use core::fmt;
-
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
@@ -26,6 +24,27 @@ use crate::shape::ShapeHandle;
 ///
 /// `T` is the user's data, which the world stores and never touches: it need not be `Send` or
 /// `Sync`, and the world is what `T` is. All orders are canonical, by handle.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Vector};
+/// use impinge::dim2::shape::{Cuboid, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+/// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
+/// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+/// let [a, b] = [0.0, 1.75].map(|y| {
+///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
+/// });
+/// world.update();
+///
+/// assert_eq!(world.contact_events().len(), 1, "they overlap");
+/// world.set_position(b, Isometry::translation(0.0, 5.0));
+/// assert_eq!(world.contact_manifolds().count(), 1, "as of the last update");
+/// world.update();
+/// assert_eq!(world.contact_manifolds().count(), 0, "they are apart");
+/// # assert!(world.contains(a));
+/// ```
 pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
@@ -44,16 +63,6 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) interactions: Vec<Interaction>,
     /// How long the lists of the world have been lately.
     pub(super) recent: Recent,
-}
-
-impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionWorld<N, D, T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("CollisionWorld")
-            .field("objects", &self.len())
-            .field("pairs", &self.broad_phase.num_interferences())
-            .field("filters", &self.filters)
-            .finish_non_exhaustive()
-    }
 }
 
 /// Making a world and filling it.

@@ -6,6 +6,19 @@ use crate::math::{Pose, Real};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
 /// Why a world refused an operation; the world is unchanged then. Values are given as `f64`, exactly.
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType, WorldError};
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+/// let handle = world.add(Isometry::identity(), ball, CollisionGroups::new(), query, ());
+/// world.remove(&[handle]);
+/// let refused = world.try_set_position(handle, Isometry::identity());
+/// assert_eq!(refused, Err(WorldError::StaleHandle(handle)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {

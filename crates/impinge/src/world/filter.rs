@@ -13,6 +13,15 @@ use crate::math::Space;
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
 /// stands for this one in its dimension; closures of two references to objects implement these.
+///
+/// ```
+/// use impinge::dim2::world::{CollisionObject, CollisionWorld};
+///
+/// type Object = CollisionObject<f32, &'static str>;
+/// let mut world = CollisionWorld::<f32, &str>::new(0.02);
+/// world.register_broad_phase_pair_filter("teams", |a: &Object, b: &Object| a.data() != b.data());
+/// world.unregister_broad_phase_pair_filter("teams");
+/// ```
 pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
     /// The two objects may interact. `co1` is the one whose handle comes first.
     fn is_pair_valid(&self, co1: &CollisionObject<N, D, T>, co2: &CollisionObject<N, D, T>)
@@ -24,15 +33,18 @@ type Named<N, const D: usize, T> = (String, Box<dyn BroadPhasePairFilter<N, D, T
 /// The filters of a world, sorted by name.
 pub(super) struct Filters<N: Space<D>, const D: usize, T> {
     filters: Vec<Named<N, D, T>>,
+    /// Others than at the last update.
+    have_changed: bool,
 }
 
 impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
     pub(super) const fn new() -> Self {
-        Self { filters: Vec::new() }
+        Self { filters: Vec::new(), have_changed: false }
     }
 
     /// Puts a filter under a name, in place of the one that has it.
     pub(super) fn register(&mut self, name: &str, filter: Box<dyn BroadPhasePairFilter<N, D, T>>) {
+        self.have_changed = true;
         match self.position(name) {
             Ok(place) => self.filters[place].1 = filter,
             Err(place) => self.filters.insert(place, (name.to_owned(), filter)),
@@ -44,6 +56,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         let place = self.position(name);
         if let Ok(place) = place {
             self.filters.remove(place);
+            self.have_changed = true;
         }
         place.is_ok()
     }
@@ -59,6 +72,15 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         co2: &CollisionObject<N, D, T>,
     ) -> bool {
         self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
+    }
+
+    /// An update has asked them.
+    pub(super) const fn note_update(&mut self) {
+        self.have_changed = false;
+    }
+
+    pub(super) const fn have_changed(&self) -> bool {
+        self.have_changed
     }
 
     pub(super) fn is_empty(&self) -> bool {

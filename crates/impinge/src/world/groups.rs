@@ -5,13 +5,25 @@ use core::fmt;
 /// The largest group number.
 const LAST_GROUP: usize = 29;
 /// The mask of all groups, 0 to 29.
-const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
+pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 
 /// The groups that an object belongs to, accepts and refuses.
 ///
 /// Two objects interact if each is a member of at least one group that the other whitelists, and
 /// neither is a member of a group that the other blacklists: the blacklist wins. Groups are
-/// numbered 0 to 29.
+/// numbered 0 to 29, in lists or as the bits of masks.
+///
+/// ```
+/// use impinge::world::CollisionGroups;
+///
+/// let mut ghosts = CollisionGroups::new();
+/// ghosts.set_membership(&[4]);
+/// ghosts.set_blacklist(&[4, 7]);
+/// let walls = CollisionGroups::new().with_membership(&[7]);
+/// let players = CollisionGroups::new().with_membership(&[1]);
+/// assert!(!ghosts.can_interact_with_groups(&walls), "the blacklist wins");
+/// assert!(ghosts.can_interact_with_groups(&players));
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Spelled", into = "Spelled"))]
@@ -72,6 +84,13 @@ impl fmt::Debug for CollisionGroups {
 }
 
 /// A group number above 29.
+///
+/// ```
+/// use impinge::world::{CollisionGroups, GroupError};
+///
+/// let refused = CollisionGroups::new().try_set_membership(&[3, 30]);
+/// assert_eq!(refused, Err(GroupError(30)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GroupError(pub usize);
 
@@ -123,6 +142,29 @@ impl CollisionGroups {
     #[must_use]
     pub const fn new() -> Self {
         Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0 }
+    }
+
+    /// The groups of these masks, all of whose bits are groups.
+    pub(super) const fn of_masks(membership: u32, whitelist: u32, blacklist: u32) -> Self {
+        Self { membership, whitelist, blacklist }
+    }
+
+    /// The groups that the object is a member of: bit `g` is group `g`.
+    #[must_use]
+    pub const fn membership_mask(&self) -> u32 {
+        self.membership & ALL_GROUPS
+    }
+
+    /// The groups on the whitelist: bit `g` is group `g`.
+    #[must_use]
+    pub const fn whitelist_mask(&self) -> u32 {
+        self.whitelist
+    }
+
+    /// The groups on the blacklist: bit `g` is group `g`.
+    #[must_use]
+    pub const fn blacklist_mask(&self) -> u32 {
+        self.blacklist
     }
 
     /// Makes the object a member of these groups and no others.

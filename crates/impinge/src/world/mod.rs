@@ -6,13 +6,17 @@
 
 mod bodies;
 mod collision_world;
+mod debug;
 mod deform;
+mod emptying;
 mod error;
 mod filter;
+mod group_masks;
 mod groups;
 mod narrow_phase;
 mod object;
 mod objects;
+mod of_object;
 mod pairs;
 mod queries;
 mod step;

@@ -43,6 +43,19 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// [`Self::update`]. In all calls `handle1 < handle2`, except that both are the same for an object that
 /// is tested against itself, and [`CollisionObjects::table`] has the poses,
 /// shapes and query types that the call is about, and those of all objects with pairs.
+///
+/// ```
+/// use impinge::dim2::narrow_phase::{DefaultNarrowPhase, NarrowPhase};
+/// use impinge::dim2::world::CollisionWorld;
+///
+/// fn exchange(world: &mut CollisionWorld<f32, ()>, narrow_phase: impl NarrowPhase<f32, 2, ()> + 'static) {
+///     world.set_narrow_phase(Box::new(narrow_phase));
+/// }
+///
+/// let mut world = CollisionWorld::new(0.02);
+/// exchange(&mut world, DefaultNarrowPhase::new());
+/// world.update();
+/// ```
 pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     /// Computes all contacts and proximities, with the events of what changed.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
@@ -95,6 +108,23 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
         let _ = handle;
         true
+    }
+
+    /// The objects that have a pair with this one, sorted; itself, if it is tested against itself.
+    ///
+    /// The default looks at all pairs.
+    fn partners_of(
+        &self,
+        objects: &CollisionObjects<N, D, T>,
+        handle: CollisionObjectHandle,
+    ) -> Vec<CollisionObjectHandle> {
+        let contacts = self.contact_pairs(objects).map(|(first, second, _)| [first, second]);
+        let proximities = self.proximity_pairs(objects).map(|(first, second, _)| [first, second]);
+        let own = contacts.chain(proximities).filter(|pair| pair.contains(&handle));
+        let mut partners: Vec<_> =
+            own.map(|[first, second]| if first == handle { second } else { first }).collect();
+        partners.sort_unstable();
+        partners
     }
 
     /// Where the names of contacts come from: handed on when another narrow phase takes over, so that
@@ -218,6 +248,15 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
 
     fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
         self.has_pairs(handle.index())
+    }
+
+    fn partners_of(
+        &self,
+        objects: &CollisionObjects<N, D, T>,
+        handle: CollisionObjectHandle,
+    ) -> Vec<CollisionObjectHandle> {
+        let partners = self.partners(handle.index());
+        partners.into_iter().map(|index| objects.handle_at(index)).collect()
     }
 
     fn ids(&mut self) -> Option<&mut IdAllocator> {

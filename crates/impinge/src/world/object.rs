@@ -10,7 +10,21 @@ use crate::shape::ShapeHandle;
 /// An object of a world, as the user described it.
 ///
 /// Only the user's data can be changed through it; the rest is changed through the world, by handle.
-#[derive(Debug)]
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+///
+/// let mut world = CollisionWorld::new(0.02_f32);
+/// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+/// let place = Isometry::translation(3.0, 0.0);
+/// let handle = world.add(place, ball, CollisionGroups::new(), query, String::from("coin"));
+/// let object = world.collision_object_mut(handle).expect("just added");
+/// object.data_mut().push('s');
+/// assert_eq!((object.data().as_str(), object.position()), ("coins", &place));
+/// assert!(object.shape().is_shape::<Ball<f32>>());
+/// ```
 pub struct CollisionObject<N: Space<D>, const D: usize, T> {
     pub(super) body: Body<N, D>,
     pub(super) data: T,

@@ -17,7 +17,16 @@ const MOST: u32 = (1 << 31) - 1;
 ///
 /// A freed index is used again, the last freed one first, under the next generation; an index whose
 /// generations are used up is never used again.
-#[derive(Debug)]
+///
+/// ```
+/// use impinge::dim2::world::{CollisionObject, CollisionObjects};
+///
+/// // What filters and narrow phases of one's own are given, as here to count names.
+/// fn named(objects: &CollisionObjects<f32, String>) -> usize {
+///     objects.iter().filter(|object: &&CollisionObject<f32, String>| !object.data().is_empty()).count()
+/// }
+/// # let _ = named;
+/// ```
 pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// That of the first object at an index.
     first: Generation,

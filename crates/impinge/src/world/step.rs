@@ -28,6 +28,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.update_broad_phase();
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
+        self.filters.note_update();
         self.events.sort();
         self.recent.note(self.interactions.len().max(self.events.len()));
         if let Some(look) = self.recent.end_update(self.objects.reach()) {

@@ -6,6 +6,21 @@ use crate::query::Contact;
 use crate::shape::FeatureId;
 
 /// One solid's share of a contact that an algorithm of one's own has found.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point, Unit, Vector};
+/// use impinge::dim2::query::{Contact, ContactKinematic, ContactSide, NeighborhoodGeometry};
+/// use impinge::dim2::shape::FeatureId;
+///
+/// let (world1, world2) = (Point::new(0.0_f64, 0.0), Point::new(0.0, 0.5));
+/// let contact = Contact { world1, world2, normal: Unit::new_normalize(Vector::y()), depth: -0.5 };
+/// let plane = NeighborhoodGeometry::Plane(Vector::y());
+/// let floor = ContactSide { feature: FeatureId::Face(0), geometry: plane, rounding: 0.0 };
+/// let corner = ContactSide::point(FeatureId::Vertex(0));
+/// let here = Isometry::identity();
+/// let kinematic = ContactKinematic::from_contact(&contact, (&here, floor), (&here, corner));
+/// assert_eq!(kinematic.contact(&here, &Isometry::translation(3.0, -0.25)).depth, -0.25);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide<N: Real, const D: usize> {
     /// What touches.

@@ -5,6 +5,16 @@ use crate::math::{Point, Real, max_component, unit};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 
 /// Where on a shape a projected point lies.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::query::{Barycentric, PointQuery};
+/// use impinge::dim2::shape::Polyline;
+///
+/// let line: Polyline<f64> = Polyline::open([0.0, 4.0, 8.0].map(|x| Point::new(x, 0.0)).to_vec());
+/// let (_, location) = line.project_local_point_with_location(&Point::new(5.0, 3.0), true);
+/// assert_eq!((location.part, location.barycentric), (1, Barycentric::Segment([0.75, 0.25])));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLocation<N: Real> {
     /// The part of a composite; 0 for a convex solid.
@@ -21,6 +31,19 @@ pub struct PointLocation<N: Real> {
 /// What lies beside a triangle by rounding counts as the nearest point of it. The weights reproduce the
 /// point up to rounding of the part's size, however thin the triangle; of one without area they are
 /// those of its longest side.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::query::{Barycentric, PointQuery};
+/// use impinge::dim2::shape::{Ball, Segment};
+///
+/// let (segment, far) = (Segment::new(Point::origin(), Point::new(4.0_f64, 0.0)), Point::new(9.0, 1.0));
+/// let weights = |shape: &dyn impinge::shape::Shape<f64, 2>| {
+///     shape.project_local_point_with_location(&far, true).1.barycentric
+/// };
+/// assert_eq!(weights(&segment), Barycentric::Segment([0.0, 1.0]), "its end");
+/// assert_eq!(weights(&Ball::new(1.0)), Barycentric::Undefined);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Barycentric<N: Real> {
     /// The weights of the ends of a segment.

@@ -36,6 +36,17 @@ use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
+///
+/// ```
+/// use impinge::dim2::math::{Isometry, Point};
+/// use impinge::dim2::query::PointQuery;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, here, inner) = (Ball::new(2.0_f32), Isometry::identity(), Point::new(1.0, 0.0));
+/// let onto_solid = ball.project_point(&here, &inner, true);
+/// assert_eq!((onto_solid.is_inside, onto_solid.point), (true, inner));
+/// assert_eq!(ball.project_point(&here, &inner, false).point, Point::new(2.0, 0.0), "its boundary");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointProjection<N: Real, const D: usize> {
     /// The given point lies in the solid or on its surface.
@@ -67,6 +78,18 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// parts is infinitely far from everything.
 ///
 /// Cost on a composite: a search of the parts near the point.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let (cube, place) = (Cuboid::new(Vector::repeat(1.0_f32)), Isometry::translation(10.0, 0.0, 0.0));
+/// let point = Point::new(10.0, 4.0, 0.0);
+/// assert_eq!(cube.project_point(&place, &point, true).point, Point::new(10.0, 1.0, 0.0));
+/// assert_eq!(cube.distance_to_point(&place, &point, true), 3.0);
+/// assert_eq!(cube.distance_to_point(&place, &Point::new(10.5, 0.0, 0.0), false), -0.5, "inside");
+/// ```
 pub trait PointQuery<N: Real, const D: usize> {
     /// The nearest point of the boundary, and the feature that it lies on, in the local frame.
     ///

@@ -29,6 +29,19 @@ use crate::query::ClosestPoints;
 const FEW: usize = 16;
 
 /// An object near what was asked about.
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter};
+///
+/// let mut world = CollisionWorld::new(0.02_f32);
+/// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+/// world.add(Isometry::translation(5.0, 0.0), ball, CollisionGroups::new(), query, "tree");
+/// let (probe, here) = (Ball::new(1.0), Isometry::identity());
+/// let found = world.nearest_objects(&here, &probe, 1, 10.0, &QueryFilter::new());
+/// assert_eq!((*found[0].object.data(), found[0].distance), ("tree", 3.0));
+/// ```
 pub struct Neighbor<'a, N: Space<D>, const D: usize, T> {
     /// The object.
     pub object: &'a CollisionObject<N, D, T>,

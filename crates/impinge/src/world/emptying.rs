@@ -1,0 +1,69 @@
+//! Worlds without objects: new ones, and those that lose all or some.
+
+use super::CollisionWorld;
+use super::object::CollisionObject;
+use crate::math::Space;
+
+/// The margin of a world that is not told one.
+const USUAL_MARGIN: f64 = 0.02;
+
+/// An empty world whose margin is 0.02, which suits objects of size 1: the margin never changes an exact
+/// answer, and [`CollisionWorld::new`] takes another.
+impl<N: Space<D>, const D: usize, T> Default for CollisionWorld<N, D, T> {
+    fn default() -> Self {
+        Self::new(N::lit(USUAL_MARGIN))
+    }
+}
+
+/// Removing many objects at once.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Removes all objects, as [`Self::remove`] of all handles: each pair that had started stops, with one
+    /// event in the next batch, and no handle is given out again. Filters, phases and the margin stay, and
+    /// so do the events of the last update until the next.
+    ///
+    /// ```
+    /// use impinge::dim2::events::ContactEvent;
+    /// use impinge::dim2::na::Isometry2;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::<f32, ()>::default();
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let contacts = GeometricQueryType::Contacts(0.0, 0.0);
+    /// let [a, b] = [0.0, 1.0].map(|x| {
+    ///     world.add(Isometry2::translation(x, 0.0), ball.clone(), groups, contacts, ())
+    /// });
+    /// world.update();
+    /// world.clear();
+    /// assert!(world.is_empty() && world.collision_object(a).is_none());
+    /// world.update();
+    /// assert_eq!(world.contact_events(), [ContactEvent::Stopped(a, b)]);
+    /// ```
+    pub fn clear(&mut self) {
+        self.retain(|_| false);
+    }
+
+    /// Removes the objects for which `keeps` is false, as [`Self::remove`] of their handles: each pair that
+    /// had started and loses an object stops, with one event in the next batch. `keeps` is asked once about
+    /// each object, in order of the handles; a panic in it leaves the world unchanged.
+    ///
+    /// ```
+    /// use impinge::dim3::na::Isometry3;
+    /// use impinge::dim3::shape::{Ball, ShapeHandle};
+    /// use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(0.5)), CollisionGroups::new());
+    /// for lives in [3, 0, 1] {
+    ///     let query = GeometricQueryType::Proximity(0.0);
+    ///     world.add(Isometry3::identity(), ball.clone(), groups, query, lives);
+    /// }
+    /// world.retain(|object| *object.data() > 0);
+    /// assert_eq!(world.len(), 2);
+    /// ```
+    pub fn retain(&mut self, mut keeps: impl FnMut(&CollisionObject<N, D, T>) -> bool) {
+        let leaving = self.objects.iter().filter(|object| !keeps(object));
+        let leaving: Vec<_> = leaving.map(CollisionObject::handle).collect();
+        self.remove(&leaving);
+    }
+}

@@ -1,0 +1,200 @@
+//! Groups made in one expression: from lists, and from masks with a bit for each group.
+
+use super::groups::{ALL_GROUPS, CollisionGroups, GroupError};
+
+/// The groups whose bits are set, bit 0 for group 0.
+///
+/// A mask of 32 bits can name the groups 30 and 31, which there are not: refused as in a list.
+fn checked(mask: u32) -> Result<u32, GroupError> {
+    match mask & !ALL_GROUPS {
+        0 => Ok(mask),
+        beyond => Err(GroupError(beyond.trailing_zeros() as usize)),
+    }
+}
+
+/// The groups, or a panic with the error's text.
+#[track_caller]
+fn or_panic(result: Result<CollisionGroups, GroupError>) -> CollisionGroups {
+    match result {
+        Ok(groups) => groups,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Groups from lists, for a chain of calls.
+impl CollisionGroups {
+    /// Member of no group, whitelists and blacklists none: interacts with nothing.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self::of_masks(0, 0, 0)
+    }
+
+    /// The same as a member of these groups and no others.
+    ///
+    /// ```
+    /// use impinge::world::CollisionGroups;
+    ///
+    /// let bullets = CollisionGroups::new().with_membership(&[2]).with_blacklist(&[2, 5]);
+    /// assert!(bullets.can_interact_with_groups(&CollisionGroups::new().with_membership(&[1])));
+    /// assert!(!bullets.can_interact_with_groups(&bullets));
+    /// ```
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_membership`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_membership(mut self, groups: &[usize]) -> Self {
+        self.set_membership(groups);
+        self
+    }
+
+    /// The same with these groups on the whitelist and no others.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_whitelist`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_whitelist(mut self, groups: &[usize]) -> Self {
+        self.set_whitelist(groups);
+        self
+    }
+
+    /// The same with these groups on the blacklist and no others.
+    ///
+    /// # Panics
+    /// On a group above 29; [`Self::try_set_blacklist`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_blacklist(mut self, groups: &[usize]) -> Self {
+        self.set_blacklist(groups);
+        self
+    }
+}
+
+/// Groups as masks: bit `g` is group `g`, for 0 to 29. The bits 30 and 31 name groups that there are not.
+impl CollisionGroups {
+    /// The mask of all groups, 0 to 29.
+    pub const ALL: u32 = ALL_GROUPS;
+
+    /// The same as a member of the groups of a mask and no others.
+    ///
+    /// ```
+    /// use impinge::world::{CollisionGroups, GroupError};
+    ///
+    /// const PLAYER: u32 = 1 << 0;
+    /// const WALL: u32 = 1 << 3;
+    /// let player = CollisionGroups::new().with_membership_by_mask(PLAYER).with_whitelist_by_mask(WALL);
+    /// let wall = CollisionGroups::new().with_membership_by_mask(WALL);
+    /// assert!(player.can_interact_with_groups(&wall));
+    /// assert!(!player.can_interact_with_groups(&player));
+    /// assert_eq!(wall.membership_mask(), WALL);
+    /// assert_eq!(wall.whitelist_mask(), CollisionGroups::ALL);
+    /// assert_eq!(player.try_with_membership_by_mask(1 << 31), Err(GroupError(31)));
+    /// ```
+    ///
+    /// # Panics
+    /// On bit 30 or 31; [`Self::try_with_membership_by_mask`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_membership_by_mask(self, mask: u32) -> Self {
+        or_panic(self.try_with_membership_by_mask(mask))
+    }
+
+    /// The same as a member of the groups of a mask and no others.
+    ///
+    /// # Errors
+    /// On bit 30 or 31, the lower of both.
+    pub fn try_with_membership_by_mask(self, mask: u32) -> Result<Self, GroupError> {
+        let named = Self::of_masks(checked(mask)?, 0, 0);
+        let mut groups = self;
+        groups.copy_membership(&named);
+        Ok(groups)
+    }
+
+    /// The same with the groups of a mask on the whitelist and no others.
+    ///
+    /// # Panics
+    /// On bit 30 or 31; [`Self::try_with_whitelist_by_mask`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_whitelist_by_mask(self, mask: u32) -> Self {
+        or_panic(self.try_with_whitelist_by_mask(mask))
+    }
+
+    /// The same with the groups of a mask on the whitelist and no others.
+    ///
+    /// # Errors
+    /// On bit 30 or 31, the lower of both.
+    pub fn try_with_whitelist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
+        let named = Self::of_masks(0, checked(mask)?, 0);
+        let mut groups = self;
+        groups.copy_whitelist(&named);
+        Ok(groups)
+    }
+
+    /// The same with the groups of a mask on the blacklist and no others.
+    ///
+    /// # Panics
+    /// On bit 30 or 31; [`Self::try_with_blacklist_by_mask`] returns it.
+    #[must_use]
+    #[track_caller]
+    pub fn with_blacklist_by_mask(self, mask: u32) -> Self {
+        or_panic(self.try_with_blacklist_by_mask(mask))
+    }
+
+    /// The same with the groups of a mask on the blacklist and no others.
+    ///
+    /// # Errors
+    /// On bit 30 or 31, the lower of both.
+    pub fn try_with_blacklist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
+        let named = Self::of_masks(0, 0, checked(mask)?);
+        let mut groups = self;
+        groups.copy_blacklist(&named);
+        Ok(groups)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_and_lists_are_the_same_groups() {
+        for list in [&[][..], &[0], &[29], &[3, 17, 29]] {
+            let mask = list.iter().fold(0, |mask, group| mask | 1_u32 << group);
+            let mut groups = CollisionGroups::new();
+            groups.enable_self_collision();
+            let lists = groups.with_membership(list).with_whitelist(list).with_blacklist(list);
+            let masks = groups
+                .with_membership_by_mask(mask)
+                .with_whitelist_by_mask(mask)
+                .with_blacklist_by_mask(mask);
+            assert_eq!(lists, masks, "{list:?}");
+            let read = [masks.membership_mask(), masks.whitelist_mask(), masks.blacklist_mask()];
+            assert_eq!(read, [mask; 3], "as they were given, without the bit for self-collision");
+            assert!(masks.can_interact_with_self(), "which stays");
+        }
+        let (new, empty) = (CollisionGroups::new(), CollisionGroups::empty());
+        let all = CollisionGroups::ALL;
+        assert_eq!(empty.with_membership_by_mask(all).with_whitelist_by_mask(all), new, "all");
+        assert!(!empty.can_interact_with_groups(&new), "with nothing");
+        assert!(!empty.can_interact_with_self(), "nor with itself");
+    }
+
+    #[test]
+    fn bits_of_no_group_are_refused() {
+        let groups = CollisionGroups::new();
+        for (mask, named) in [(1 << 30, 30), (1 << 31, 31), (u32::MAX, 30), (1 << 31 | 5, 31)] {
+            let refused = Err(GroupError(named));
+            assert_eq!(groups.try_with_membership_by_mask(mask), refused, "{mask:x}");
+            assert_eq!(groups.try_with_whitelist_by_mask(mask), refused, "{mask:x}");
+            assert_eq!(groups.try_with_blacklist_by_mask(mask), refused, "{mask:x}");
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "no group 31")]
+    fn the_panic_names_the_group() {
+        let _ = CollisionGroups::new().with_whitelist_by_mask(1 << 31);
+    }
+}

@@ -1,0 +1,90 @@
+//! Reading the pairs of one object, seen from it.
+
+use super::{CollisionObject, CollisionWorld};
+use crate::math::Space;
+use crate::narrow_phase::{CollisionObjectHandle, ContactPair};
+use crate::query::{ContactPoint, ManifoldView, Proximity};
+
+/// The pairs of one object as of the last update, in order of the other objects' handles; pairs with objects
+/// that were removed since are gone. An object with many pairs costs as many look-ups as it has pairs,
+/// however many the world has; with a narrow phase of one's own see
+/// [`NarrowPhase::partners_of`](super::NarrowPhase::partners_of).
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The contact points of an object with all others, and the other object of each.
+    ///
+    /// Each contact is seen from the object: it is the first solid, whichever handle comes first, so
+    /// `world1`, `feature1` and `part1` are on it and the normal points away from it, to the other. Of an
+    /// object tested against itself the first solid is the part of lower number. Nothing for a stale handle.
+    ///
+    /// ```
+    /// use impinge::dim2::na::{Isometry2, Vector2};
+    /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
+    /// let slab = ShapeHandle::new(Cuboid::new(Vector2::new(4.0, 1.0)));
+    /// world.add(Isometry2::identity(), slab.clone(), everybody, contacts, "floor");
+    /// let ball = ShapeHandle::new(Ball::new(1.0));
+    /// let ball = world.add(Isometry2::translation(0.0, 1.75), ball, everybody, contacts, "ball");
+    /// world.add(Isometry2::translation(0.0, 3.5), slab, everybody, contacts, "ceiling");
+    /// world.update();
+    /// let found = world.contacts_with(ball).map(|(other, point)| (*other.data(), point.contact.normal.y));
+    /// assert_eq!(found.collect::<Vec<_>>(), [("floor", -1.0), ("ceiling", 1.0)]);
+    /// // What moves the ball out: against each normal by the depth.
+    /// let out = world.contacts_with(ball).map(|(_, point)| *point.contact.normal * -point.contact.depth);
+    /// assert_eq!(out.sum::<Vector2<f64>>(), Vector2::zeros(), "it is stuck");
+    /// ```
+    pub fn contacts_with(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> impl Iterator<Item = (&CollisionObject<N, D, T>, ContactPoint<N, D>)> {
+        self.partners(handle).flat_map(move |other| {
+            let pair = self.contact_pair(handle, other.handle());
+            let views = pair.into_iter().flat_map(ContactPair::manifolds);
+            let points =
+                views.filter_map(ManifoldView::of_manifold).flat_map(ManifoldView::contacts);
+            let is_second = other.handle() < handle;
+            points.map(move |point| (other, if is_second { point.flipped() } else { point }))
+        })
+    }
+
+    /// How near the objects are that have a pair with this one of which proximity is asked; disjoint ones are
+    /// left out, since which of them have a pair depends on the margin. Nothing for a stale handle.
+    ///
+    /// ```
+    /// use impinge::dim3::events::Proximity;
+    /// use impinge::dim3::na::Isometry3;
+    /// use impinge::dim3::shape::{Ball, ShapeHandle};
+    /// use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (ball, everybody) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let near = GeometricQueryType::Proximity(0.5);
+    /// let sensors = [0.0, 1.5, 3.0].map(|x| {
+    ///     world.add(Isometry3::translation(x, 0.0, 0.0), ball.clone(), everybody, near, x)
+    /// });
+    /// world.update();
+    /// let found: Vec<_> = world.proximities_with(sensors[0]).map(|(other, p)| (*other.data(), p)).collect();
+    /// assert_eq!(found, [(1.5, Proximity::Intersecting), (3.0, Proximity::WithinMargin)]);
+    /// ```
+    pub fn proximities_with(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> impl Iterator<Item = (&CollisionObject<N, D, T>, Proximity)> {
+        self.partners(handle).filter_map(move |other| {
+            let proximity = self.proximity_pair(handle, other.handle())?.proximity();
+            (proximity != Proximity::Disjoint).then_some((other, proximity))
+        })
+    }
+
+    /// The objects that have a pair with this one, in order of their handles.
+    fn partners(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
+        let is_known = self.contains(handle);
+        let partners = is_known.then(|| self.narrow_phase.partners_of(&self.objects, handle));
+        partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
+    }
+}
