@@ -1,28 +1,46 @@
-//! The user guide and the README, so that every block in them is compiled and run as a test.
+//! The user guide: what the library does and how to use it, chapter by chapter.
+//!
+//! [`introduction`] comes first, [`pipeline`] explains how a world works, [`coming_from`] is for users of
+//! ncollide, parry and rapier. Every block of code in it is compiled and run as a test.
+//!
+//! This module is part of the documentation alone: a program has no `impinge::guide`.
 
-#[doc = include_str!("../../../README.md")]
+/// A chapter. Its links name the files that it is made of; the first definition of a name holds, so here they
+/// lead to the modules.
+macro_rules! chapter {
+    ($name:ident, $file:literal) => {
+        #[doc = "[composites]: self::composites"]
+        #[doc = "[composites#shapes-that-touch-themselves]: self::composites#shapes-that-touch-themselves"]
+        #[doc = "[composites#surfaces-have-no-inner-edges]: self::composites#surfaces-have-no-inner-edges"]
+        #[doc = "[composites#two-sides-or-one]: self::composites#two-sides-or-one"]
+        #[doc = "[composites#what-closed-surfaces-enclose]: self::composites#what-closed-surfaces-enclose"]
+        #[doc = "[contacts]: self::contacts"]
+        #[doc = "[events]: self::events"]
+        #[doc = "[guarantees]: self::guarantees"]
+        #[doc = "[own-shapes]: self::own_shapes"]
+        #[doc = "[performance]: self::performance"]
+        #[doc = "[queries]: self::queries"]
+        #[doc = "[queries#about-two-shapes-that-move]: self::queries#about-two-shapes-that-move"]
+        #[doc = ""]
+        #[doc = include_str!(concat!("../guide/", $file))]
+        pub mod $name {}
+    };
+}
+
+chapter!(introduction, "introduction.md");
+chapter!(pipeline, "pipeline.md");
+chapter!(shapes, "shapes.md");
+chapter!(composites, "composites.md");
+chapter!(own_shapes, "own-shapes.md");
+chapter!(contacts, "contacts.md");
+chapter!(groups, "groups.md");
+chapter!(events, "events.md");
+chapter!(queries, "queries.md");
+chapter!(performance, "performance.md");
+chapter!(guarantees, "guarantees.md");
+chapter!(coming_from, "coming-from.md");
+
+/// The page of the crate, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
 pub struct Readme;
-#[doc = include_str!("../../../guide/introduction.md")]
-pub struct Introduction;
-#[doc = include_str!("../../../guide/pipeline.md")]
-pub struct Pipeline;
-#[doc = include_str!("../../../guide/shapes.md")]
-pub struct Shapes;
-#[doc = include_str!("../../../guide/composites.md")]
-pub struct Composites;
-#[doc = include_str!("../../../guide/own-shapes.md")]
-pub struct OwnShapes;
-#[doc = include_str!("../../../guide/contacts.md")]
-pub struct Contacts;
-#[doc = include_str!("../../../guide/groups.md")]
-pub struct Groups;
-#[doc = include_str!("../../../guide/events.md")]
-pub struct Events;
-#[doc = include_str!("../../../guide/queries.md")]
-pub struct Queries;
-#[doc = include_str!("../../../guide/performance.md")]
-pub struct Performance;
-#[doc = include_str!("../../../guide/guarantees.md")]
-pub struct Guarantees;
-#[doc = include_str!("../../../guide/coming-from.md")]
-pub struct ComingFrom;

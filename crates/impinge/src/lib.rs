@@ -26,6 +26,8 @@
 //!
 //! # Where to begin
 //!
+//! * The guide explains it all, chapter by chapter, with programs; users of ncollide, parry and rapier
+//!   find there what is called what. It is the module [`guide`] of this documentation.
 //! * [`dim2`] and [`dim3`] hold the names to type: everything with the dimension filled in. The
 //!   modules beside them hold the same things for every dimension `D`; write code against those only
 //!   where it shall serve both.
@@ -64,8 +66,8 @@ pub(crate) mod convex;
 pub mod dim2;
 pub mod dim3;
 pub(crate) mod generation;
-#[cfg(doctest)]
-mod guide;
+#[cfg(doc)]
+pub mod guide;
 pub mod math;
 pub(crate) mod memory;
 pub mod narrow_phase;

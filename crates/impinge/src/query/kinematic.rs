@@ -63,16 +63,15 @@ enum NormalRule<N: Real, const D: usize> {
 /// let mut world = CollisionWorld::<f64, ()>::new(0.02);
 /// let square = ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0)));
 /// let (groups, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
-/// let [a, b] = [0.0, 1.75].map(|y| {
-///     world.add(Isometry::translation(0.0, y), square.clone(), groups, contacts, ())
-/// });
+/// for (x, y) in [(0.0, 0.0), (0.5, 1.75)] {
+///     world.add(Isometry::translation(x, y), square.clone(), groups, contacts, ());
+/// }
 /// world.update();
 ///
 /// let (_, _, manifold) = world.contact_manifolds().next().expect("they overlap");
 /// let kinematic = manifold.contacts()[0].kinematic;
-/// let moved = kinematic.contact(&Isometry::identity(), &Isometry::translation(0.125, 1.5));
+/// let moved = kinematic.contact(&Isometry::identity(), &Isometry::translation(0.625, 1.5));
 /// assert_eq!(moved.depth, 0.5, "without a new query");
-/// # assert!(world.contains(a) && world.contains(b));
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct ContactKinematic<N: Real, const D: usize> {

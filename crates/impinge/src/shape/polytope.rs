@@ -92,8 +92,9 @@ pub(crate) struct Planes<N: Real, const D: usize> {
 /// use impinge::dim2::math::Point;
 /// use impinge::dim2::shape::ConvexPolygon;
 ///
-/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point::<f64>::from);
-/// let right = &ConvexPolygon::new(&square).faces()[1];
+/// let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point::<f64>::from);
+/// let square = ConvexPolygon::new(&corners);
+/// let right = &square.faces()[1];
 /// assert_eq!((right.normal.x, right.offset), (1.0, 2.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
