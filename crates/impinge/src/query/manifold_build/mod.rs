@@ -199,10 +199,28 @@ fn choose<N: Real, const D: usize>(
     out: &mut RawManifold<N, D>,
 ) {
     names::inherit(&out.points, candidates);
-    let deepest = deepest(candidates, distance + tolerance);
-    candidates[deepest].distance = distance;
-    let chosen = reduce::chosen(candidates, deepest, limit.max(1), tolerance);
+    let level = distance + tolerance;
+    let chosen = chosen(candidates, (level, tolerance), limit.max(1));
+    let deepest = deepest_of(chosen.len(), level, |at| {
+        let candidate = &candidates[chosen[at]];
+        (candidate.kept_id.is_some(), candidate.distance)
+    });
+    candidates[chosen[deepest]].distance = distance;
     names::settle(candidates, &chosen, out);
+}
+
+/// The indices of at most `limit` candidates, one with a distance of at most `level` or the smallest among them.
+#[inline]
+fn chosen<N: Real, const D: usize>(
+    candidates: &[Candidate<N, D>],
+    (level, tolerance): (N, N),
+    limit: usize,
+) -> reduce::Indices {
+    if candidates.len() <= limit {
+        return (0..candidates.len()).collect();
+    }
+    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.kept_id.is_some()));
+    reduce::chosen(&mut reduce::projected(seen, level), limit, tolerance)
 }
 
 /// [`choose`] for a fused algorithm, whose candidates are not yet held against the separation's

@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use super::patch::{
     Kept, Merging, Patch, PatchPoint, Piece, are_level, blank, by_depth, merge, merge_one,
 };
-use super::reduce::{ALMOST, NEW_POINT_WEIGHT};
+use super::reduce::{Indices, a_deepest, chosen, projected};
 use super::{deepest_of, tangents2};
 use crate::math::{Real, Vector};
 use crate::query::{PairIds, RawPoint};
@@ -207,16 +207,17 @@ impl<N: Real> Row<'_, N> {
         let count = self.without_copies(&mut members[..count]);
         let lowest = self.merging.points[lead.deepest].distance;
         let level = lowest + self.merging.tolerance;
-        let (outline, count) = self.outline(&members[..count], level);
-        let deepest = deepest_of(count, level, |index| {
-            (self.kept[outline[index].point].is_some(), self.distance(&outline[index]))
+        let members = &members[..count];
+        let chosen = self.chosen(members, level);
+        let deepest = deepest_of(chosen.len(), level, |at| {
+            let member = &members[chosen[at]];
+            (self.kept[member.point].is_some(), self.distance(member))
         });
-        let (chosen, count) = self.chosen(&outline[..count], deepest);
-        for &index in &chosen[..count] {
-            let Member { piece, point, .. } = outline[index];
+        for (place, &index) in chosen.iter().enumerate() {
+            let Member { piece, point, .. } = members[index];
             let id = self.kept[point].unwrap_or_else(|| ids.next());
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
-            if index == deepest {
+            if place == deepest {
                 raw.distance = lowest;
             }
             out.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
@@ -298,42 +299,24 @@ impl<N: Real> Row<'_, N> {
         lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     }
 
-    /// The first and the last point; and the deepest, if none of these is at most `level`.
-    fn outline(&self, members: &[Member<N>], level: N) -> ([Member<N>; 3], usize) {
-        let last = members[members.len() - 1];
-        let mut outline = [members[0], last, last];
-        let mut count = members.len().min(2);
-        if !outline[..count].iter().any(|member| self.distance(member) <= level) {
-            let deeper = |best: Member<N>, next: &Member<N>| {
-                if self.distance(next) < self.distance(&best) { *next } else { best }
-            };
-            outline[count] = members[1..].iter().fold(members[0], deeper);
-            count += 1;
-        }
-        (outline, count)
-    }
-
-    /// At most as many points of the outline as are asked for, in the order of their numbers, new ones
-    /// last: all, or the deepest and the one that spans more, old ones before new ones.
-    fn chosen(&self, outline: &[Member<N>], deepest: usize) -> ([usize; 2], usize) {
+    /// The indices of at most as many members as are asked for, one of the deepest among them: of the two ends
+    /// and, if neither is as deep, of a deepest one.
+    fn chosen(&self, members: &[Member<N>], level: N) -> Indices {
         let limit = self.merging.request.max_points.clamp(1, 2);
-        if outline.len() <= limit {
-            return ([0, 1], outline.len());
+        let last = members.len() - 1;
+        if last < limit {
+            return (0..=last).collect();
         }
-        let mut best = (deepest, N::ZERO);
-        let depth = |index: &usize| self.distance(&outline[*index]).as_f64();
-        let mut others: SmallVec<[usize; 3]> = (0..outline.len()).collect();
-        others.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-        for index in others.into_iter().filter(|index| limit > 1 && *index != deepest) {
-            let distance = (outline[index].flat - outline[deepest].flat).norm();
-            let gain = if distance > self.merging.tolerance { distance } else { N::ZERO };
-            let is_new = self.kept[outline[index].point].is_none();
-            let gain = if is_new { gain * N::lit(NEW_POINT_WEIGHT) } else { gain };
-            if gain > best.1 * N::lit(ALMOST) {
-                best = (index, gain);
-            }
-        }
-        ([deepest, best.0], if best.0 == deepest { 1 } else { 2 })
+        let seen = members
+            .iter()
+            .map(|member| (member.flat, self.distance(member), self.kept[member.point].is_some()));
+        let mut points = projected(seen, level);
+        let deepest = a_deepest(&points);
+        let is_inner = !(points[0].is_deepest || points[last].is_deepest);
+        points.retain(|point| {
+            point.index == 0 || point.index == last || is_inner && point.index == deepest
+        });
+        chosen(&mut points, limit, self.merging.tolerance)
     }
 }
 

@@ -6,10 +6,9 @@
 use smallvec::SmallVec;
 
 use super::super::{PairIds, RawPoint};
-use super::frame::Candidate;
 use super::patch::{Kept, Merging, PatchPoint, ordering};
-use super::reduce;
-use crate::math::{Real, Space, Vector, cross2};
+use super::reduce::{self, Indices};
+use crate::math::{Real, Space, Vector};
 
 /// So many points need no memory for their outline but that of the function.
 const FEW: usize = 16;
@@ -64,41 +63,40 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let limit = if is_line { most.min(2) } else { most };
         let lowest = self.merging.points[deepest].distance;
         let level = lowest + self.merging.tolerance;
-        // Two points are their own outline.
-        if count <= 2 && members.iter().any(|member| self.distance(member) <= level) {
-            return self.points(members, &[0, 1][..count], (lowest, limit), (out, ids));
-        }
-        let (mut few, mut many) = ([0; 2 * FEW + 2], Vec::new());
-        let space: &mut [u32] = if count <= FEW {
-            &mut few
-        } else {
-            many.resize(2 * count + 2, 0);
-            &mut many
-        };
-        let length = self.outline(members, level, space);
-        self.points(members, &space[..length], (lowest, limit), (out, ids));
+        let chosen = self.chosen(members, level, limit);
+        self.points(members, &chosen, lowest, (out, ids));
     }
 
-    /// Appends the points chosen of an outline, in the order of their numbers; one of them has the distance of
-    /// the deepest.
+    /// The indices of at most `limit` members, one of the deepest among them.
+    fn chosen(&self, members: &[Member<N>], level: N, limit: usize) -> Indices {
+        // Two points are their own outline.
+        if members.len() <= 2 && members.len() <= limit {
+            return (0..members.len()).collect();
+        }
+        let seen = members
+            .iter()
+            .map(|member| (member.flat, self.distance(member), self.kept[member.point].is_some()));
+        reduce::spanning(&mut reduce::projected(seen, level), limit, self.merging.tolerance)
+    }
+
+    /// Appends the chosen points in the order of their numbers; one of them has the distance of the deepest.
     fn points(
         &self,
         members: &[Member<N>],
-        outline: &[u32],
-        (lowest, limit): (N, usize),
+        chosen: &[usize],
+        lowest: N,
         (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
     ) {
-        let member = |index: usize| &members[outline[index] as usize];
         let level = lowest + self.merging.tolerance;
-        let deepest = super::deepest_of(outline.len(), level, |index| {
-            let member = member(index);
+        let deepest = super::deepest_of(chosen.len(), level, |at| {
+            let member = &members[chosen[at]];
             (self.kept[member.point].is_some(), self.distance(member))
         });
-        let mut put = |index: usize| {
-            let Member { piece, point, .. } = *member(index);
+        for (place, &index) in chosen.iter().enumerate() {
+            let Member { piece, point, .. } = members[index];
             let id = self.kept[point].unwrap_or_else(|| ids.next());
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
-            if index == deepest {
+            if place == deepest {
                 raw.distance = lowest;
             }
             let mut at = out.len();
@@ -106,13 +104,6 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             while at > 0 && out[at - 1].raw.id > id {
                 out.swap(at - 1, at);
                 at -= 1;
-            }
-        };
-        if outline.len() <= limit {
-            (0..outline.len()).for_each(put);
-        } else {
-            for index in self.chosen(members, outline, (deepest, limit)) {
-                put(index);
             }
         }
     }
@@ -148,24 +139,6 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
                 }
             }
         }
-    }
-
-    /// The indices of the points on the outline of all, and of the deepest, if no point of the outline
-    /// is at most `level`; answers how many there are. There must be room for twice as many and two.
-    fn outline(&self, members: &[Member<N>], level: N, out: &mut [u32]) -> usize {
-        let length = chain(members, 0..members.len(), (0, &mut *out));
-        // Each chain ends where the other starts.
-        let start = (length - 1).max(1);
-        let end = chain(members, (0..members.len()).rev(), (start, &mut *out));
-        let length = thin(members, (end - 1, &mut *out), self.merging.tolerance);
-        let depth = |index: usize| self.distance(&members[index]);
-        if out[..length].iter().any(|&index| depth(index as usize) <= level) {
-            return length;
-        }
-        let deeper = |best, next| if depth(next) < depth(best) { next } else { best };
-        let deepest = (0..members.len()).reduce(deeper);
-        out[length] = count32(deepest.unwrap_or(0));
-        length + 1
     }
 
     /// Sorts the points along the first tangent, then along the second; of points at one place, which
@@ -208,23 +181,6 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let lower = self.distance(old) - self.distance(new);
         lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     }
-
-    /// The indices of at most `limit` points of the outline, which has more.
-    fn chosen(
-        &self,
-        members: &[Member<N>],
-        outline: &[u32],
-        (deepest, limit): (usize, usize),
-    ) -> SmallVec<[usize; 8]> {
-        let mut candidates: SmallVec<[Candidate<N, D>; 16]> = SmallVec::new();
-        for &index in outline {
-            let Member { flat, point, .. } = members[index as usize];
-            let RawPoint { point1, distance, feature1, feature2, .. } = self.merging.points[point];
-            let (features, kept_id) = ([feature1, feature2], self.kept[point]);
-            candidates.push(Candidate { point1, distance, flat, features, kept_id });
-        }
-        reduce::chosen(&candidates, deepest, limit, self.merging.tolerance)
-    }
 }
 
 /// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.
@@ -256,65 +212,4 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
 fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);
     ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
-}
-
-fn count32(index: usize) -> u32 {
-    u32::try_from(index).expect("32 bits number the points of a patch")
-}
-
-/// One side of the hull of sorted points, from the first to the last: every corner turns left. Written
-/// from a place on; answers where it ends.
-///
-/// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
-fn chain<N: Real>(
-    members: &[Member<N>],
-    order: impl Iterator<Item = usize>,
-    (start, out): (usize, &mut [u32]),
-) -> usize {
-    let mut end = start;
-    for member in order {
-        let member = count32(member);
-        while end >= start + 2 {
-            // Positive is left of the whole: inside.
-            if beside(members, [out[end - 2], out[end - 1], member]) < N::ZERO {
-                break;
-            }
-            end -= 1;
-        }
-        out[end] = member;
-        end += 1;
-    }
-    end
-}
-
-/// Twice the area of a triangle; positive if the middle one lies left of the way from the first to the
-/// last.
-#[inline]
-fn beside<N: Real>(members: &[Member<N>], corners: [u32; 3]) -> N {
-    let [from, at, to] = corners.map(|corner| members[corner as usize].flat);
-    cross2(&(to - from), &(at - from))
-}
-
-/// Leaves out the corners of a convex polygon that lie, but for rounding, on the line between those
-/// next to them; answers how many are left.
-fn thin<N: Real>(
-    members: &[Member<N>],
-    (mut count, outline): (usize, &mut [u32]),
-    tolerance: N,
-) -> usize {
-    // The corners before `left` stay, those from `at` on are still to be looked at.
-    let (end, mut left) = (count, 0);
-    for at in 0..end {
-        let before = outline[if left == 0 { end - 1 } else { left - 1 }];
-        let after = outline[if at + 1 == end { 0 } else { at + 1 }];
-        let way = members[after as usize].flat - members[before as usize].flat;
-        let area = beside(members, [before, outline[at], after]);
-        if count > 2 && area.abs() <= tolerance * way.norm() {
-            count -= 1;
-        } else {
-            outline[left] = outline[at];
-            left += 1;
-        }
-    }
-    count
 }

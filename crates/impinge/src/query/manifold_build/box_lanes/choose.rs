@@ -1,11 +1,9 @@
 //! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
 
-use smallvec::SmallVec;
-
 use super::LANES;
 use super::admit::Slots;
-use crate::math::{Real, Vector, cross2};
-use crate::query::manifold_build::reduce::{ALMOST, NEW_POINT_WEIGHT};
+use crate::math::{Real, Vector};
+use crate::query::manifold_build::reduce::{Projected, Projections, chosen};
 use crate::query::{RawManifold, RawPoint};
 use crate::shape::FeatureId;
 
@@ -82,37 +80,6 @@ impl Kept {
     }
 }
 
-/// Some slots in order.
-#[derive(Clone, Copy)]
-struct Chosen {
-    len: usize,
-    slots: [u8; SLOTS],
-    /// The same by bits.
-    mask: u32,
-}
-
-impl Chosen {
-    #[inline(always)]
-    fn push(&mut self, slot: usize) {
-        self.slots[self.len] = slot.to_le_bytes()[0];
-        self.mask |= 1 << slot;
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    fn iter(&self) -> impl Iterator<Item = usize> + Clone + '_ {
-        self.slots[..self.len].iter().map(|&slot| usize::from(slot))
-    }
-
-    #[inline(always)]
-    fn insert(&mut self, place: usize, slot: usize) {
-        self.slots.copy_within(place..self.len, place + 1);
-        self.slots[place] = slot.to_le_bytes()[0];
-        self.mask |= 1 << slot;
-        self.len += 1;
-    }
-}
-
 /// The numbers of the bits that are set, upwards.
 #[inline(always)]
 const fn ones(bits: u32) -> Ones {
@@ -143,18 +110,13 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let kept = Kept::of(&raw.points, naming, self.valid);
-        let deepest = self.deepest(kept.slots);
-        if self.valid.count_ones() as usize > limit {
-            let chosen = self.outline(deepest, limit, kept.slots);
-            if kept.is_still && kept.slots == chosen.mask {
-                self.put_all(deepest, raw);
-            } else {
-                self.replace(chosen.iter(), deepest, (&kept, naming), raw);
-            }
-        } else if kept.is_still && kept.slots == self.valid {
+        let is_full = self.valid.count_ones() as usize <= limit;
+        let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
+        let deepest = self.deepest(slots, kept.slots);
+        if kept.is_still && kept.slots == slots {
             self.put_all(deepest, raw);
         } else {
-            self.replace(ones(self.valid), deepest, (&kept, naming), raw);
+            self.replace(slots, deepest, (&kept, naming), raw);
         }
     }
 
@@ -166,18 +128,18 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
         }
     }
 
-    /// Puts the points of some slots, in order of their numbers, in the place of those there are.
+    /// Puts the points of some slots, by bits, in the place of those there are.
     #[inline(always)]
     fn replace(
         &self,
-        chosen: impl Iterator<Item = usize> + Clone,
+        slots: u32,
         deepest: usize,
         (kept, naming): (&Kept, &impl Naming),
         raw: &mut RawManifold<N, D>,
     ) {
-        raw.points.resize(chosen.clone().count(), RawPoint::default());
+        raw.points.resize(slots.count_ones() as usize, RawPoint::default());
         let (mut last, mut is_sorted) = (0, true);
-        for (slot, point) in chosen.zip(&mut raw.points) {
+        for (slot, point) in ones(slots).zip(&mut raw.points) {
             point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
             is_sorted &= last <= point.id;
             last = point.id;
@@ -206,18 +168,19 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
     }
 
     #[inline(always)]
-    fn flat(&self, slot: usize) -> [N; 2] {
+    fn flat(&self, slot: usize) -> Vector<N, 2> {
         let [x, y] = &self.slots.flat;
-        [x[slot][self.lane & (LANES - 1)], y[slot][self.lane & (LANES - 1)]]
+        let lane = self.lane & (LANES - 1);
+        Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
     }
 
-    /// The candidate that stands for the witness: of those whose distance is the smallest but for
+    /// Of some slots the one that stands for the witness: of those whose distance is the smallest but for
     /// rounding one that the previous manifold held, then the deepest.
     #[inline(always)]
-    fn deepest(&self, kept: u32) -> usize {
-        let old = self.level & kept;
-        let level = if self.level == 0 { self.valid } else { self.level };
-        self.lowest(if old == 0 { level } else { old })
+    fn deepest(&self, slots: u32, kept: u32) -> usize {
+        let level = self.level & slots;
+        let preferred = [level & kept, level, slots];
+        self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
     }
 
     /// The first of some slots with the smallest distance of them.
@@ -235,139 +198,20 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
         lowest
     }
 
-    /// The deepest, then whatever adds most to the outline, as `reduce::chosen` has it.
+    /// At most `limit` slots, by bits, as `reduce::chosen` has them.
     #[inline(always)]
-    fn outline(&self, deepest: usize, limit: usize, kept: u32) -> Chosen {
-        let mut outline = Outline::new(deepest, self.flat(deepest), self.tolerance);
-        let rest = self.by_depth(self.valid & !(1 << deepest), kept);
-        let mut left = (1_u32 << rest.len) - 1;
-        while outline.chosen.len < limit {
-            let Some((index, place)) = outline.best_addition(&rest, left) else { break };
-            outline.insert(place, usize::from(rest.slots[index]), rest.flat[index]);
-            left &= !(1 << index);
+    fn chosen(&self, limit: usize, kept: u32) -> u32 {
+        let mut level = self.level;
+        if level == 0 {
+            let least = self.distance(self.lowest(self.valid));
+            let lowest = ones(self.valid).filter(|&slot| self.distance(slot) <= least);
+            level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
-        outline.chosen
-    }
-
-    /// Slots by distance; of equals the first comes first.
-    #[inline(always)]
-    fn by_depth(&self, slots: u32, kept: u32) -> Rest<N> {
-        let (mut order, mut keys) = (Chosen { len: 0, slots: [0; SLOTS], mask: 0 }, [0_i64; SLOTS]);
-        for slot in ones(slots) {
-            let (key, mut at) = (total(self.distance(slot)), order.len);
-            while at > 0 && keys[at - 1] > key {
-                (keys[at], order.slots[at]) = (keys[at - 1], order.slots[at - 1]);
-                at -= 1;
-            }
-            (keys[at], order.slots[at]) = (key, slot.to_le_bytes()[0]);
-            order.len += 1;
+        let mut points = Projections::new();
+        for slot in ones(self.valid) {
+            let [is_deepest, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
+            points.push(Projected { at: self.flat(slot), index: slot, is_deepest, is_kept });
         }
-        let mut rest = Rest {
-            len: order.len,
-            slots: order.slots,
-            flat: [[N::ZERO; 2]; SLOTS],
-            weights: [N::ONE; SLOTS],
-        };
-        for (index, slot) in order.iter().enumerate() {
-            rest.flat[index] = self.flat(slot);
-            if kept >> slot & 1 == 0 {
-                rest.weights[index] = N::lit(NEW_POINT_WEIGHT);
-            }
-        }
-        rest
+        chosen(&mut points, limit, self.tolerance).iter().fold(0, |slots, slot| slots | 1 << slot)
     }
-}
-
-/// The candidates that an outline may grow by, the deepest first.
-struct Rest<N: Real> {
-    len: usize,
-    slots: [u8; SLOTS],
-    flat: [[N; 2]; SLOTS],
-    /// What their gain counts for.
-    weights: [N; SLOTS],
-}
-
-/// The points chosen so far, counter-clockwise.
-struct Outline<N: Real> {
-    chosen: Chosen,
-    corners: [[N; 2]; SLOTS],
-    tolerance: N,
-}
-
-/// From a corner to the next, and the least area beyond it that is more than rounding errors.
-#[derive(Clone, Copy)]
-struct OutlineSide<N: Real> {
-    from: [N; 2],
-    along: Vector<N, 2>,
-    least: N,
-}
-
-impl<N: Real> Outline<N> {
-    #[inline(always)]
-    fn new(slot: usize, flat: [N; 2], tolerance: N) -> Self {
-        let mut chosen = Chosen { len: 0, slots: [0; SLOTS], mask: 0 };
-        chosen.push(slot);
-        Self { chosen, corners: [flat; SLOTS], tolerance }
-    }
-
-    #[inline(always)]
-    fn insert(&mut self, place: usize, slot: usize, flat: [N; 2]) {
-        self.corners.copy_within(place..self.chosen.len, place + 1);
-        self.corners[place] = flat;
-        self.chosen.insert(place, slot);
-    }
-
-    /// The candidate that adds most and its place in the outline; `None` if none adds more than
-    /// rounding errors.
-    #[inline(always)]
-    fn best_addition(&self, rest: &Rest<N>, left: u32) -> Option<(usize, usize)> {
-        let mut sides: SmallVec<[OutlineSide<N>; 8]> = SmallVec::new();
-        if self.chosen.len > 1 {
-            sides.extend((0..self.chosen.len).map(|at| self.side(at)));
-        }
-        let (mut best, mut best_gain) = (None, N::ZERO);
-        for index in ones(left) {
-            let flat = Vector::<N, 2>::from(rest.flat[index]);
-            let (gain, place) = if sides.is_empty() {
-                let distance = (flat - Vector::<N, 2>::from(self.corners[0])).norm();
-                (if distance > self.tolerance { distance } else { N::ZERO }, 1)
-            } else {
-                beyond(&sides, &flat)
-            };
-            let gain = gain * rest.weights[index];
-            if gain > best_gain * N::lit(ALMOST) {
-                (best, best_gain) = (Some((index, place)), gain);
-            }
-        }
-        best
-    }
-
-    #[inline(always)]
-    fn side(&self, at: usize) -> OutlineSide<N> {
-        let next = if at + 1 < self.chosen.len { at + 1 } else { 0 };
-        let from = self.corners[at];
-        let along = Vector::<N, 2>::from(self.corners[next]) - Vector::<N, 2>::from(from);
-        OutlineSide { from, along, least: self.tolerance * along.norm() }
-    }
-}
-
-/// The largest area (doubled) that a place spans with a side of the outline from outside, and its
-/// place in the outline.
-#[inline(always)]
-fn beyond<N: Real>(sides: &[OutlineSide<N>], flat: &Vector<N, 2>) -> (N, usize) {
-    let (mut gain, mut best) = (N::ZERO, 0);
-    for (at, side) in sides.iter().enumerate() {
-        let area = -cross2(&side.along, &(flat - Vector::<N, 2>::from(side.from)));
-        if area > gain && area > side.least {
-            (gain, best) = (area, at + 1);
-        }
-    }
-    (gain, best)
-}
-
-/// A number that is ordered as `total_cmp` orders the scalar.
-#[inline(always)]
-fn total<N: Real>(value: N) -> i64 {
-    let bits = value.as_f64().to_bits().cast_signed();
-    if bits < 0 { bits ^ i64::MAX } else { bits }
 }
