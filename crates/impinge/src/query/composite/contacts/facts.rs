@@ -74,7 +74,7 @@ impl<N: Real, const D: usize> Finding<N, D> {
         self.piece.parts
     }
 
-    /// It holds, but was left out when it was found, so that its points are missing.
+    /// It holds, but what it said along a face's normal does not: its nearest points are still to be found.
     pub(super) fn is_owing(&self) -> bool {
         self.standing != Standing::Left && self.piece.points.is_empty()
     }

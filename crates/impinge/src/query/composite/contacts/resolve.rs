@@ -165,7 +165,11 @@ fn keep_one<N: Real, const D: usize>(findings: &mut [Finding<N, D>], notes: &mut
             }
             findings[index].lowest = least;
         }
-        _ => findings[nearest].standing = Standing::Own,
+        _ => {
+            // Points that it has are of a face's normal, and farther.
+            findings[nearest].standing = Standing::Own;
+            findings[nearest].piece.points = 0..0;
+        }
     }
 }
 

@@ -1,0 +1,148 @@
+//! Found by fuzzing: what turning may bring near never hides what is near now. A world has a contact of a
+//! solid and a surface where `contact` has one, whatever its angular prediction.
+
+use impinge::math::na::{Quaternion, Translation3, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::query::contact;
+use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
+use impinge::shape::{Polyline, ShapeHandle, TriMesh};
+use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_reference::random::Random;
+
+fn point<N: Real, const D: usize>(random: &mut Random, limit: u32) -> Point<N, D> {
+    Point::from(Vector::<N, D>::from_fn(|_, _| N::lit(random.grid(limit, 3))))
+}
+
+/// A few triangles between a few corners, of which some lie upon others the other way round.
+fn mesh<N: Space<3>>(random: &mut Random) -> ShapeHandle<N, 3> {
+    let corners: Vec<Point<N, 3>> = (0..6).map(|_| point(random, 4)).collect();
+    let mut triangles = Vec::new();
+    for _ in 0..4 {
+        let [a, b, c] = [(); 3].map(|()| u32::try_from(random.below(6)).expect("small"));
+        if a != b && b != c && c != a {
+            triangles.extend([[a, b, c], [c, b, a]].into_iter().take(1 + random.below(2)));
+        }
+    }
+    triangles.push([0, 1, 2]);
+    ShapeHandle::new(TriMesh::new(corners, triangles))
+}
+
+fn solid3<N: Space<3>>(random: &mut Random) -> ShapeHandle<N, 3> {
+    let [a, b, c] = [(); 3].map(|()| point::<N, 3>(random, 2));
+    let sizes = [(); 3].map(|()| N::lit(random.single(0.1, 2.0)));
+    match random.below(7) {
+        0 => ShapeHandle::new(Segment::new(a, b)),
+        1 => ShapeHandle::new(Capsule::new(sizes[0], sizes[1] * N::HALF)),
+        2 => ShapeHandle::new(Cuboid::new(Vector::from(sizes))),
+        3 => ShapeHandle::new(Triangle::new(a, b, c)),
+        4 => ShapeHandle::new(Ball::new(sizes[0])),
+        5 => ShapeHandle::new(Cylinder::new(sizes[0], sizes[1])),
+        _ => {
+            let shift = Vector::<N, 3>::repeat(N::lit(0.3));
+            ShapeHandle::new(ConvexHull::from_points(&[a, b, c, a + shift, Point::origin()]))
+        }
+    }
+}
+
+fn place3<N: Real>(random: &mut Random) -> Isometry3<N> {
+    let [i, j, k, w] = random.quaternion().map(N::lit);
+    let at = point::<N, 3>(random, 4).coords;
+    let turn = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
+    Isometry3::from_parts(Translation3::from(at), turn)
+}
+
+fn line<N: Space<2>>(random: &mut Random) -> ShapeHandle<N, 2> {
+    let ends: Vec<Point<N, 2>> = (0..6).map(|_| point(random, 4)).collect();
+    ShapeHandle::new(Polyline::open(ends))
+}
+
+fn solid2<N: Space<2>>(random: &mut Random) -> ShapeHandle<N, 2> {
+    let [a, b, c] = [(); 3].map(|()| point::<N, 2>(random, 2));
+    let sizes = [(); 2].map(|()| N::lit(random.single(0.1, 2.0)));
+    match random.below(5) {
+        0 => ShapeHandle::new(Segment::new(a, b)),
+        1 => ShapeHandle::new(Capsule::new(sizes[0], sizes[1] * N::HALF)),
+        2 => ShapeHandle::new(Cuboid::new(Vector::from(sizes))),
+        3 => ShapeHandle::new(Triangle::new(a, b, c)),
+        _ => ShapeHandle::new(Ball::new(sizes[0])),
+    }
+}
+
+fn place2<N: Real>(random: &mut Random) -> Isometry2<N> {
+    Isometry2::new(point::<N, 2>(random, 4).coords, N::lit(random.range(-3.0, 3.0)))
+}
+
+/// A solid and where it is.
+type Placed<N, const D: usize> = (<N as Space<D>>::Isometry, ShapeHandle<N, D>);
+
+/// How many contacts a world has of two shapes with this prediction.
+fn contacts_of<N: Space<D>, const D: usize>(
+    pair: [&Placed<N, D>; 2],
+    prediction: N,
+    angle: f64,
+) -> usize {
+    let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.02));
+    let query = GeometricQueryType::Contacts(prediction * N::HALF, N::lit(angle));
+    let [a, b] = pair
+        .map(|(pose, shape)| world.add(*pose, shape.clone(), CollisionGroups::new(), query, ()));
+    world.update();
+    world.contact_pair(a, b).map_or(0, |pair| pair.num_contacts())
+}
+
+/// Asks many pairs that are apart, with predictions that are a little longer than the distance and a little
+/// shorter.
+fn ask_all<N: Space<D>, const D: usize>(
+    seed: u64,
+    make: impl Fn(&mut Random) -> [Placed<N, D>; 2],
+    distance: impl Fn(&Placed<N, D>, &Placed<N, D>) -> Option<N>,
+) {
+    let (mut random, mut count) = (Random::new(seed), 0);
+    for round in 0..600 {
+        let [solid, surface] = make(&mut random);
+        let Some(distance) = distance(&solid, &surface).filter(|&d| d > N::lit(0.01)) else {
+            continue;
+        };
+        count += 1;
+        for angle in [0.0, 0.1, 1.0, 5.0] {
+            for pair in [[&solid, &surface], [&surface, &solid]] {
+                for (share, is_near) in [(1.02, true), (0.98, false)] {
+                    let found = contacts_of(pair, distance * N::lit(share), angle);
+                    let what = format!("{round}, {angle}, {distance}: {solid:?} {surface:?}");
+                    assert_eq!(found > 0, is_near, "{found} contacts: {what}");
+                }
+            }
+        }
+    }
+    assert!(count > 100, "{count} pairs are apart");
+}
+
+fn in_space<N: Space<3, Isometry = Isometry3<N>>>(seed: u64) {
+    let make =
+        |random: &mut Random| [(place3(random), solid3(random)), (place3(random), mesh(random))];
+    ask_all::<N, 3>(seed, make, |one, two| {
+        let found = contact(&one.0, &*one.1 as &dyn Shape<N, 3>, &two.0, &*two.1, N::lit(20.0));
+        found.map(|found| -found.depth)
+    });
+}
+
+fn in_the_plane<N: Space<2, Isometry = Isometry2<N>>>(seed: u64) {
+    let make =
+        |random: &mut Random| [(place2(random), solid2(random)), (place2(random), line(random))];
+    ask_all::<N, 2>(seed, make, |one, two| {
+        let found = contact(&one.0, &*one.1 as &dyn Shape<N, 2>, &two.0, &*two.1, N::lit(20.0));
+        found.map(|found| -found.depth)
+    });
+}
+
+#[test]
+fn what_is_near_has_a_contact_in_space() {
+    in_space::<f32>(1);
+    in_space::<f64>(2);
+}
+
+#[test]
+fn what_is_near_has_a_contact_in_the_plane() {
+    in_the_plane::<f32>(3);
+    in_the_plane::<f64>(4);
+}
