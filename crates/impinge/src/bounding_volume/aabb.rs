@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{BoundingVolume, Ray};
-use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
+use crate::math::outward::{product_within, sum_above, sum_below};
+use crate::math::{Point, Real, Vector, max, max_component, min};
 
 /// The points between two corners, the faces included.
 ///
@@ -21,8 +22,8 @@ use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb<N: Real, const D: usize> {
-    mins: Point<N, D>,
-    maxs: Point<N, D>,
+    pub(super) mins: Point<N, D>,
+    pub(super) maxs: Point<N, D>,
 }
 
 /// Why two corners make no box. Values are given as `f64`, exactly.
@@ -105,7 +106,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Ok(Self { mins, maxs })
     }
 
-    /// The box around `center` that reaches `half_extents` to both sides along each axis, up to rounding.
+    /// The box around `center` that reaches `half_extents` to both sides along each axis, rounded outwards.
     ///
     /// # Panics
     /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns these.
@@ -118,7 +119,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         }
     }
 
-    /// The box around `center` that reaches `half_extents` to both sides along each axis, up to rounding.
+    /// The box around `center` that reaches `half_extents` to both sides along each axis, rounded outwards.
     ///
     /// # Errors
     /// If a coordinate is NaN or a half extent negative.
@@ -126,12 +127,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         center: Point<N, D>,
         half_extents: Vector<N, D>,
     ) -> Result<Self, AabbError> {
-        Self::try_new(center - half_extents, center + half_extents)
-    }
-
-    /// The box around `center` that reaches `half_extents` along each axis; for trusted numbers.
-    pub(crate) fn around(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
-        Self { mins: center - half_extents, maxs: center + half_extents }
+        let aabb = Self::around(center, half_extents);
+        Self::try_new(aabb.mins, aabb.maxs)
     }
 
     /// The box that is a point; for trusted numbers.
@@ -191,35 +188,6 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Every face is finite.
     pub fn is_bounded(&self) -> bool {
         self.mins.iter().chain(self.maxs.iter()).all(|x| x.is_finite_number())
-    }
-
-    /// The smallest box, in the outer frame, around this box placed at `pose`.
-    ///
-    /// An unbounded axis of the local box makes every outer axis it leans on unbounded.
-    #[must_use]
-    pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
-        if !self.is_bounded() {
-            return self.unbounded_transformed_by(pose);
-        }
-        let reach = pose.rotation.abs() * self.half_extents();
-        Self::around(pose.point(&self.center()), reach)
-    }
-
-    /// Sums the two ends of each axis apart, so that 0 · ∞ never arises.
-    fn unbounded_transformed_by(&self, pose: &Pose<N, D>) -> Self {
-        let (mut mins, mut maxs) = (pose.translation, pose.translation);
-        for row in 0..D {
-            for column in 0..D {
-                let factor = pose.rotation[(row, column)];
-                if factor == N::ZERO {
-                    continue;
-                }
-                let (a, b) = (factor * self.mins[column], factor * self.maxs[column]);
-                mins[row] += min(a, b);
-                maxs[row] += max(a, b);
-            }
-        }
-        Self { mins: Point::from(mins), maxs: Point::from(maxs) }
     }
 
     /// The times at which the ray enters and leaves the box, cut off at `t = 0`; `None` for a miss.
@@ -324,15 +292,25 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     }
 
     fn loosened(&self, margin: N) -> Self {
-        let reach = Vector::<N, D>::repeat(margin);
-        Self { mins: self.mins - reach, maxs: self.maxs + reach }
+        let mut grown = *self;
+        for axis in 0..D {
+            grown.mins[axis] = sum_below(self.mins[axis], -margin);
+            grown.maxs[axis] = sum_above(self.maxs[axis], margin);
+        }
+        grown
     }
 
     fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
-        // What rests goes nowhere, not even in infinite time.
-        let way = velocity.map(|v| if v == N::ZERO { N::ZERO } else { v * max_time });
-        let (back, forth) = (way.map(|x| min(x, N::ZERO)), way.map(|x| max(x, N::ZERO)));
-        Self { mins: self.mins + back, maxs: self.maxs + forth }
+        let mut swept = *self;
+        for axis in 0..D {
+            // What rests goes nowhere, not even in infinite time.
+            if velocity[axis] != N::ZERO {
+                let [back, forth] = product_within(velocity[axis], max_time);
+                swept.mins[axis] = sum_below(self.mins[axis], min(back, N::ZERO));
+                swept.maxs[axis] = sum_above(self.maxs[axis], max(forth, N::ZERO));
+            }
+        }
+        swept
     }
 
     fn contains_point(&self, point: &Point<N, D>) -> bool {
@@ -348,7 +326,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
 mod tests {
     use super::super::BoundingVolume;
     use super::*;
-    use crate::math::Isometry2;
+    use crate::math::{Isometry2, Pose};
 
     type P = Point<f64, 2>;
 

@@ -1,6 +1,7 @@
 //! Simple volumes that enclose shapes: what the broad phase works on.
 
 mod aabb;
+mod placed;
 mod ray;
 mod sphere;
 
@@ -11,6 +12,11 @@ pub use sphere::{BoundingSphere, BoundingSphereError};
 use crate::math::Real;
 
 /// A volume that a broad phase can keep in place of an object.
+///
+/// What is computed from volumes is rounded outwards: [`merged`](Self::merged) holds both to the last bit,
+/// [`loosened`](Self::loosened) and [`swept`](Self::swept) hold what they are around. Boxes whose exact corners are
+/// numbers of the scalar are exact, but for [`swept`](Self::swept) by a product that is not; spheres are larger by
+/// some units in the last place.
 ///
 /// All tests are closed: volumes that only touch intersect.
 ///

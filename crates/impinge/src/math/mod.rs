@@ -8,9 +8,11 @@
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.
 
 pub(crate) mod arrays;
+pub(crate) mod exact;
 pub(crate) mod lanes;
 #[cfg(test)]
 pub(crate) mod noise;
+pub(crate) mod outward;
 mod pose;
 mod real;
 pub(crate) mod simd;

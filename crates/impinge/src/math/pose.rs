@@ -126,6 +126,25 @@ impl<N: Real, const D: usize> Pose<N, D> {
         self.rotation.tr_mul(outer)
     }
 
+    /// How far along each outer axis a box about the origin reaches that is turned.
+    #[inline]
+    pub(crate) fn turned_reach(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
+        let mut reach = Vector::<N, D>::zeros();
+        for row in 0..D {
+            for column in 0..D {
+                reach[row] += self.rotation[(row, column)].abs() * half_extents[column];
+            }
+        }
+        reach
+    }
+
+    /// It takes axes to axes: every coordinate of a turned point is one of the point's, or its negative, exactly.
+    #[inline]
+    #[must_use]
+    pub(crate) fn is_aligned(&self) -> bool {
+        self.rotation.as_slice().iter().all(|&x| x == N::ZERO || x.abs() == N::ONE)
+    }
+
     /// All components are equal, as `==` says: faster, since the optimiser sees plain arrays.
     #[inline]
     #[must_use]

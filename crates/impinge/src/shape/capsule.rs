@@ -2,11 +2,10 @@
 
 use super::error::{finite, or_panic, size};
 use super::scale::Scale;
-use super::segment::box_of;
 use super::{
     Feature, Geometry, Kind, ScaleError, Segment, Shape, ShapeError, ShapeHandle, SupportMap,
 };
-use crate::bounding_volume::Aabb;
+use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
 
 /// The points within `radius` of a segment.
@@ -110,11 +109,11 @@ impl<N: Real, const D: usize> Shape<N, D> for Capsule<N, D> {
     }
 
     fn local_aabb(&self) -> Aabb<N, D> {
-        box_of(self.segment.a(), self.segment.b(), self.radius)
+        self.aabb(&Pose::identity())
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        box_of(&pose.point(self.segment.a()), &pose.point(self.segment.b()), self.radius)
+        self.segment.aabb(pose).loosened(self.radius)
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -222,14 +222,13 @@ fn sphere_around<N: Space<D>, const D: usize>(
     if !aabb.is_bounded() {
         return BoundingSphere::unbounded();
     }
-    let center = aabb.center();
+    let around_box = BoundingSphere::around_box(aabb);
+    let center = *around_box.center();
     let reach = children.iter().zip(poses).map(|((_, shape), pose)| {
-        let sphere = shape.local_bounding_sphere().transformed_by(pose);
-        length_of(&(sphere.center() - center)) + sphere.radius()
+        shape.local_bounding_sphere().transformed_by(pose).farthest_from(&center)
     });
-    let radius = min(reach.fold(N::ZERO, max), length_of(&aabb.half_extents()));
-    let rounding = N::ONE + N::lit(8.0) * N::EPSILON;
-    BoundingSphere::try_new(center, radius * rounding).unwrap_or(BoundingSphere::unbounded())
+    let radius = min(reach.fold(N::ZERO, max), around_box.radius());
+    BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
 }
 
 fn surface_of<N: Space<D>, const D: usize>(
@@ -327,12 +326,20 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
             return self.local_aabb().transformed_by(pose);
         }
         let placed = self.children.iter().zip(&self.poses);
+        // A child is placed twice, which rounds twice: its place by the first pose is turned by the second.
+        let turn = Pose { translation: Vector::<N, D>::zeros(), ..*pose };
         let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
             // One level down is enough: compounds may be nested, and share what they are made of.
-            Some(_) => shape.local_aabb().transformed_by(&pose.compose(own)),
-            None => boxed(&**shape, &pose.compose(own)),
+            Some(_) => shape.local_aabb().transformed_by(&turn.compose(own)),
+            None => boxed(&**shape, &turn.compose(own)),
         });
-        boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded)
+        let turned = boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded);
+        let arms = self.poses.iter().map(|own| length_of(&own.translation)).fold(N::ZERO, max);
+        let (low, high) = (turned.mins().coords, turned.maxs().coords);
+        let finite = |x: N| if x.is_finite_number() { x.abs() } else { N::ZERO };
+        let extent = low.zip_map(&high, |low, high| max(finite(low), finite(high)));
+        // A child reaches from its own origin to that of the compound, and as far as the box.
+        Aabb::of_turned(low, high, N::TWO * arms + length_of(&extent), pose)
     }
 
     /// Around the middle of the box; no larger than the box asks for.

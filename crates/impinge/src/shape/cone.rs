@@ -176,11 +176,9 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let (apex, disk) = (axis * self.half_height, self.base().reach(&axis));
-        let mins = pose.translation + apex.zip_map(&(-apex - disk), min);
-        let maxs = pose.translation + apex.zip_map(&(-apex + disk), max);
-        // Where the numbers end there may be everything.
-        Aabb::try_new(Point::from(mins), Point::from(maxs)).unwrap_or_else(|_| Aabb::unbounded())
+        let (apex, disk) = (axis * self.half_height, self.base().reach(&pose.rotation));
+        let (low, high) = (apex.zip_map(&(-apex - disk), min), apex.zip_map(&(-apex + disk), max));
+        Aabb::of_turned(low, high, self.reach(), pose)
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

@@ -9,7 +9,7 @@ use super::{
     ShapeHandle, Shown, SupportMap,
 };
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector};
+use crate::math::{Point, Pose, Real, Vector};
 
 /// The points whose coordinate on each axis is within the half extent of zero.
 ///
@@ -489,6 +489,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
 
     fn local_aabb(&self) -> Aabb<N, D> {
         Aabb::around(Point::origin(), self.half_extents)
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        Aabb::around_turned(pose, pose.turned_reach(&self.half_extents))
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

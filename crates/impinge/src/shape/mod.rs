@@ -152,9 +152,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 
     /// A sphere around the solid in its own frame.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        let aabb = self.local_aabb();
-        let radius = segment::length_of(&aabb.half_extents());
-        BoundingSphere::try_new(aabb.center(), radius).unwrap_or(BoundingSphere::unbounded())
+        BoundingSphere::around_box(&self.local_aabb())
     }
 }
 

@@ -41,7 +41,8 @@ impl<N: Real, const D: usize> Plane<N, D> {
 
 impl<N: Real, const D: usize> Plane<N, D> {
     /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
-    /// `point`: bounded on one side if the normal lies exactly along an axis and the point is a number, else unbounded.
+    /// `point`: bounded on one side if the normal lies along an axis and the point is a number, else unbounded. A
+    /// normal that rounding alone has brought to an axis must not be given.
     fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
         let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
         for axis in 0..D {
@@ -66,7 +67,13 @@ impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        Self::aabb_of(&pose.vector(&self.normal), &pose.translation)
+        // The product with an axis is a column of the rotation, exactly.
+        let is_axis = self.normal.iter().filter(|&&x| x != N::ZERO).count() == 1;
+        if is_axis || pose.is_aligned() {
+            Self::aabb_of(&pose.vector(&self.normal), &pose.translation)
+        } else {
+            Aabb::unbounded()
+        }
     }
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {

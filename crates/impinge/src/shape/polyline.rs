@@ -4,7 +4,6 @@ use super::joints::Joints;
 use super::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
 };
-use super::segment::box_of;
 use super::{Segment, polyline_parts};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, Vector};
@@ -296,7 +295,8 @@ fn boxes_of<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     segments: &[[u32; 2]],
 ) -> Vec<Aabb<N, D>> {
-    let one = |&[a, b]: &[u32; 2]| box_of(&vertices[a as usize], &vertices[b as usize], N::ZERO);
+    let ends = |ends: &[u32; 2]| ends.map(|end| vertices[end as usize]);
+    let one = |part: &[u32; 2]| Aabb::from_points(&ends(part)).unwrap_or_else(Aabb::unbounded);
     segments.iter().map(one).collect()
 }
 

@@ -1,7 +1,8 @@
 //! Disks across the y axis: the caps of cylinders and cones.
 
+use super::segment::length_of;
 use super::{CurvedSupport, Feature, FeatureId};
-use crate::math::{Point, Real, Vector, max, unit};
+use crate::math::{Matrix, Point, Real, Vector, unit};
 
 /// How far a point lies along the y axis and from it.
 fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
@@ -72,10 +73,13 @@ impl<N: Real> Disk<N> {
         Some(CurvedSupport { point: self.at(radial), bend })
     }
 
-    /// How far the disk, moved to the origin, reaches along each outer axis when its axis points
-    /// along `axis`.
-    pub(super) fn reach(self, axis: &Vector<N, 3>) -> Vector<N, 3> {
-        axis.map(|a| max(N::ONE - a * a, N::ZERO).sqrt() * self.radius)
+    /// How far the disk, moved to the origin, reaches along each outer axis when it is turned: by the columns that
+    /// span it, since from its axis alone that would lose half of all digits where it hardly leans.
+    pub(super) fn reach(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
+        Vector::<N, 3>::from_fn(|axis, _| {
+            let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
+            length_of(&spans) * self.radius
+        })
     }
 
     fn at(self, radial: Vector<N, 2>) -> Point<N, 3> {

@@ -90,16 +90,22 @@ pub(super) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>)
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// The box around two points, grown by `reach`; that of everything where the numbers end.
-pub(super) fn box_of<N: Real, const D: usize>(
-    a: &Point<N, D>,
-    b: &Point<N, D>,
-    reach: N,
+/// The box around a few points of a solid placed at `pose`, no farther than `size` from its origin; rounded
+/// outwards, and that of everything where the numbers end.
+pub(super) fn box_at<N: Real, const D: usize, const K: usize>(
+    pose: &Pose<N, D>,
+    points: [&Point<N, D>; K],
+    size: N,
 ) -> Aabb<N, D> {
-    let reach = Vector::<N, D>::repeat(reach);
-    let (low, high) = (a.coords.zip_map(&b.coords, min), a.coords.zip_map(&b.coords, max));
-    Aabb::try_new(Point::from(low - reach), Point::from(high + reach))
-        .unwrap_or_else(|_| Aabb::unbounded())
+    let mut low = Vector::<N, D>::repeat(N::INFINITY);
+    let mut high = -low;
+    for point in points {
+        let turned = pose.vector(&point.coords);
+        for axis in 0..D {
+            (low[axis], high[axis]) = (min(turned[axis], low[axis]), max(turned[axis], high[axis]));
+        }
+    }
+    Aabb::of_turned(low, high, size, pose)
 }
 
 impl<N: Real, const D: usize> SupportMap<N, D> for Segment<N, D> {
@@ -127,11 +133,11 @@ impl<N: Real, const D: usize> Shape<N, D> for Segment<N, D> {
     }
 
     fn local_aabb(&self) -> Aabb<N, D> {
-        box_of(&self.a, &self.b, N::ZERO)
+        self.aabb(&Pose::identity())
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        box_of(&pose.point(&self.a), &pose.point(&self.b), N::ZERO)
+        box_at(pose, [&self.a, &self.b], self.reach())
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

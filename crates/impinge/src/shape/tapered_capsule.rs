@@ -2,7 +2,7 @@
 
 use super::error::{or_panic, size};
 use super::scale::Scale;
-use super::segment::{box_of, length_of};
+use super::segment::{box_at, length_of};
 use super::tilt::Tilt;
 use super::{
     CurvedSupport, Feature, FeatureId, Geometry, Kind, ScaleError, Segment, Shape, ShapeError,
@@ -215,8 +215,8 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         let [around1, around2] = [0, 1].map(|end| {
-            let center = pose.point(self.end(end));
-            box_of(&center, &center, self.radii[end])
+            let center = self.end(end);
+            box_at(pose, [center], length_of(&center.coords)).loosened(self.radii[end])
         });
         around1.merged(&around2)
     }

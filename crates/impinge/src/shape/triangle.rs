@@ -2,10 +2,10 @@
 
 use super::error::{finite, or_panic};
 use super::scale::Scale;
-use super::segment::{box_of, farther, length_of};
+use super::segment::{box_at, farther, length_of};
 use super::tilt::Tilt;
 use super::{Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap};
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, centroid, max};
 
 /// The points between three corners, which may be given in either order and may coincide or lie on
@@ -115,8 +115,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Triangle<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let [a, b, c] = self.corners.map(|corner| pose.point(&corner));
-        box_of(&a, &b, N::ZERO).merged(&box_of(&c, &c, N::ZERO))
+        box_at(pose, self.corners.each_ref(), self.reach())
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -4,7 +4,6 @@
 //! confuse the algorithms. Points are thinned by a tolerance only where a point that changes nothing
 //! would be kept: the noise of computed coordinates, a few rounding units of the largest one.
 
-mod exact;
 mod given;
 mod hull2;
 mod hull3;
@@ -14,7 +13,6 @@ mod quickhull;
 mod span;
 mod spanned;
 
-pub(crate) use exact::{area, volume};
 pub use hull2::convex_hull2;
 pub use hull3::{IndexedHull, convex_hull3};
 pub use spanned::{convex_shape2, convex_shape3};

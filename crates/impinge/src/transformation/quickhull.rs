@@ -5,8 +5,8 @@
 //! border is always one loop: the surface stays closed and weakly convex whatever the input. Points
 //! that are outside by no more than the tolerance are left there.
 
-use super::exact::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
+use crate::math::exact::{area_vector, volume};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;

@@ -10,7 +10,7 @@
 use core::cmp::Ordering;
 
 use crate::math::Point;
-use crate::transformation::{area, volume};
+use crate::math::exact::{area, volume};
 
 /// A ray from a point to infinity.
 #[derive(Clone, Copy, Debug)]

@@ -4,11 +4,10 @@ use super::super::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
 };
 use super::super::polyline::refused;
-use super::super::segment::box_of;
 use super::bends::Bends;
 use super::topology::Topology;
 use super::{TriMesh, table};
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
 
@@ -146,8 +145,8 @@ fn boxes_of<N: Space<D>, const D: usize>(
 }
 
 /// The box of a triangle, as the tree has it.
-pub(super) fn box_of_corners<N: Real, const D: usize>([a, b, c]: &[Point<N, D>; 3]) -> Aabb<N, D> {
-    box_of(a, b, N::ZERO).merged(&box_of(c, c, N::ZERO))
+pub(super) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
+    Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 
 fn normals_of<N: Space<D>, const D: usize>(

@@ -123,27 +123,30 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     vertices: &[Point<N, D>],
     tree: &BoxTree<N, D>,
 ) -> Aabb<N, D> {
-    let corner = |&vertex: &u32| vertices[vertex as usize];
+    let Some(bounds) = tree.bounds() else { return Aabb::unbounded() };
+    let size = BoundingSphere::around_box(bounds).farthest_from(&Point::origin());
+    let corner = |&vertex: &u32| vertices[vertex as usize].coords;
     if parts.len() * K <= MOST_PLACED {
-        let used = parts.as_flattened().iter().map(corner);
-        let placed: Vec<_> = used.map(|point| pose.point(&point)).collect();
+        let turned = Aabb::around_all(
+            parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
+        );
         // A pose that is not finite gives no box; then everything is in it.
-        return Aabb::from_points(&placed).unwrap_or_else(Aabb::unbounded);
+        return turned.map_or_else(Aabb::unbounded, |turned| {
+            Aabb::of_turned(turned.mins().coords, turned.maxs().coords, size, pose)
+        });
     }
     let reach = |direction: Vector<N, D>| {
         tree.reach_along(direction, |part| {
-            let along =
-                parts[part as usize].iter().map(|vertex| corner(vertex).coords.dot(&direction));
+            let along = parts[part as usize].iter().map(|vertex| corner(vertex).dot(&direction));
             along.fold(-N::INFINITY, max)
         })
     };
-    let (mut mins, mut maxs) = (pose.translation, pose.translation);
+    let (mut low, mut high) = (Vector::<N, D>::zeros(), Vector::<N, D>::zeros());
     for axis in 0..D {
         let direction = pose.rotation.row(axis).transpose();
-        mins[axis] -= reach(-direction);
-        maxs[axis] += reach(direction);
+        (low[axis], high[axis]) = (-reach(-direction), reach(direction));
     }
-    Aabb::try_new(Point::from(mins), Point::from(maxs)).unwrap_or_else(|_| Aabb::unbounded())
+    Aabb::of_turned(low, high, size, pose)
 }
 
 /// The sphere around the middle of a box that reaches the farthest of some vertices; a little

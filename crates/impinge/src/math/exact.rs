@@ -8,20 +8,14 @@
 
 use smallvec::SmallVec;
 
-use crate::math::{Point, Vector};
+use super::outward::sum_and_error;
+use super::{Point, Vector};
 
 type P2 = Point<f64, 2>;
 type P3 = Point<f64, 3>;
 
 /// A sum of doubles of which none overlaps another, least first; empty for zero.
 type Expansion = SmallVec<[f64; 32]>;
-
-/// `a + b` as the rounded sum and its error (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let virtual_b = sum - a;
-    (sum, (a - (sum - virtual_b)) + (b - virtual_b))
-}
 
 /// A double as two halves of 26 bits (Dekker, Veltkamp).
 fn split(a: f64) -> (f64, f64) {
@@ -44,7 +38,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
     let mut carry = addend;
     let mut kept = 0;
     for at in 0..expansion.len() {
-        let (sum, error) = two_sum(carry, expansion[at]);
+        let (sum, error) = sum_and_error(carry, expansion[at]);
         carry = sum;
         if error != 0.0 {
             expansion[kept] = error;
@@ -58,7 +52,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
 }
 
 fn difference(a: f64, b: f64) -> Expansion {
-    let (high, low) = two_sum(a, -b);
+    let (high, low) = sum_and_error(a, -b);
     let mut expansion = Expansion::new();
     grow(&mut expansion, low);
     grow(&mut expansion, high);
@@ -113,8 +107,8 @@ fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
 
 /// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice
 /// the area: right to the last digits for slivers too.
-pub(super) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
-    let two_sums = |p: &P3| [0, 1, 2].map(|axis| two_sum(p[axis], -a[axis]));
+pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
+    let two_sums = |p: &P3| [0, 1, 2].map(|axis| sum_and_error(p[axis], -a[axis]));
     let (u, v) = (two_sums(b), two_sums(c));
     Vector::<f64, 3>::from_fn(|axis, _| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);

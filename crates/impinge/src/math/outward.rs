@@ -1,0 +1,90 @@
+//! Sums and products that err to a known side: what bounding volumes are made of.
+//!
+//! The error of a sum is itself a number of the type (Knuth, "The Art of Computer Programming", volume 2, theorem
+//! 4.2.2 B), so that a sum without an error stays as it is: boxes whose corners are numbers of the type are exact.
+
+use super::Real;
+
+/// `a + b`, and by how much the exact sum is more; NaN beyond the range of the scalar.
+#[inline(always)]
+pub(super) fn sum_and_error<N: Real>(a: N, b: N) -> (N, N) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// `a + b` or the next smaller number or two: never above the exact sum, and equal to it if that is a number of the
+/// scalar.
+#[inline(always)]
+pub(crate) fn sum_below<N: Real>(a: N, b: N) -> N {
+    let (sum, error) = sum_and_error(a, b);
+    if error < N::ZERO { sum - sum.abs() * N::EPSILON } else { sum }
+}
+
+/// `a + b` or the next larger number or two: never below the exact sum, and equal to it if that is a number of the
+/// scalar.
+#[inline(always)]
+pub(crate) fn sum_above<N: Real>(a: N, b: N) -> N {
+    let (sum, error) = sum_and_error(a, b);
+    if error > N::ZERO { sum + sum.abs() * N::EPSILON } else { sum }
+}
+
+/// Two numbers between which the exact product lies: the product itself where a factor is zero or a power of two.
+pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
+    let product = a * b;
+    let is_plain = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
+    let is_exact = (is_plain(a) || is_plain(b)) && product.abs() >= N::MIN_POSITIVE;
+    if is_exact || a == N::ZERO || b == N::ZERO {
+        return [product; 2];
+    }
+    let slack = product.abs() * N::EPSILON + smallest::<N>();
+    [product - slack, product + slack]
+}
+
+/// What a few sums and products of lengths up to `size` are off by at most, as the coordinates of a turned point
+/// are: eight units of rounding and of the smallest number.
+#[inline(always)]
+pub(crate) fn slack_of<N: Real>(size: N) -> N {
+    N::lit(8.0) * (N::EPSILON * size + smallest::<N>())
+}
+
+/// The smallest number above zero.
+#[inline(always)]
+fn smallest<N: Real>() -> N {
+    N::MIN_POSITIVE * N::EPSILON
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_sums_stay() {
+        for (a, b) in
+            [(1.0_f32, 2.0), (0.1, -0.1), (16_777_215.0, 1.0), (1e-45, 1e-45), (0.0, -0.0)]
+        {
+            assert_eq!((sum_below(a, b), sum_above(a, b)), (a + b, a + b), "{a} + {b}");
+        }
+        assert_eq!(product_within(-2.0_f32, 0.1), [-0.2; 2], "a power of two");
+        assert_eq!(product_within(0.0_f32, 1e30), [0.0; 2], "zero");
+    }
+
+    #[test]
+    fn others_lie_between() {
+        let numbers = [1.0_f32, 0.1, -0.3, 1e-8, 3e7, -2e-40, 1.5e-39, 3e38, -3e38, 7e-23];
+        for a in numbers {
+            for b in numbers {
+                let exact = f64::from(a) + f64::from(b);
+                let [low, high] = [sum_below(a, b), sum_above(a, b)].map(f64::from);
+                assert!(low <= exact && exact <= high, "{a} + {b}: {low} to {high}");
+                assert!(
+                    high - low <= 4e-7 * exact.abs() || high.is_infinite(),
+                    "{a} + {b} is narrow"
+                );
+                let exact = f64::from(a) * f64::from(b);
+                let [low, high] = product_within(a, b).map(f64::from);
+                assert!(low <= exact && exact <= high, "{a} * {b}: {low} to {high}");
+            }
+        }
+    }
+}
