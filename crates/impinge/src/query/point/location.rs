@@ -1,7 +1,8 @@
 //! Where on a shape a point lies: which part, which feature, and by which weights of its corners.
 
 use super::nearest_on_segment;
-use crate::math::{Point, Real, max_component, unit};
+use super::triangle::{nearest, on_side};
+use crate::math::{Point, Real};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 
 /// Where on a shape a projected point lies.
@@ -29,8 +30,7 @@ pub struct PointLocation<N: Real> {
 /// rounding. On a side or at a corner the others' weights are exactly zero.
 ///
 /// What lies beside a triangle by rounding counts as the nearest point of it. The weights reproduce the
-/// point up to rounding of the part's size, however thin the triangle; of one without area they are
-/// those of its longest side.
+/// point up to rounding of the part's size, however thin the triangle.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -85,59 +85,7 @@ fn of_triangle<N: Real, const D: usize>(
     }
     let is_side = |side: &u32| feature == Some(FeatureId::flat::<D>(1, *side));
     match (0..3).find(is_side) {
-        Some(side) => on_side(triangle, side as usize, point),
-        None => on_face(triangle, point),
+        Some(side) => on_side(triangle.corners(), side, point).weights,
+        None => nearest(triangle.corners(), point).weights,
     }
-}
-
-fn on_side<N: Real, const D: usize>(
-    triangle: &Triangle<N, D>,
-    side: usize,
-    point: &Point<N, D>,
-) -> [N; 3] {
-    let (corners, next) = (triangle.corners(), (side + 1) % 3);
-    let (_, fraction) = nearest_on_segment([&corners[side], &corners[next]], point);
-    let mut weights = [N::ZERO; 3];
-    (weights[side], weights[next]) = (N::ONE - fraction, fraction);
-    weights
-}
-
-/// First the share of the corner across from the longest side, by the height over that side; then, of
-/// what that leaves, the place along the side. So an error of the first, large on a needle, is made
-/// good by the second. What comes out beyond a side lies on it.
-fn on_face<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> [N; 3] {
-    let corners = triangle.corners();
-    let length = |side: usize| max_component(&(corners[(side + 1) % 3] - corners[side]));
-    let longer = |a: usize, b: usize| if length(b) > length(a) { b } else { a };
-    let from = longer(longer(0, 1), 2);
-    let (to, top) = ((from + 1) % 3, (from + 2) % 3);
-    let (arm, rise) = (point - corners[from], corners[top] - corners[from]);
-    let Some((along, whole)) = unit(&(corners[to] - corners[from])) else {
-        return on_side(triangle, 0, point);
-    };
-    // Made perpendicular twice: of a needle the first remainder is inexact (Kahan: twice is enough).
-    let once = rise - along * rise.dot(&along);
-    let Some((up, _)) = unit(&(once - along * once.dot(&along))) else {
-        return on_side(triangle, from, point);
-    };
-    let share = arm.dot(&up) / rise.dot(&up);
-    let place = (arm.dot(&along) - rise.dot(&along) * share) / whole;
-    let rest = N::ONE - share - place;
-    if share >= N::ZERO && place >= N::ZERO && rest >= N::ZERO {
-        let mut weights = [N::ZERO; 3];
-        (weights[from], weights[to], weights[top]) = (rest, place, share);
-        return weights;
-    }
-    // Also where the numbers end.
-    on_side(triangle, nearest_side(triangle, point), point)
-}
-
-fn nearest_side<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> usize {
-    let corners = triangle.corners();
-    let apart = |side: usize| {
-        let ends = [&corners[side], &corners[(side + 1) % 3]];
-        (nearest_on_segment(ends, point).0 - point).norm_squared()
-    };
-    let nearer = |a: usize, b: usize| if apart(b) < apart(a) { b } else { a };
-    nearer(nearer(0, 1), 2)
 }

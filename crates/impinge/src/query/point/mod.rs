@@ -21,6 +21,7 @@ mod segment;
 mod support_map;
 mod surface;
 mod tapered_capsule;
+mod triangle;
 mod triangle2;
 mod triangle3;
 mod volume;

@@ -6,33 +6,42 @@ use crate::shape::{FeatureId, Segment, SupportMap};
 
 /// The nearest point of the segment between `ends`, and where it is: 0 at the first end, 1 at the
 /// second, between them inside. Equal ends are a point.
+///
+/// Measured from the nearer end, so that long segments lose nothing there.
 pub(in crate::query) fn nearest<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     point: &Point<N, D>,
 ) -> (Point<N, D>, N) {
     let [a, b] = ends;
-    let (along, to_point) = (b - a, point - a);
-    let (part, whole) = shares(&along, &to_point);
-    if part >= whole && whole > N::ZERO {
-        return (*b, N::ONE);
+    let along = b - a;
+    let (from_a, to_b) = shares(&along, [&(point - a), &(b - point)]);
+    // Written so that NaN is at an end.
+    if from_a > N::ZERO && to_b > N::ZERO {
+        let whole = from_a + to_b;
+        return if from_a < to_b {
+            let fraction = from_a / whole;
+            (a + along * fraction, fraction)
+        } else {
+            let rest = to_b / whole;
+            (b - along * rest, N::ONE - rest)
+        };
     }
-    if part > N::ZERO {
-        let fraction = part / whole;
-        return (a + along * fraction, fraction);
-    }
-    (*a, N::ZERO)
+    if from_a > N::ZERO { (*b, N::ONE) } else { (*a, N::ZERO) }
 }
 
-/// How far a vector leads along another, and how far that one leads itself, both in the same unit.
-fn shares<N: Real, const D: usize>(along: &Vector<N, D>, to_point: &Vector<N, D>) -> (N, N) {
-    let (part, whole) = (to_point.dot(along), along.norm_squared());
-    if whole * N::EPSILON > N::MIN_POSITIVE && whole + part.abs() < N::INFINITY {
-        return (part, whole);
+/// How far two vectors whose sum is `along` lead along it, both in the same unit.
+fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 2]) -> (N, N) {
+    let [from_a, to_b] = parts.map(|part| part.dot(along));
+    let whole = from_a + to_b;
+    if whole * N::EPSILON > N::MIN_POSITIVE && from_a.abs() + to_b.abs() < N::INFINITY {
+        return (from_a, to_b);
     }
     // Their squares are no numbers of the type, or lose digits.
-    let scale = max(max_component(along), max_component(to_point)).power_of_two_below();
-    let (along, to_point) = (along / scale, to_point / scale);
-    (to_point.dot(&along), along.norm_squared())
+    let largest = parts.map(max_component);
+    let scale = max(largest[0], largest[1]).power_of_two_below();
+    let along = along / scale;
+    let [from_a, to_b] = parts.map(|part| (part / scale).dot(&along));
+    (from_a, to_b)
 }
 
 /// The name of a place on a segment: an end, or what lies between.

@@ -21,15 +21,19 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
 
     /// Of two nearest points of parts, the one nearer to `asked`; the first where equal.
     pub(super) fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
+        if self.is_beaten_by(&other, asked) { other } else { self }
+    }
+
+    /// Of two nearest points of parts, the other is nearer to `asked`.
+    pub(super) fn is_beaten_by(&self, other: &Self, asked: &Point<N, D>) -> bool {
         let (first, second) = (asked - self.point, asked - other.point);
         let (square1, square2) = (first.norm_squared(), second.norm_squared());
         // Squares of large and of small lengths are no numbers of the type.
         let usable = |square: N| square > N::MIN_POSITIVE && square < N::INFINITY;
-        let is_other = match usable(square1) && usable(square2) {
+        match usable(square1) && usable(square2) {
             true => square2 < square1,
             false => length(&second) < length(&first),
-        };
-        if is_other { other } else { self }
+        }
     }
 
     /// For a set without thickness: what lies on it within rounding is its own projection.

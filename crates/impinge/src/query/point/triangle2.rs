@@ -1,29 +1,19 @@
 //! The nearest point of the outline of a filled triangle in the plane.
 
 use super::SurfacePoint;
-use super::segment::{feature_at, nearest};
+use super::triangle::on_side;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Real, cross2};
-use crate::shape::{FeatureId, Triangle};
+use crate::shape::Triangle;
 
 pub(super) fn surface_point<N: Real>(
     triangle: &Triangle<N, 2>,
     point: &Point<N, 2>,
 ) -> SurfacePoint<N, 2> {
-    let [first, second, third] = [0, 1, 2].map(|side| on_side(triangle, side, point));
+    let [first, second, third] =
+        [0, 1, 2].map(|side| on_side(triangle.corners(), side, point).found);
     let found = first.nearer(second, point).nearer(third, point);
     SurfacePoint { is_inside: contains(triangle, point), ..found }
-}
-
-fn on_side<N: Real>(
-    triangle: &Triangle<N, 2>,
-    side: u32,
-    point: &Point<N, 2>,
-) -> SurfacePoint<N, 2> {
-    let next = (side + 1) % 3;
-    let corners = triangle.corners();
-    let (found, fraction) = nearest([&corners[side as usize], &corners[next as usize]], point);
-    SurfacePoint::on(found, feature_at(fraction, [side, next], FeatureId::Face(side)))
 }
 
 /// The point lies on the same side of all three lines, or on them.

@@ -1,0 +1,98 @@
+//! The nearest point of a triangle, in the plane and in space, however thin the triangle is.
+
+use super::SurfacePoint;
+use super::segment::{self, feature_at};
+use crate::math::{Point, Real, max, max_component};
+use crate::shape::FeatureId;
+
+/// A point of a triangle that is near to another point.
+#[derive(Clone, Copy)]
+pub(super) struct OnTriangle<N: Real, const D: usize> {
+    pub(super) found: SurfacePoint<N, D>,
+    /// What the corners contribute to it: none is negative, and the sum is one up to rounding. Exactly
+    /// zero for the corners that it is not between.
+    pub(super) weights: [N; 3],
+}
+
+impl<N: Real, const D: usize> OnTriangle<N, D> {
+    /// The one nearer to `asked`, the first where equal.
+    fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
+        if self.found.is_beaten_by(&other.found, asked) { other } else { self }
+    }
+}
+
+/// The nearest point of the filled triangle, with `Face(0)` for what lies inside of its sides.
+///
+/// It is the nearest of four: one on each side and one on the [chord](on_chord) below `point`. Each is a
+/// mean of corners, so that it lies on the triangle up to rounding, and one of them is as near as any
+/// point is up to rounding: a few units of epsilon times the largest coordinate or distance, without any
+/// factor for the shape. No normal is made, nor a barycentric coordinate by areas, which on a triangle of
+/// length l and height h are off by l/h units.
+pub(super) fn nearest<N: Real, const D: usize>(
+    corners: &[Point<N, D>; 3],
+    point: &Point<N, D>,
+) -> OnTriangle<N, D> {
+    let sides = [0, 1, 2].map(|side| on_side(corners, side, point));
+    let [first, second, third] = sides;
+    let best = first.nearer(second, point).nearer(third, point);
+    match on_chord(corners, &sides, point) {
+        Some(inner) => best.nearer(inner, point),
+        None => best,
+    }
+}
+
+/// The nearest point of the side that leads from a corner to the next.
+pub(super) fn on_side<N: Real, const D: usize>(
+    corners: &[Point<N, D>; 3],
+    side: u32,
+    point: &Point<N, D>,
+) -> OnTriangle<N, D> {
+    let next = (side + 1) % 3;
+    let [from, to] = [side, next].map(|corner| corner as usize);
+    let (place, fraction) = segment::nearest([&corners[from], &corners[to]], point);
+    let mut weights = [N::ZERO; 3];
+    (weights[from], weights[to]) = (N::ONE - fraction, fraction);
+    let feature = feature_at(fraction, [side, next], FeatureId::flat::<D>(1, side));
+    OnTriangle { found: SurfacePoint::on(place, feature), weights }
+}
+
+/// The nearest point of the chord across the longest side at the place of `point` along that side; `None`
+/// if it is an end of it, which lies on a side.
+///
+/// If the perpendicular from `point` falls into the triangle, its foot lies on that chord. The place is off
+/// by rounding, d. The angles at the longest side are acute: the other two sides rise to the corner across
+/// and fall again, so that the height of the foot is met within d of it, on the chord or, where the chord
+/// ends too low, on the side that it ends on, however steep that is.
+fn on_chord<N: Real, const D: usize>(
+    corners: &[Point<N, D>; 3],
+    sides: &[OnTriangle<N, D>; 3],
+    point: &Point<N, D>,
+) -> Option<OnTriangle<N, D>> {
+    let from = longest_side(corners);
+    let (to, top) = ((from + 1) % 3, (from + 2) % 3);
+    let base = &sides[from];
+    let place = base.weights[to];
+    let (_, peak) = segment::nearest([&corners[from], &corners[to]], &corners[top]);
+    // Of the other side that the chord ends on: where it starts, and the share of it below the end.
+    let (start, share) =
+        if place <= peak { (from, place / peak) } else { (to, (N::ONE - place) / (N::ONE - peak)) };
+    let end = corners[start] + (corners[top] - corners[start]) * share;
+    let (inner, fraction) = segment::nearest([&base.found.point, &end], point);
+    let is_inner = [place, fraction].iter().all(|&share| share > N::ZERO && share < N::ONE);
+    is_inner.then(|| {
+        let mut weights = base.weights.map(|weight| weight * (N::ONE - fraction));
+        weights[start] += fraction * (N::ONE - share);
+        weights[top] = fraction * share;
+        OnTriangle { found: SurfacePoint::on(inner, FeatureId::Face(0)), weights }
+    })
+}
+
+/// The number of the longest side, the first of equals.
+fn longest_side<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> usize {
+    let sides = [0, 1, 2].map(|side| corners[(side + 1) % 3] - corners[side]);
+    // Squares of large and of small lengths are no numbers of the type.
+    let scale = sides.iter().map(max_component).fold(N::ZERO, max).power_of_two_below();
+    let squares = sides.map(|side| (side / scale).norm_squared());
+    let longer = |a: usize, b: usize| if squares[b] > squares[a] { b } else { a };
+    longer(longer(0, 1), 2)
+}
