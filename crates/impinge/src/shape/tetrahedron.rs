@@ -8,6 +8,7 @@ use super::{
     ShapeHandle, SupportMap,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::exact::{area_vector, volume};
 use crate::math::{Point, Pose, Real, Vector, unit};
 
 /// A tetrahedron whose least height is below so many epsilon of its size counts as flat.
@@ -108,12 +109,13 @@ impl Extent {
     fn of<N: Real>(corners: &[Point<N, 3>; 4]) -> Self {
         let [a, b, c, d] = scaled(corners);
         let (e, f, g) = (b - a, c - a, d - a);
-        let volume = e.cross(&f).dot(&g);
+        let spanned = e.cross(&f).dot(&g).abs();
         let areas = [e.cross(&f), f.cross(&g), g.cross(&e), (f - e).cross(&(g - e))];
         let area = areas.iter().fold(0.0, |most: f64, area| most.max(area.norm()));
         let size = e.norm().max(f.norm()).max(g.norm());
-        let height = if area > 0.0 { volume.abs() / area } else { 0.0 };
-        Self { is_mirrored: volume < 0.0, size, height }
+        let height = if area > 0.0 { spanned / area } else { 0.0 };
+        let [a, b, c, d] = doubles(corners);
+        Self { is_mirrored: volume(&a, &b, &c, &d) < 0.0, size, height }
     }
 
     fn is_flat<N: Real>(&self) -> bool {
@@ -132,6 +134,13 @@ pub(super) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f64, 3>; 4]
     from_first.map(|corner| corner / unit)
 }
 
+/// The corners as doubles, divided by a power of two near the largest coordinate: without rounding.
+fn doubles<N: Real>(corners: &[Point<N, 3>; 4]) -> [Point<f64, 3>; 4] {
+    let corners = corners.map(|corner| corner.coords.map(N::as_f64));
+    let unit = power_of_two_below(&corners);
+    corners.map(|corner| Point::from(corner / unit))
+}
+
 /// A power of two near the largest coordinate. Doubles serve shapes of every scalar, also where they
 /// are no scalar themselves.
 fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
@@ -141,13 +150,14 @@ fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
 
 /// The vertices, edges and faces of four corners, whatever they span.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
-    let places = scaled(&corners);
+    let places = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { vec![a, c, b] } else { vec![a, b, c] });
     let normals: Vec<_> = faces
         .iter()
         .map(|face| {
-            let [a, b, c] = [face[0], face[1], face[2]].map(|corner| places[corner]);
-            let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
+            let [a, b, c] = [face[0], face[1], face[2]].map(|corner| &places[corner]);
+            // A cross product of rounded sides would be off by rounding times length over height.
+            let normal = area_vector(a, b, c).try_normalize(0.0);
             normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit)
         })
         .map(|normal| unit(&normal).map_or(normal, |(normal, _)| normal))
