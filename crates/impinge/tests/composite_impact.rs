@@ -7,13 +7,15 @@ use composite_support::Pieces;
 use composite_support::scenes::{Maker, Scene};
 use std::cell::Cell;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicU32, Ordering};
 
+use impinge::bounding_volume::Aabb;
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Pose, Space, Vector};
 use impinge::query::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, distance, impact,
     nonlinear_time_of_impact,
 };
-use impinge::shape::{Cuboid, Shape};
+use impinge::shape::{CompositeShape, Cuboid, Geometry, Part, PartSearch, Shape};
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, sample2, sample3};
 
@@ -238,8 +240,8 @@ where
     }
 }
 
-/// The impact of a shape that moves with one that stays at the origin: it is found in at most 500 steps, nothing
-/// touches before it, and at it the shapes are within what counts as near.
+/// The impact of a shape that moves with one that stays at the origin: it is found by at most 1000 places
+/// of what moves, nothing touches before it, and at it the shapes are within what counts as near.
 fn slides<N, R, const D: usize>(
     motion: ConstantVelocities<N, D>,
     mover: &dyn Shape<N, D>,
@@ -254,8 +256,8 @@ where
     let (here, count) = (Isometry::identity(), Cell::new(0));
     let (counted, still) = (Counted(motion, &count), ConstantVelocities::<N, D>::still(here));
     let found = nonlinear_time_of_impact(&counted, mover, &still, stays, options);
-    let steps = count.get();
-    assert!(steps <= 500, "{steps} steps: {found:?} {motion:?}");
+    let places = count.get();
+    assert!(places <= 1000, "{places} places: {found:?} {motion:?}");
     let end = found.map_or(options.max_time, |found| found.toi);
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
     for look in 0..24 {
@@ -332,6 +334,55 @@ where
         let linear = Vector::<N, 2>::new(N::lit(0.6 * drift), N::lit(-0.8 * drift));
         let motion = ConstantVelocities::<N, 2>::new(Isometry2::identity(), linear, N::lit(spin));
         assert!(slides(motion, &wheel, &ring, &ImpactOptions::new()), "it drifts on to the ring");
+    }
+}
+
+/// A composite that counts how often it is asked for a part.
+#[derive(Debug)]
+struct Asked(Pieces<f64, 3>, AtomicU32);
+
+impl CompositeShape<f64, 3> for Asked {
+    fn num_parts(&self) -> u32 {
+        self.0.num_parts()
+    }
+
+    fn part(&self, part: u32) -> Part<'_, f64, 3> {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.part(part)
+    }
+
+    fn search(&self) -> &dyn PartSearch<f64, 3> {
+        self.0.search()
+    }
+}
+
+impl Shape<f64, 3> for Asked {
+    fn geometry(&self) -> Geometry<'_, f64, 3> {
+        Geometry::composite(self)
+    }
+
+    fn local_aabb(&self) -> Aabb<f64, 3> {
+        self.0.local_aabb()
+    }
+}
+
+/// A screw in its nut is brought to where they touch by a few looks at all of their parts, not by one for each step
+/// of the parts that touch.
+#[test]
+fn screws_are_looked_at_a_few_times() {
+    let [screw, nut] =
+        [thread(1.0, 4), thread(1.0625, 2)].map(|pieces| Asked(pieces, AtomicU32::new(0)));
+    let still = ConstantVelocities::<f64, 3>::still(Isometry3::identity());
+    for (rise, most) in [(0.5, 200), (-0.5, 90)] {
+        let (linear, angular) = (Vector::<f64, 3>::y() * (rise / TAU), Vector::<f64, 3>::y());
+        let motion = ConstantVelocities::<f64, 3>::new(Isometry3::identity(), linear, angular);
+        let found = nonlinear_time_of_impact(&motion, &screw, &still, &nut, &ImpactOptions::new());
+        let found = found.expect("flank on flank");
+        assert_eq!(found.status, ImpactStatus::Reached, "{found:?}");
+        for shape in [&screw, &nut] {
+            let times = shape.1.swap(0, Ordering::Relaxed) / (screw.num_parts() + nut.num_parts());
+            assert!(times <= most, "{times} times each part for {rise}: {found:?}");
+        }
     }
 }
 

@@ -119,10 +119,23 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     /// A box around a part of the first shape (0) or the second (1), in the frame of the other; all of a
     /// convex solid is its part.
     pub(super) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {
+        let Some((part, pose)) = self.part_in_other(which, part) else {
+            return self.whole_in_other(which);
+        };
+        enclosing(&part.solid.as_shape().aabb(&pose), self.seen_by_other(which).1)
+    }
+
+    /// A part of the first shape (0) or the second (1), and its pose in the frame of the other; `None` of a
+    /// convex solid.
+    pub(super) fn part_in_other(
+        &self,
+        which: usize,
+        part: u32,
+    ) -> Option<(Part<'_, N, D>, Pose<N, D>)> {
         let (kind, pose) = self.seen_by_other(which);
-        let Some(own) = Geometry(kind).as_composite() else { return self.whole_in_other(which) };
-        let own = own.part(part);
-        enclosing(&own.solid.as_shape().aabb(&pose.compose(&own.pose)), pose)
+        let part = Geometry(kind).as_composite()?.part(part);
+        let pose = pose.compose(&part.pose);
+        Some((part, pose))
     }
 
     /// The boxes around two composites are farther apart than a limit, seen from one of the two.

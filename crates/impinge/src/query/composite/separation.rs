@@ -2,14 +2,12 @@
 
 use super::between::{Between, by_number};
 use super::bounds::loosened;
+use super::slabs::Slabs;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
+use crate::math::{Real, Space, max};
 use crate::query::Pair;
 use crate::query::separation::separation as of_convex;
-use crate::shape::{CompositeShape, Kind, Part, PartSolid, Plane};
-
-/// Heights over a half-space are loosened by so many rounding units of all lengths.
-const ROUNDING: f64 = 128.0;
+use crate::shape::{CompositeShape, Kind};
 
 /// The separation of two parts, in the frame of the first shape, and which parts they are.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +62,19 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     nearest.best
 }
 
+/// The nearest or deepest parts where two have been so before: these are asked first, and bound the search.
+pub(crate) fn nearest_again<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    parts: [u32; 2],
+) -> Option<PartSeparation<N, D>> {
+    let mut nearest = Nearest { between, limit: N::INFINITY, wanted: Wanted::Deepest, best: None };
+    nearest.visit(parts);
+    if between.composites().iter().any(Option::is_some) {
+        visit_near_pairs(between, &mut nearest);
+    }
+    nearest.best
+}
+
 /// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
 ///
 /// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
@@ -79,7 +90,9 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
         [None, None] => search.visitor.visit([0, 0]),
         [Some(parts1), None] => search.of_one(1, 0, parts1),
         [None, Some(parts2)] => match between.pair.first {
-            Kind::Plane(plane) => search.of_half_space(plane, parts2),
+            Kind::Plane(plane) => {
+                search.outside((0, 0), parts2, || Slabs::of_half_space(between, plane));
+            }
             _ => search.of_one(0, 0, parts2),
         },
         [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
@@ -94,22 +107,22 @@ struct Search<'a, 'q, N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
     /// A part of one shape, the first or the second, against those of the other that are near.
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
-        let aabb = self.between.aabb_in_other(which, part);
-        others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
-            self.visitor.visit(if which == 0 { [part, other] } else { [other, part] });
-            self.visitor.bound()
-        });
+        let between = self.between;
+        self.outside((which, part), others, || Slabs::of_part(between, which, part));
     }
 
-    /// A half-space against all parts, but for those that their corners tell to be farther than matters.
-    fn of_half_space(&mut self, plane: &Plane<N, D>, others: &dyn CompositeShape<N, D>) {
-        let ground = Ground::new(self.between, plane);
-        let aabb = self.between.aabb_in_other(0, 0);
+    /// The same but for parts that slabs tell to be farther than matters; these are made for the first that is asked.
+    fn outside(
+        &mut self,
+        (which, part): (usize, u32),
+        others: &dyn CompositeShape<N, D>,
+        slabs: impl Fn() -> Slabs<N, D>,
+    ) {
+        let (aabb, mut made) = (self.between.aabb_in_other(which, part), None);
         others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
-            let limit = self.visitor.limit();
-            let is_farther = ground.gap(&others.part(other)).is_some_and(|gap| gap > limit);
-            if !is_farther {
-                self.visitor.visit([0, other]);
+            let slabs = made.get_or_insert_with(&slabs);
+            if !slabs.are_beyond(&others.part(other), self.visitor.limit()) {
+                self.visitor.visit(if which == 0 { [part, other] } else { [other, part] });
             }
             self.visitor.bound()
         });
@@ -156,39 +169,6 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for Nearest<'_, N, D> {
         if self.best.is_none_or(|best| found.is_before(&best)) {
             self.best = Some(found);
         }
-    }
-}
-
-/// The plane of a half-space, in the frame of the composite.
-struct Ground<N: Real, const D: usize> {
-    normal: Vector<N, D>,
-    origin: Vector<N, D>,
-}
-
-impl<N: Real, const D: usize> Ground<N, D> {
-    fn new(between: &Between<'_, N, D>, plane: &Plane<N, D>) -> Self {
-        let Pose { translation: origin, .. } = between.pose21;
-        Self { normal: between.pose21.vector(plane.normal()), origin }
-    }
-
-    /// A part is at least so far from the half-space; `None` of what is not given by its corners.
-    fn gap(&self, part: &Part<'_, N, D>) -> Option<N> {
-        let (mut least, mut size) = (N::INFINITY, N::ZERO);
-        let mut add = |corner: &Point<N, D>| {
-            let arm = part.pose.point(corner).coords - self.origin;
-            least = min(self.normal.dot(&arm), least);
-            size = max(max_component(&arm), size);
-        };
-        match &part.solid {
-            PartSolid::Triangle(triangle) => triangle.corners().iter().for_each(&mut add),
-            PartSolid::Segment(segment) => {
-                [segment.a(), segment.b()].into_iter().for_each(&mut add);
-            }
-            PartSolid::Shape(_) => return None,
-        }
-        // Lengths that are subnormal numbers are not precise.
-        let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
-        is_precise.then(|| least - size * N::lit(ROUNDING) * N::EPSILON)
     }
 }
 

@@ -114,6 +114,12 @@ pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
     pub(super) normal: Vector<N, D>,
 }
 
+/// One part of each of two bodies.
+pub(super) struct Parts<'p, N: Space<D>, const D: usize> {
+    bodies: [Body<'p, N, D>; 2],
+    poses: [Pose<N, D>; 2],
+}
+
 /// An upper bound of the way made in a time `h`: `speed · h + bend · h²`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rate<N> {
@@ -147,7 +153,7 @@ impl<N: Real> Rate<N> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
+impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// For how long the bodies certainly do not come nearer than by `gap` from where they are, at
     /// most `remaining`, or longer if nothing ever brings them nearer. `apart` is how far they have to
     /// come to be as near as counts, by the spheres around them; negative where that says nothing.
@@ -170,29 +176,44 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
         span
     }
 
-    /// [`Self::safe_time`] of one part of each body, for bodies that both have constant velocities.
-    /// `frame` is the one that the parts are placed in, `normal` is from part to part in that of the first.
-    pub(super) fn safe_time_of_parts(
+    /// One part of each body as bodies of their own. `frame` is the one that the parts are placed in.
+    pub(super) fn parts<'p>(
         &self,
-        parts: &PartPair<'_, N, D>,
+        parts: &'p PartPair<'_, N, D>,
         frame: &Pose<N, D>,
-        normal: &Vector<N, D>,
-        gap: N,
-        to: N,
-    ) -> N {
+    ) -> Parts<'p, N, D>
+    where
+        'a: 'p,
+    {
         let (pair, poses) = (parts.pair(), parts.poses().map(|pose| frame.compose(&pose)));
         let [center1, center2] = &self.centers;
         let part1 = self.bodies[0].part(Geometry(pair.first), &poses[0], center1);
         let part2 = self.bodies[1].part(Geometry(pair.second), &poses[1], center2);
-        let moment = Moment {
-            normal: poses[0].vector(normal),
-            bodies: [&part1, &part2],
-            origin: self.origin,
-            centers: self.centers,
-            time: self.time,
-            poses,
-        };
-        moment.safe_within(gap, -N::ONE, to)
+        Parts { bodies: [part1, part2], poses }
+    }
+
+    /// [`Self::safe_time`] of parts of the bodies, for bodies that both have constant velocities. `normal` is from
+    /// part to part in the frame of the first.
+    pub(super) fn safe_time_of(
+        &self,
+        parts: &Parts<'_, N, D>,
+        normal: &Vector<N, D>,
+        gap: N,
+        to: N,
+    ) -> N {
+        let Parts { bodies, poses } = parts;
+        let normal = poses[0].vector(normal);
+        let (bodies, centers) = (bodies.each_ref(), self.centers);
+        let (poses, origin, time) = (*poses, self.origin, self.time);
+        Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
+    }
+
+    /// How fast parts of the bodies approach in any direction, at most.
+    pub(super) fn rate_of(&self, parts: &Parts<'_, N, D>, to: N) -> Rate<N> {
+        let swings = [0, 1].map(|index| {
+            product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
+        });
+        Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
     }
 
     /// The parts of the bodies go their own ways, and it is known how they do.
@@ -224,8 +245,11 @@ impl<N: Space<D>, const D: usize> Moment<'_, '_, N, D> {
 
     /// The time in which the spheres around the bodies use up what they are apart.
     fn spheres(&self, apart: N, to: N) -> N {
-        let between = unit(&(self.centers[1] - self.centers[0])).filter(|_| apart > N::ZERO);
-        between.map_or(N::ZERO, |(direction, _)| {
+        let is_apart = apart > N::ZERO;
+        if !is_apart {
+            return N::ZERO;
+        }
+        unit(&(self.centers[1] - self.centers[0])).map_or(N::ZERO, |(direction, _)| {
             Rate { speed: self.drift(Some(&direction), to), bend: N::ZERO }.time_for(apart)
         })
     }
@@ -371,11 +395,12 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     center: &Point<N, D>,
     motion: &ConstantVelocities<N, D>,
 ) -> N {
-    let (middle, half) = (aabb.center() - center, aabb.half_extents());
-    (0..D).fold(motion.across_local(&middle), |sum, axis| {
-        let mut side = Vector::<N, D>::zeros();
-        side[axis] = half[axis];
-        sum + motion.across_local(&side)
+    (0..1_u32 << D).fold(N::ZERO, |most, corner| {
+        let place = Vector::<N, D>::from_fn(|axis, _| {
+            let end = if corner >> axis & 1 == 0 { aabb.mins() } else { aabb.maxs() };
+            end[axis] - center[axis]
+        });
+        max(motion.across_local(&place), most)
     })
 }
 

@@ -53,15 +53,10 @@ impl<N: Real, const D: usize> Path<N, D> {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
-    /// Whether a contact at the start counts: one that gets deeper does; one that is neither deep nor
-    /// gets deeper, or gets less deep, does not. What overlaps without bound is never parted.
+    /// Whether a contact at the start counts.
     fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        if self.contact_at_start {
-            return true;
-        }
-        let (closing, noise) = (self.closing(normal), self.noise());
-        let deep = gap < -tolerance;
-        closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+        self.contact_at_start
+            || is_hit_at_start(gap, self.closing(normal), (tolerance, self.noise()))
     }
 }
 
@@ -75,6 +70,15 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         let pose12 = Pose { translation: path.place(start, self.along), ..start.pose12 };
         (N::tables().witness_features)(&Pair { pose12, ..*start }, &self.separation)
     }
+}
+
+/// Whether a contact at the start is a hit that is not asked for: one that gets deeper is; one that is neither deep
+/// nor gets deeper, or gets less deep, is none. What overlaps without bound is never parted.
+///
+/// Up to the tolerance the gap, and up to the noise the speed at which it closes, is none.
+pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, (tolerance, noise): (N, N)) -> bool {
+    let deep = gap < -tolerance;
+    closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
 }
 
 /// The first time on a path at which two solids are at the target distance.

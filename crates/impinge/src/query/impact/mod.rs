@@ -10,6 +10,7 @@ mod linear;
 mod motion;
 mod nonlinear;
 
+use linear::is_hit_at_start;
 pub(crate) use linear::{Arrival, Path, advance};
 pub use motion::{ConstantVelocities, RigidMotion};
 pub use nonlinear::nonlinear_time_of_impact;

@@ -1,14 +1,14 @@
 //! The first touch of two bodies that move and turn.
 
 use super::bounds::{Body, Moment, Rate, length};
-use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion};
+use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use core::cmp::Ordering;
 use core::iter;
 
 use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
 use crate::query::Pair;
 use crate::query::composite::{
-    Between, PairVisitor, PartSeparation, Wanted, nearest_between, visit_near_pairs,
+    Between, PairVisitor, PartSeparation, Wanted, nearest_again, nearest_between, visit_near_pairs,
 };
 use crate::query::pair::{Placed, order};
 use crate::query::separation::separation;
@@ -16,6 +16,9 @@ use crate::shape::Shape;
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 1024;
+
+/// At most so many steps of two parts are made by themselves before all are looked at.
+const MAX_PART_STEPS: usize = 64;
 
 /// At most so many steps in a row are made while the bodies are so near that it would do, without a tolerance.
 const MAX_NEAR_STEPS: usize = 256;
@@ -49,15 +52,16 @@ const PARTS_WITHIN: f64 = 1.0 / 128.0;
 ///
 /// # Cost
 ///
-/// A computation of the distance for each step: typically 15 for motions with constant velocities, 40
-/// for others, several times as many where the bodies graze each other or turn fast. Each step goes as
+/// A computation of the distance for each step: of convex solids typically 15 for motions with constant
+/// velocities, 40 for others, several times as many where the bodies graze each other or turn fast. Each step goes as
 /// far as no point of the bodies can have used up the gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996), by the speed along the
 /// normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex polyhedra",
 /// 2006) of the fastest point of the shape and by how much its path can bend, or by spheres around the
 /// bodies while these are apart. A half-space that turns is fastest far out: its speed counts there
 /// where the other body can be. Composites are seen as a whole, by their largest speed, until they are within 1/128 of
-/// their sizes; then, for constant velocities, each two of their parts that are so near have a normal and a speed of
-/// their own, so that surfaces that slide on each other take hardly more steps than others.
+/// their sizes; then, for constant velocities, each two of their parts that are so near are advanced by themselves, by
+/// a normal and a speed of their own, until the first two touch. So all parts are searched twice for each 1/128 of the
+/// sizes that the fastest point moves by, however many steps those take that slide on each other.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -160,12 +164,18 @@ struct Search<'a, N: Space<D>, const D: usize> {
     mirrored: bool,
 }
 
-/// How the bodies lie at a time.
-struct Sight<'b, 'a, N: Space<D>, const D: usize> {
+/// Where the bodies are at a time.
+struct Scene<'b, 'a, N: Space<D>, const D: usize> {
+    /// Without a normal as long as none is known.
     moment: Moment<'b, 'a, N, D>,
     /// The pose of the first body in canonical order; of a ball without its rotation.
     pose1: Pose<N, D>,
     between: Between<'a, N, D>,
+}
+
+/// How the bodies lie at a time.
+struct Sight<'b, 'a, N: Space<D>, const D: usize> {
+    scene: Scene<'b, 'a, N, D>,
     found: PartSeparation<N, D>,
     /// The nearest points, seen from the origin of the search.
     points: [Vector<N, D>; 2],
@@ -188,7 +198,7 @@ enum Mode<N> {
 
 impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     fn run(&self) -> Option<Impact<N, D>> {
-        let mut sight = self.look(N::ZERO)?;
+        let mut sight = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
         if !starts {
             return None;
@@ -208,8 +218,8 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
             if sight.is_hit(mode) || near_steps > MAX_NEAR_STEPS {
                 return Some(self.impact(&sight, ImpactStatus::Reached));
             }
-            let time = sight.moment.time;
-            let step = self.step(&sight, mode);
+            let time = sight.scene.moment.time;
+            let (step, near) = self.step(&sight, mode);
             if time >= self.end || step > self.end - time || !step.is_finite_number() {
                 return None;
             }
@@ -220,7 +230,8 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
                     if step > N::ZERO { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
                 return Some(self.impact(&sight, status));
             }
-            match self.look(if later < self.end { later } else { self.end }) {
+            near_steps += near;
+            match self.look(if later < self.end { later } else { self.end }, Some(&sight)) {
                 Some(next) => sight = next,
                 None => break,
             }
@@ -228,92 +239,92 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
         Some(self.impact(&sight, ImpactStatus::StepsSpent))
     }
 
-    /// For how long nothing can happen.
-    fn step(&self, sight: &Sight<'_, '_, N, D>, mode: Mode<N>) -> N {
-        let moment = &sight.moment;
+    /// For how long nothing can happen, and how many steps of parts that were near led there.
+    fn step(&self, sight: &Sight<'_, 'a, N, D>, mode: Mode<N>) -> (N, usize) {
+        let moment = &sight.scene.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
         let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
         let (excess, apart) = (sight.excess(mode), between - radius1 - radius2 - self.target);
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
         let within = N::lit(PARTS_WITHIN) * (self.bodies[0].size() + self.bodies[1].size());
-        if excess < within && moment.has_parts_on_known_ways() {
-            max(self.step_of_parts(sight, excess, within), whole)
-        } else {
-            whole
+        if excess >= within || !moment.has_parts_on_known_ways() {
+            return (whole, 0);
         }
-    }
-
-    /// For how long no part of a body comes to where the excess is used up, as far as the parts are looked at.
-    fn step_of_parts(&self, sight: &Sight<'_, '_, N, D>, excess: N, within: N) -> N {
-        let rate = sight.moment.first_order(self.end);
-        let mut safe = SafeStep {
+        let rate = moment.first_order(self.end);
+        let mut parts = PartSteps {
+            search: self,
             sight,
+            mode,
             spent: sight.found.separation.distance - excess,
-            end: self.end,
             rate,
-            step: min(rate.time_for(within), self.end - sight.moment.time),
+            step: min(rate.time_for(within), self.end - moment.time),
+            near_steps: 0,
         };
-        visit_near_pairs(&sight.between, &mut safe);
-        safe.step
+        visit_near_pairs(&sight.scene.between, &mut parts);
+        if parts.step > whole { (parts.step, parts.near_steps) } else { (whole, 0) }
     }
 
-    /// The bodies at a time; `None` if a pose is not finite, and for composites without parts.
-    fn look(&self, time: N) -> Option<Sight<'_, 'a, N, D>> {
+    /// The bodies at a time; `None` if a pose is not finite.
+    fn scene(&self, time: N) -> Option<Scene<'_, 'a, N, D>> {
         let poses = self.bodies.each_ref().map(|body| body.motion.pose_about(&self.origin, time));
         let [one, two] =
             [0, 1].map(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
         let pair = Pair::new([one.shape, two.shape], [&one.pose, &two.pose]);
         let finite = one.pose.is_finite() && two.pose.is_finite() && pair.pose12.is_finite();
-        let between = Between { pair, pose21: Pose::relative(&two.pose, &one.pose) };
-        if !finite {
-            return None;
-        }
-        let found = nearest_between(&between, N::INFINITY, Wanted::Deepest)?;
-        let centers = [0, 1].map(|index| self.bodies[index].center_at(&poses[index]));
+        finite.then(|| Scene {
+            moment: Moment {
+                normal: Vector::<N, D>::zeros(),
+                bodies: self.bodies.each_ref(),
+                origin: self.origin,
+                centers: [0, 1].map(|index| self.bodies[index].center_at(&poses[index])),
+                poses,
+                time,
+            },
+            pose1: one.pose,
+            between: Between { pair, pose21: Pose::relative(&two.pose, &one.pose) },
+        })
+    }
+
+    /// How the bodies lie at a time; `None` if a pose is not finite, and for composites without parts. What was
+    /// nearest before is so still, or bounds the search.
+    fn look(&self, time: N, before: Option<&Sight<'_, 'a, N, D>>) -> Option<Sight<'_, 'a, N, D>> {
+        let Scene { moment, pose1, between } = self.scene(time)?;
+        let found = before.map_or_else(
+            || nearest_between(&between, N::INFINITY, Wanted::Deepest),
+            |before| nearest_again(&between, before.found.parts),
+        )?;
         let sizes = self.bodies[0].size() + self.bodies[1].size();
-        let size = max_component(&pair.pose12.translation) + sizes;
+        let size = max_component(&between.pair.pose12.translation) + sizes;
         let rounding = N::lit(8.0) * N::EPSILON * size;
+        let normal = pose1.vector(&found.separation.normal);
         Some(Sight {
             gap: found.separation.distance - self.target,
             size,
             tolerance: self.tolerance.map_or(rounding, |tolerance| max(tolerance, rounding)),
-            pose1: one.pose,
             points: [found.separation.point1, found.separation.point2]
-                .map(|point| one.pose.point(&point).coords),
-            moment: Moment {
-                normal: one.pose.vector(&found.separation.normal),
-                bodies: self.bodies.each_ref(),
-                origin: self.origin,
-                poses,
-                centers,
-                time,
-            },
-            between,
+                .map(|point| pose1.point(&point).coords),
+            scene: Scene { moment: Moment { normal, ..moment }, pose1, between },
             found,
         })
     }
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
     fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
-        if self.contact_at_start {
-            return true;
-        }
-        let (closing, noise) = sight.moment.closing(&sight.points, sight.size);
+        let (closing, noise) = sight.scene.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
-        let deep = sight.gap < -sight.tolerance;
-        closing > noise || (deep && closing >= -noise) || sight.gap == -N::INFINITY
+        self.contact_at_start || is_hit_at_start(sight.gap, closing, (sight.tolerance, noise))
     }
 
     /// The impact at a moment, seen from the world.
     fn impact(&self, sight: &Sight<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
-        let parts = sight.between.parts(sight.found.parts);
+        let parts = sight.scene.between.parts(sight.found.parts);
         let features = (N::tables().witness_features)(&parts.pair(), &sight.found.local);
         let [point1, point2] = sight.points.map(|point| (point + self.origin).into());
         Impact {
-            toi: sight.moment.time,
+            toi: sight.scene.moment.time,
             world1: point1,
             world2: point2,
-            normal: Unit::new_unchecked(sight.moment.normal),
+            normal: Unit::new_unchecked(sight.scene.moment.normal),
             part1: sight.found.parts[0],
             part2: sight.found.parts[1],
             feature1: features[0],
@@ -334,10 +345,14 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
         if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
     }
 
+    /// How near will do if more steps bring the bodies no nearer.
+    fn near(&self) -> N {
+        max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
+    }
+
     /// The bodies have been apart and are so near that it does if more steps bring them no nearer.
     fn is_near(&self, mode: Mode<N>) -> bool {
-        let share = max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON);
-        matches!(mode, Mode::Apart) && self.gap <= share * self.size
+        matches!(mode, Mode::Apart) && self.gap <= self.near()
     }
 
     /// How far the bodies may come nearer before it counts.
@@ -357,28 +372,60 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
     }
 }
 
-/// The largest step in which no two parts use up the excess.
-struct SafeStep<'s, 'b, 'a, N: Space<D>, const D: usize> {
+/// The largest step in which no two parts use up the excess: each two are advanced by themselves, until they do or
+/// others have done so earlier.
+struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
+    search: &'s Search<'a, N, D>,
     sight: &'s Sight<'b, 'a, N, D>,
+    mode: Mode<N>,
     /// The distance of parts at which the excess is used up.
     spent: N,
-    end: N,
     /// How fast any two parts can approach.
     rate: Rate<N>,
     step: N,
+    /// How many steps in a row the parts were near that ended the step.
+    near_steps: usize,
 }
 
-impl<N: Space<D>, const D: usize> PairVisitor<N, D> for SafeStep<'_, '_, '_, N, D> {
+impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
+    /// By how much two parts may come nearer in a scene, and for how long they certainly do not; `None` if they cannot
+    /// in the time that is left, by their largest speed in any direction.
+    fn alone(&self, scene: &Scene<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
+        let (moment, end) = (&scene.moment, self.search.end);
+        let placed = scene.between.parts(parts);
+        let parts = moment.parts(&placed, &scene.pose1);
+        let way = min(moment.rate_of(&parts, end).way(left), self.rate.way(left));
+        let found = separation(&placed.pair(), self.spent + way)?;
+        let gap = found.distance - self.spent;
+        Some((gap, moment.safe_time_of(&parts, &found.normal, gap, end)))
+    }
+}
+
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N, D> {
     fn limit(&self) -> N {
         self.spent + self.rate.way(self.step)
     }
 
     fn visit(&mut self, parts: [u32; 2]) {
-        let Sight { moment, between, pose1, .. } = self.sight;
-        let placed = between.parts(parts);
-        let Some(found) = separation(&placed.pair(), self.limit()) else { return };
-        let gap = found.distance - self.spent;
-        let time = moment.safe_time_of_parts(&placed, pose1, &found.normal, gap, self.end);
-        self.step = min(time, self.step);
+        let start = self.sight.scene.moment.time;
+        let Some((_, mut step)) = self.alone(&self.sight.scene, parts, self.step) else { return };
+        let mut near_steps = 0;
+        // What is in contact may part and come back: all parts are looked at after each of its steps.
+        let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
+        for _ in 0..tries {
+            if step >= self.step {
+                return;
+            }
+            let Some(scene) = self.search.scene(start + step) else { break };
+            let Some((gap, safe)) = self.alone(&scene, parts, self.step - step) else { return };
+            near_steps = if gap <= self.sight.near() { near_steps + 1 } else { 0 };
+            if gap <= self.sight.tolerance || start + (step + safe) <= start + step {
+                break;
+            }
+            step += safe;
+        }
+        if step < self.step {
+            (self.step, self.near_steps) = (step, near_steps);
+        }
     }
 }
