@@ -1,5 +1,6 @@
 //! Curved solids against the reference that knows 25 digits: distances, depths and normals are right
-//! to the rounding of the scalar, not only to the tolerance of an iteration.
+//! to the rounding of the scalar, not only to the tolerance of an iteration. Where that is hardest, for cylinders
+//! and cones about axes that all but coincide, settings are changed little by little for the worst.
 //!
 //! The full table, of all kinds and beside another library, is `bench/accuracy.md`.
 
@@ -11,7 +12,7 @@ use impinge::shape::{
 };
 use impinge_reference::geometry::vector::{add, scale};
 use impinge_reference::precise::vector::rounded;
-use impinge_reference::precise::{Pose, Solid, signed_distance};
+use impinge_reference::precise::{Pose, Quad, Solid, separation_along, signed_distance};
 use impinge_reference::random::Random;
 
 const KINDS: usize = 7;
@@ -75,12 +76,7 @@ fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
         let at2 = at2.map(|x| N::lit(x).as_f64());
         let pose2 = Pose::from_quaternion(at2, q2);
         let truth = signed_distance(&solid1, &pose1, &solid2, &pose2);
-        let isometry = |at: [f64; 3], [i, j, k, w]: [f64; 4]| {
-            let [i, j, k, w] = [i, j, k, w].map(N::lit);
-            let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
-            Isometry3::from_parts(Translation::from(at.map(N::lit)), turn)
-        };
-        let (m1, m2) = (isometry([0.0; 3], q1), isometry(at2, q2));
+        let (m1, m2) = (isometry::<N>([0.0; 3], q1), isometry::<N>(at2, q2));
         let found = contact(&m1, &*shape1, &m2, &*shape2, N::lit(100.0)).expect("a contact");
         let error = (-found.depth.as_f64() - truth.distance.to_f64()).abs() / truth.size;
         if truth.is_settled(1e-17) && error > worst.0 {
@@ -88,6 +84,12 @@ fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
         }
     }
     worst
+}
+
+fn isometry<N: Space<3>>(at: [f64; 3], [i, j, k, w]: [f64; 4]) -> Isometry3<N> {
+    let [i, j, k, w] = [i, j, k, w].map(N::lit);
+    let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
+    Isometry3::from_parts(Translation::from(at.map(N::lit)), turn)
 }
 
 fn pairs(rounds: usize) -> impl Iterator<Item = (usize, usize, usize)> {
@@ -105,4 +107,134 @@ fn curved_solids_in_double_precision() {
 fn curved_solids_in_single_precision() {
     let (error, what) = worst::<f32>(2, 12);
     assert!(error <= 1e-6, "off by {error} of the size: {what}");
+}
+
+/// Two cylinders or cones of which one is about the axis of the other, all but for little.
+#[derive(Clone, Debug)]
+struct Coaxial {
+    are_cones: [bool; 2],
+    /// The half height and the radius.
+    sizes: [[f64; 2]; 2],
+    turns: [[f64; 4]; 2],
+    at: [f64; 3],
+}
+
+/// As the scalar has it.
+fn single<N: Real>(x: f64) -> f64 {
+    N::lit(x).as_f64()
+}
+
+/// The turn of a quaternion of any length near zero to one of the scalar, as [`quaternion`] has it.
+fn turn<N: Real>(q: [f64; 4], random: &mut Random) -> [f64; 4] {
+    for wobble in 0..100 {
+        let wobble = N::EPSILON.as_f64() * f64::from(wobble.min(2));
+        let moved = q.map(|x| x + wobble * random.range(-1.0, 1.0));
+        let length = moved.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let unit = moved.map(|x| single::<N>(x / length));
+        let excess: f64 = unit.iter().map(|x| x * x).sum::<f64>() - 1.0;
+        if excess.abs() <= N::EPSILON.as_f64() / 2.0 {
+            return unit;
+        }
+    }
+    [0.0, 0.0, 0.0, 1.0]
+}
+
+impl Coaxial {
+    fn new<N: Real>(random: &mut Random) -> Self {
+        let ratio = [1.0, random.magnitude(1e-4, 20)][random.below(2)];
+        let size = |random: &mut Random| random.magnitude(0.125, 5);
+        let sizes = [1.0, ratio].map(|scale| [(); 2].map(|()| single::<N>(scale * size(random))));
+        let lean = [random.magnitude(1e-9, 28), 10.0][usize::from(random.chance(0.25))];
+        let turns = [(); 2].map(|()| {
+            let straight = *random.pick(&[[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0]]);
+            let any = random.quaternion();
+            turn::<N>(std::array::from_fn(|i| straight[i] + lean * any[i]), random)
+        });
+        let offset = ratio.min(1.0) * random.magnitude(1e-9, 28);
+        let at = random.vector::<3>(1.0).map(|x| single::<N>(offset * x));
+        Self { are_cones: [(); 2].map(|()| random.chance(0.5)), sizes, turns, at }
+    }
+
+    /// The same with something changed a little.
+    fn changed<N: Real>(&self, random: &mut Random) -> Self {
+        let strength = random.magnitude(1e-6, 18);
+        let mut change = |x: f64, by: f64| single::<N>(x + by * strength * random.range(-1.0, 1.0));
+        let mut next = self.clone();
+        let length = self.at.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        next.sizes = next.sizes.map(|size| size.map(|x| change(x, x)));
+        next.at = next.at.map(|x| change(x, length));
+        let turns = next.turns.map(|q| q.map(|x| change(x, 1.0)));
+        next.turns = turns.map(|q| turn::<N>(q, random));
+        next
+    }
+
+    fn solid<N: Space<3>>(&self, index: usize) -> (ShapeHandle<N, 3>, Solid<3>) {
+        let [half, radius] = self.sizes[index];
+        let [a, b] = self.sizes[index].map(N::lit);
+        if self.are_cones[index] {
+            (ShapeHandle::new(Cone::new(a, b)), Solid::cone(half, radius))
+        } else {
+            (ShapeHandle::new(Cylinder::new(a, b)), Solid::cylinder(half, radius))
+        }
+    }
+
+    /// By how many units another normal parts them farther than the contact says, or its own less far.
+    fn units<N: Space<3>>(&self) -> f64 {
+        let ((shape1, solid1), (shape2, solid2)) = (self.solid::<N>(0), self.solid::<N>(1));
+        let pose1 = Pose::from_quaternion([0.0; 3], self.turns[0]);
+        let pose2 = Pose::from_quaternion(self.at, self.turns[1]);
+        let truth = signed_distance(&solid1, &pose1, &solid2, &pose2);
+        let (m1, m2) = (isometry::<N>([0.0; 3], self.turns[0]), isometry(self.at, self.turns[1]));
+        let found = contact(&m1, &*shape1, &m2, &*shape2, N::INFINITY).expect("a contact");
+        let normal = found.normal.into_inner().map(Real::as_f64).into();
+        let own = separation_along(&solid1, &pose1, &solid2, &pose2, &normal).expect("bounded");
+        let distance = -Quad::new(found.depth.as_f64());
+        let error = (truth.distance.max(own) - distance).max(distance - own);
+        error.max(truth.distance - own).to_f64() / (truth.size * N::EPSILON.as_f64())
+    }
+}
+
+/// The worst of some settings, changed again and again where that makes it worse.
+fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
+    const KEPT: usize = 3;
+    let (tries, changes) = (searched(150), searched(150));
+    let mut random = Random::new(seed);
+    let mut kept: Vec<(f64, Coaxial)> = Vec::new();
+    for index in 0..tries + changes {
+        let old = (index >= tries).then(|| index % KEPT);
+        let setting = match old {
+            Some(old) => kept[old].1.changed::<N>(&mut random),
+            None => Coaxial::new::<N>(&mut random),
+        };
+        let units = setting.units::<N>();
+        match old {
+            Some(old) if units > kept[old].0 => kept[old] = (units, setting),
+            Some(_) => {}
+            None => {
+                kept.push((units, setting));
+                kept.sort_by(|a, b| b.0.total_cmp(&a.0));
+                kept.truncate(KEPT);
+            }
+        }
+    }
+    let worst = kept.iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("some are kept");
+    (worst.0, format!("{:?}", worst.1))
+}
+
+/// As many settings as the variable `IMPINGE_WORST` says, or some.
+fn searched(some: usize) -> usize {
+    let asked = std::env::var("IMPINGE_WORST").ok();
+    asked.map_or(some, |asked| asked.parse().expect("IMPINGE_WORST is a number of settings"))
+}
+
+#[test]
+fn worst_depths_of_coaxial_solids_in_double_precision() {
+    let (units, what) = worst_coaxial::<f64>(3);
+    assert!(units <= 16.0, "off by {units} units: {what}");
+}
+
+#[test]
+fn worst_depths_of_coaxial_solids_in_single_precision() {
+    let (units, what) = worst_coaxial::<f32>(4);
+    assert!(units <= 16.0, "off by {units} units: {what}");
 }

@@ -56,6 +56,12 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// normals from the first core to the second.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
 
+    /// The axes of the round sides of both cores, and the sines by which their normals, as normals from the
+    /// first core to the second, lean along them.
+    fn round_sides(&self) -> [Option<(Vector<N, D>, N)>; 2] {
+        [None, None]
+    }
+
     /// The point of the first or second core that is lowest along the unit vector `normal`, or
     /// highest, on the part of the core that `on` lies on.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
@@ -174,6 +180,11 @@ where
         [self.solid1.round_face(normal), face2.map(|face| -(self.rotation * face))]
     }
 
+    fn round_sides(&self) -> [Option<(Vector<N, D>, N)>; 2] {
+        let side2 = self.solid2.round_side();
+        [self.solid1.round_side(), side2.map(|(axis, rise)| (-(self.rotation * axis), rise))]
+    }
+
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D> {
         let corner = Branch { is_second, on: *on, bend: None };
         if is_second {
@@ -196,7 +207,7 @@ where
     }
 
     fn peak(&self) -> Option<Peak<N, D>> {
-        self.peaks?.best(self.shrink, tolerance())
+        self.peaks?.best(self.shrink, noise())
     }
 }
 

@@ -15,6 +15,7 @@ use super::hull::Hull;
 use super::newton::settles;
 use super::peak::at_peak;
 use super::polish::{lowest, polish};
+use super::side::better;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
@@ -36,9 +37,27 @@ pub(super) fn deepest<N: Real>(
         return at_peak(difference, &peak);
     }
     match from_simplex(difference, simplex) {
-        Ok(corners) => grow(difference, &mut Hull::new(corners)),
+        Ok(corners) => {
+            let mut hull = Hull::new(corners);
+            let grown = grow(difference, &mut hull);
+            beside(difference, &mut hull, &grown).unwrap_or(grown)
+        }
         Err(flat) => flat,
     }
+}
+
+/// What the rings of round sides have that is better than what growing led to.
+fn beside<N: Real>(
+    difference: &dyn Difference<N, 3>,
+    hull: &mut Hull<N>,
+    grown: &Separation<N, 3>,
+) -> Option<Separation<N, 3>> {
+    let found = better(difference, &grown.normal, grown.distance)?;
+    hull.keep(&found.lowest);
+    Some(match found.mix {
+        Some(mix) => placed(&found.best, &mix, N::HALF),
+        None => locate(difference, &found.best, hull.vertices()),
+    })
 }
 
 /// The corners of a tetrahedron to start with; or the answer at once, if the difference is flat.

@@ -25,6 +25,7 @@ mod peak;
 mod polish;
 mod refine;
 mod separation;
+mod side;
 mod simplex;
 mod simplex2;
 mod simplex3;
@@ -54,8 +55,9 @@ use gjk::Answer;
 /// the distance of their origins, it falls short of the exact signed distance by a few
 /// `N::EPSILON · s` for cores with flat faces and for curved ones that say how they bend
 /// ([`SupportMap::curved_support`]); for others that are curved by about the larger of that and
-/// `2⁻⁴⁰ · s`; only where a whole ring of normals is nearly as good, as deep in nearly coaxial
-/// cylinders or cones, a local search ends the work, which may fall short by some `10⁻⁷ · s`. The
+/// `2⁻⁴⁰ · s`; where a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or cones, the
+/// ring of a round side is searched ([`SupportMap::round_side`]), and only where that is none and all around is
+/// about as good, as in the middle of a ball, a local search ends the work, which may fall short by more. The
 /// points lie on the cores to the same accuracy, on curved ones that do not say how they bend to about its
 /// square root at worst.
 /// Where several normals are equally good (coincident centres, say) one is picked, the

@@ -148,6 +148,11 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
         (direction.y < N::ZERO).then(|| -Vector::<N, 3>::y())
     }
 
+    fn round_side(&self) -> Option<(Vector<N, 3>, N)> {
+        let (normal, _) = unit(&Vector::<N, 2>::new(N::TWO * self.half_height, self.radius))?;
+        Some((Vector::<N, 3>::y(), normal.y))
+    }
+
     fn reach(&self) -> N {
         length_of(&Vector::<N, 2>::new(self.half_height, self.radius))
     }

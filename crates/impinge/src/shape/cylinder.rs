@@ -139,6 +139,10 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
         Some(if direction.y < N::ZERO { -up } else { up })
     }
 
+    fn round_side(&self) -> Option<(Vector<N, 3>, N)> {
+        Some((Vector::<N, 3>::y(), N::ZERO))
+    }
+
     fn reach(&self) -> N {
         length_of(&Vector::<N, 2>::new(self.half_height, self.radius))
     }

@@ -120,6 +120,10 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Rounded<N, D> {
         self.map().round_face(direction)
     }
 
+    fn round_side(&self) -> Option<(Vector<N, D>, N)> {
+        self.map().round_side()
+    }
+
     fn rounding(&self) -> N {
         self.map().rounding() + self.radius
     }

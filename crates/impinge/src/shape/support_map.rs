@@ -77,6 +77,15 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         None
     }
 
+    /// The axis of the round side of the core, a unit vector, and the sine by which the normals of the side
+    /// lean along it: zero for a cylinder. `None` if there is no such side.
+    ///
+    /// In or beside another solid about the same axis a whole ring of these normals is about as good; there
+    /// a local search has nothing to go by. The default is `None`.
+    fn round_side(&self) -> Option<(Vector<N, D>, N)> {
+        None
+    }
+
     /// A point well inside the core.
     fn center(&self) -> Point<N, D> {
         Point::origin()

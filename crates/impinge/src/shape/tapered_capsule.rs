@@ -169,6 +169,10 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         Some(CurvedSupport { point: center + direction * radius, bend: across * radius })
     }
 
+    fn round_side(&self) -> Option<(Vector<N, D>, N)> {
+        self.taper().map(|taper| (taper.along, taper.sine))
+    }
+
     fn center(&self) -> Point<N, D> {
         self.segment.center()
     }
