@@ -146,9 +146,7 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
 
 /// The unit vector along an axis.
 fn axis_vector<N: Real, const D: usize>(axis: usize) -> Vector<N, D> {
-    let mut vector = Vector::<N, D>::zeros();
-    vector[axis] = N::ONE;
-    vector
+    Vector::<N, D>::from_fn(|row, _| if row == axis { N::ONE } else { N::ZERO })
 }
 
 const fn has(set: u32, axis: usize) -> bool {
@@ -496,8 +494,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
-        let magnitudes = Scale::try_new(scale)?.magnitudes();
-        let half_extents = self.half_extents.component_mul(&magnitudes);
+        let half_extents = self.half_extents.component_mul(&Scale::try_new(scale)?.magnitudes());
         Ok(ShapeHandle::new(Self::try_new(half_extents)?))
     }
 }

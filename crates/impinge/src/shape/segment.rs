@@ -90,17 +90,19 @@ pub(super) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>)
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// The box around a few points of a solid placed at `pose`, no farther than `size` from its origin; rounded
-/// outwards, and that of everything where the numbers end.
+/// The box around a few points of a solid placed at `pose`; rounded outwards, and that of everything where the
+/// numbers end.
 pub(super) fn box_at<N: Real, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     points: [&Point<N, D>; K],
-    size: N,
 ) -> Aabb<N, D> {
+    let mut size = N::ZERO;
     let mut low = Vector::<N, D>::repeat(N::INFINITY);
     let mut high = -low;
     for point in points {
         let turned = pose.vector(&point.coords);
+        // No less than its distance from the origin, and without a root.
+        size = max(point.iter().fold(N::ZERO, |sum, x| sum + x.abs()), size);
         for axis in 0..D {
             (low[axis], high[axis]) = (min(turned[axis], low[axis]), max(turned[axis], high[axis]));
         }
@@ -137,7 +139,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Segment<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        box_at(pose, [&self.a, &self.b], self.reach())
+        box_at(pose, [&self.a, &self.b])
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -218,10 +218,8 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let [around1, around2] = [0, 1].map(|end| {
-            let center = self.end(end);
-            box_at(pose, [center], length_of(&center.coords)).loosened(self.radii[end])
-        });
+        let [around1, around2] =
+            [0, 1].map(|end| box_at(pose, [self.end(end)]).loosened(self.radii[end]));
         around1.merged(&around2)
     }
 

@@ -115,7 +115,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Triangle<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        box_at(pose, self.corners.each_ref(), self.reach())
+        box_at(pose, self.corners.each_ref())
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -201,7 +201,7 @@ fn bounds_hold_in_the_plane() {
     bounds_in_the_plane::<f64>();
 }
 
-/// The box of a hull is the smallest: each face of it touches a vertex.
+/// The box of a hull is the smallest, up to rounding: each face of it touches a vertex.
 #[test]
 fn boxes_of_hulls_are_tight() {
     let pose = Isometry3::rotation(Vector::<f64, 3>::new(0.4, 0.5, -0.2));
@@ -209,6 +209,7 @@ fn boxes_of_hulls_are_tight() {
     let found = aabb(&hull, &pose);
     for axis in 0..3 {
         let top = hull.vertices().iter().map(|v| (pose * v)[axis]).fold(f64::MIN, f64::max);
-        assert!((found.maxs()[axis] - top).abs() < 1e-15, "axis {axis}");
+        let room = found.maxs()[axis] - top;
+        assert!((-4.0 * f64::EPSILON..64.0 * f64::EPSILON).contains(&room), "axis {axis}: {room}");
     }
 }
