@@ -201,7 +201,7 @@ fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
     let mut random = Random::new(seed);
     let mut kept: Vec<(f64, Coaxial)> = Vec::new();
     for index in 0..tries + changes {
-        let old = (index >= tries).then(|| index % KEPT);
+        let old = (index >= tries).then_some(index % KEPT);
         let setting = match old {
             Some(old) => kept[old].1.changed::<N>(&mut random),
             None => Coaxial::new::<N>(&mut random),

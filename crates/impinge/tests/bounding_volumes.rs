@@ -290,6 +290,14 @@ fn random_box<N: Real, const D: usize>(random: &mut Random) -> Aabb<N, D> {
     Aabb::from_half_extents(Point::from(center), Vector::<N, D>::from_fn(|i, _| N::lit(half[i])))
 }
 
+/// The corner that is the greatest along the axes whose bits are set.
+fn corner_of<N: Real, const D: usize>(aabb: &Aabb<N, D>, bits: usize) -> Exact<D> {
+    std::array::from_fn(|axis| {
+        let ends = [aabb.mins()[axis], aabb.maxs()[axis]];
+        exact(ends[bits >> axis & 1])
+    })
+}
+
 /// A box made of others holds what the numbers say.
 fn boxes<N: Space<D>, const D: usize>(seed: u64, pose: fn(&mut Random) -> Pose<N, D>) {
     let mut random = Random::new(seed);
@@ -307,14 +315,8 @@ fn boxes<N: Space<D>, const D: usize>(seed: u64, pose: fn(&mut Random) -> Pose<N
             let way = exact(velocity[axis]) * Quad::new(time);
             assert!(exact(swept.mins()[axis]) <= low.min(low + way), "{one:?} {swept:?}");
             assert!(exact(swept.maxs()[axis]) >= high.max(high + way), "{one:?} {swept:?}");
-            let at = |bits: usize| {
-                let corner = std::array::from_fn(|i| {
-                    exact(if bits >> i & 1 == 0 { one.mins()[i] } else { one.maxs()[i] })
-                });
-                placed(&pose, &corner)[axis]
-            };
             for bits in 0..1 << D {
-                let at = at(bits);
+                let at = placed(&pose, &corner_of(&one, bits))[axis];
                 assert!(exact(turned.mins()[axis]) <= at, "{one:?} at {pose:?}: {turned:?}");
                 assert!(exact(turned.maxs()[axis]) >= at, "{one:?} at {pose:?}: {turned:?}");
             }

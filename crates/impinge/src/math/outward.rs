@@ -3,11 +3,13 @@
 //! The error of a sum is itself a number of the type (Knuth, "The Art of Computer Programming", volume 2, theorem
 //! 4.2.2 B), so that a sum without an error stays as it is: boxes whose corners are numbers of the type are exact.
 
+use core::ops::{Add, Sub};
+
 use super::Real;
 
 /// `a + b`, and by how much the exact sum is more; NaN beyond the range of the scalar.
 #[inline(always)]
-pub(super) fn sum_and_error<N: Real>(a: N, b: N) -> (N, N) {
+pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b: N) -> (N, N) {
     let sum = a + b;
     let of_b = sum - a;
     (sum, (a - (sum - of_b)) + (b - of_b))
