@@ -5,12 +5,11 @@ mod query_support;
 
 use composite_support::Pieces;
 use composite_support::scenes::{Maker, Scene};
-use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use impinge::bounding_volume::Aabb;
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Pose, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
 use impinge::query::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, distance, impact,
     nonlinear_time_of_impact,
@@ -211,37 +210,7 @@ fn what_slides_over_the_floor_meets_the_wall() {
     assert_eq!(impact(&still, &slide, &short), None, "too late");
 }
 
-/// A motion that counts how often it is asked where the body is.
-struct Counted<'a, N: Space<D>, const D: usize>(ConstantVelocities<N, D>, &'a Cell<u32>);
-
-impl<N: Space<D>, const D: usize> RigidMotion<N, D> for Counted<'_, N, D>
-where
-    ConstantVelocities<N, D>: RigidMotion<N, D>,
-{
-    fn position_at(&self, time: N) -> N::Isometry {
-        self.0.position_at(time)
-    }
-
-    fn speed_bound(&self, from: N, to: N) -> N {
-        self.0.speed_bound(from, to)
-    }
-
-    fn turn_bound(&self, from: N, to: N) -> N {
-        self.0.turn_bound(from, to)
-    }
-
-    fn pose_about(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
-        self.1.set(self.1.get() + 1);
-        self.0.pose_about(origin, time)
-    }
-
-    fn constant_velocities(&self) -> Option<&ConstantVelocities<N, D>> {
-        Some(&self.0)
-    }
-}
-
-/// The impact of a shape that moves with one that stays at the origin: it is found by at most 1000 places
-/// of what moves, nothing touches before it, and at it the shapes are within what counts as near.
+/// The impact of a shape that moves with one that stays at the origin: nothing touches before it, and at it the shapes are within what counts as near.
 fn slides<N, R, const D: usize>(
     motion: ConstantVelocities<N, D>,
     mover: &dyn Shape<N, D>,
@@ -253,11 +222,8 @@ where
     R: AbstractRotation<N, D> + Copy + std::fmt::Debug,
     ConstantVelocities<N, D>: RigidMotion<N, D>,
 {
-    let (here, count) = (Isometry::identity(), Cell::new(0));
-    let (counted, still) = (Counted(motion, &count), ConstantVelocities::<N, D>::still(here));
-    let found = nonlinear_time_of_impact(&counted, mover, &still, stays, options);
-    let places = count.get();
-    assert!(places <= 1000, "{places} places: {found:?} {motion:?}");
+    let still = ConstantVelocities::<N, D>::still(Isometry::identity());
+    let found = nonlinear_time_of_impact(&motion, mover, &still, stays, options);
     let end = found.map_or(options.max_time, |found| found.toi);
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
     for look in 0..24 {
@@ -384,6 +350,80 @@ fn screws_are_looked_at_a_few_times() {
             assert!(times <= most, "{times} times each part for {rise}: {found:?}");
         }
     }
+}
+
+/// The impact of two composites whose parts lie along their axes is that of the first two parts that meet, each two
+/// advanced as solids of their own.
+fn both_turn<N: Space<D>, const D: usize>(
+    motions: &[ConstantVelocities<N, D>; 2],
+    shapes: &[Pieces<N, D>; 2],
+) -> bool
+where
+    ConstantVelocities<N, D>: RigidMotion<N, D>,
+{
+    let options = ImpactOptions::new().with_max_time(N::ONE);
+    let hit = |one: &dyn Shape<N, D>, two: &dyn Shape<N, D>| {
+        let found = nonlinear_time_of_impact(&motions[0], one, &motions[1], two, &options);
+        found.map_or(N::INFINITY, |found| found.toi)
+    };
+    let found = hit(&shapes[0], &shapes[1]);
+    let [parts1, parts2] = shapes.each_ref().map(|pieces| &pieces.parts);
+    let pairs = parts1.iter().flat_map(|one| parts2.iter().map(move |two| (one, two)));
+    let times = pairs.map(|(one, two)| hit(one.1.as_shape(), two.1.as_shape()));
+    let first = times.fold(N::INFINITY, |a, b| if b < a { b } else { a });
+    let is_same = found == first || (found - first).abs() <= N::lit(1e-3);
+    assert!(is_same, "{found} and {first}, {motions:?}");
+    found.is_finite_number()
+}
+
+/// Patches that lie close to each other and turn, each about a centre of its own, or one of them alone.
+fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
+    let (random, mut hits) = (&mut Random(31, false), [0, 0]);
+    for round in 0..40 {
+        let speed = N::lit([4.0, 0.5, 0.0][round % 3]);
+        let turns = [N::ONE, speed];
+        let bumps: Vec<_> = (0..32).map(|_| random.vector::<N, 3>() * N::lit(0.06)).collect();
+        let at = |index: usize, height: f64| {
+            let flat = [index % 4, index / 4 % 4].map(|place| N::lit(place as f64 - 1.5));
+            Vector::<N, 3>::new(flat[0], N::lit(height), flat[1]) + bumps[index]
+        };
+        let corner = |index: u32| [index, index + 1, index + 5, index + 4];
+        let cells = [0, 1, 2, 4, 5, 6, 8, 9, 10].map(corner);
+        let faces: Vec<_> = cells.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let patch = |first: usize, height: f64| {
+            let points = (first..first + 16).map(|index| Point::from(at(index, height)));
+            Pieces::mesh(&points.collect::<Vec<_>>(), &faces)
+        };
+        let motions = turns.map(|turn| {
+            let [linear, angular, center] =
+                [0.5, 1.0, 2.0].map(|x| random.vector::<N, 3>() * N::lit(x));
+            ConstantVelocities::<N, 3>::new(Isometry3::identity(), linear * turn, angular * turn)
+                .with_local_center(center.into())
+        });
+        hits[0] += u32::from(both_turn(&motions, &[patch(0, 0.0), patch(16, 0.15)]));
+
+        let chain = |first: usize, height: f64| {
+            let place = |index: usize| {
+                let x = N::lit((index - first) as f64 * 0.25 - 2.0);
+                Point::<N, 2>::new(x + bumps[index].x, N::lit(height) + bumps[index].y)
+            };
+            Pieces::chain(&(first..first + 16).map(place).collect::<Vec<_>>())
+        };
+        let motions = turns.map(|turn| {
+            let [linear, center] = [0.5, 2.0].map(|x| random.vector::<N, 2>() * N::lit(x));
+            let spin = random.vector::<N, 2>().x * turn;
+            ConstantVelocities::<N, 2>::new(Isometry2::identity(), linear * turn, spin)
+                .with_local_center(center.into())
+        });
+        hits[1] += u32::from(both_turn(&motions, &[chain(0, 0.0), chain(16, 0.15)]));
+    }
+    assert!(hits.iter().all(|&hits| (10..40).contains(&hits)), "{hits:?}");
+}
+
+#[test]
+fn composites_that_turn_meet_by_their_parts() {
+    patches_that_turn::<f32>();
+    patches_that_turn::<f64>();
 }
 
 #[test]

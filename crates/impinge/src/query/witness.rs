@@ -112,7 +112,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     if !between.pair.pose12.is_finite() {
         return None;
     }
-    let found = nearest_between(&between, limit, Wanted::Deepest)?;
+    let found = nearest_between(&between, limit, Wanted::Deepest, None)?;
     if !found.separation.distance.is_finite_number() {
         return None;
     }

@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
     /// A half-space comes nearer to all parts alike, so that the nearest is the first: unless there are some that
     /// it touches from the start, of which each counts for itself.
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
-        let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest);
+        let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
         self.hold(nearest.parts);
         if self.first.is_some_and(|first| first.arrival.along <= N::ZERO) {

@@ -13,6 +13,7 @@ mod point;
 mod ray;
 mod separation;
 mod slabs;
+mod sweep;
 
 pub(crate) use between::{Between, PartPair};
 pub(crate) use contacts::{
@@ -25,5 +26,6 @@ pub(crate) use point::{Near, PartPoint, nearest_part};
 pub(crate) use ray::{RayQuestion, each_hit};
 pub(in crate::query) use separation::separation;
 pub(crate) use separation::{
-    PairVisitor, PartSeparation, Wanted, nearest_again, nearest_between, visit_near_pairs,
+    PairVisitor, PartSeparation, Wanted, nearest_between, visit_near_pairs,
 };
+pub(crate) use sweep::Sweep;

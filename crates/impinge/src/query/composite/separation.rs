@@ -3,6 +3,7 @@
 use super::between::{Between, by_number};
 use super::bounds::loosened;
 use super::slabs::Slabs;
+use super::sweep::Sweep;
 use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::query::Pair;
@@ -33,7 +34,7 @@ pub(in crate::query) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let found = nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest);
+    let found = nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest, None);
     found.map(|found| found.separation)
 }
 
@@ -47,31 +48,28 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
         loosened(max(self.limit(), N::ZERO))
     }
 
+    /// Distances are those from where the parts of the first shape (0) or the second (1) go, in the frame of the
+    /// other; `None` if they stay where they are.
+    fn sweep(&self, _which: usize) -> Option<Sweep<N, D>> {
+        None
+    }
+
     fn visit(&mut self, parts: [u32; 2]);
 }
 
-/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. See
-/// [`visit_near_pairs`] for the cost.
+/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. Parts that are
+/// likely to be these can be asked `first`: they bound the search. See [`visit_near_pairs`] for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
     wanted: Wanted,
+    first: Option<[u32; 2]>,
 ) -> Option<PartSeparation<N, D>> {
     let mut nearest = Nearest { between, limit, wanted, best: None };
-    visit_near_pairs(between, &mut nearest);
-    nearest.best
-}
-
-/// The nearest or deepest parts where two have been so before: these are asked first, and bound the search.
-pub(crate) fn nearest_again<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
-    parts: [u32; 2],
-) -> Option<PartSeparation<N, D>> {
-    let mut nearest = Nearest { between, limit: N::INFINITY, wanted: Wanted::Deepest, best: None };
-    nearest.visit(parts);
-    if between.composites().iter().any(Option::is_some) {
-        visit_near_pairs(between, &mut nearest);
+    if let Some(parts) = first {
+        nearest.visit(parts);
     }
+    visit_near_pairs(between, &mut nearest);
     nearest.best
 }
 
@@ -91,7 +89,7 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
         [Some(parts1), None] => search.of_one(1, 0, parts1),
         [None, Some(parts2)] => match between.pair.first {
             Kind::Plane(plane) => {
-                search.outside((0, 0), parts2, || Slabs::of_half_space(between, plane));
+                search.outside(0, 0, parts2, |sweep| Slabs::of_half_space(between, plane, sweep));
             }
             _ => search.of_one(0, 0, parts2),
         },
@@ -108,19 +106,22 @@ impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
     /// A part of one shape, the first or the second, against those of the other that are near.
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
-        self.outside((which, part), others, || Slabs::of_part(between, which, part));
+        self.outside(which, part, others, |sweep| Slabs::of_part(between, which, part, sweep));
     }
 
     /// The same but for parts that slabs tell to be farther than matters; these are made for the first that is asked.
     fn outside(
         &mut self,
-        (which, part): (usize, u32),
+        which: usize,
+        part: u32,
         others: &dyn CompositeShape<N, D>,
-        slabs: impl Fn() -> Slabs<N, D>,
+        slabs: impl Fn(Option<&Sweep<N, D>>) -> Slabs<N, D>,
     ) {
-        let (aabb, mut made) = (self.between.aabb_in_other(which, part), None);
+        let (sweep, mut made) = (self.visitor.sweep(which), None);
+        let aabb = self.between.aabb_in_other(which, part);
+        let aabb = sweep.map_or(aabb, |sweep| sweep.of_box(&aabb));
         others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
-            let slabs = made.get_or_insert_with(&slabs);
+            let slabs = made.get_or_insert_with(|| slabs(sweep.as_ref()));
             if !slabs.are_beyond(&others.part(other), self.visitor.limit()) {
                 self.visitor.visit(if which == 0 { [part, other] } else { [other, part] });
             }
@@ -131,11 +132,12 @@ impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
     /// The parts of the composite with fewer of them, each against all of the other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
-        let bound = self.visitor.bound();
-        if self.between.are_boxes_beyond(bound) {
+        let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());
+        let aabb = self.between.whole_in_other(1 - which);
+        let aabb = sweep.map_or(aabb, |sweep| sweep.of_box(&aabb));
+        if sweep.is_none() && self.between.are_boxes_beyond(bound) {
             return;
         }
-        let aabb = self.between.whole_in_other(1 - which);
         fewer.search().nearest(&aabb, bound, &mut |part, _| {
             self.of_one(which, part, more);
             self.visitor.bound()
@@ -163,6 +165,9 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for Nearest<'_, N, D> {
     }
 
     fn visit(&mut self, parts: [u32; 2]) {
+        if self.best.is_some_and(|best| best.parts == parts) {
+            return;
+        }
         let placed = self.between.parts(parts);
         let Some(found) = of_convex(&placed.pair(), self.limit()) else { return };
         let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };

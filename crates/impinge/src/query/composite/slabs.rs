@@ -3,13 +3,14 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::between::Between;
-use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
+use super::sweep::Sweep;
+use crate::math::{Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Part, PartSolid, Plane};
 
 /// Gaps are loosened by so many rounding units of all lengths.
 const ROUNDING: f64 = 128.0;
 
-/// Slabs that a solid lies in, in the frame of the composite that it is held against.
+/// Slabs that a solid lies in, in the frame of the composite that it is held against, while it moves.
 pub(super) struct Slabs<N: Real, const D: usize> {
     /// Heights are measured from here.
     origin: Vector<N, D>,
@@ -26,63 +27,63 @@ struct Slab<N: Real, const D: usize> {
     highest: N,
 }
 
-type Corners<N, const D: usize> = SmallVec<[Vector<N, D>; 3]>;
-
 impl<N: Space<D>, const D: usize> Slabs<N, D> {
     /// Of a half-space that the second shape is held against: its slab has one side.
-    pub(super) fn of_half_space(between: &Between<'_, N, D>, plane: &Plane<N, D>) -> Self {
+    pub(super) fn of_half_space(
+        between: &Between<'_, N, D>,
+        plane: &Plane<N, D>,
+        sweep: Option<&Sweep<N, D>>,
+    ) -> Self {
         let Pose { translation: origin, .. } = between.pose21;
         let along = between.pose21.vector(plane.normal());
-        let slab = Slab { along, lowest: -N::INFINITY, highest: N::ZERO };
-        Self { origin, size: N::ZERO, slabs: smallvec![slab] }
+        // What is unbounded goes anywhere, so far at most.
+        let highest = sweep.map_or(N::ZERO, |sweep| sweep.spread);
+        let slab = Slab { along, lowest: -N::INFINITY, highest };
+        Self { origin, size: highest, slabs: smallvec![slab] }
     }
 
     /// Of a part of the first shape (0) or the second (1); none of what is not given by its corners.
-    pub(super) fn of_part(between: &Between<'_, N, D>, which: usize, part: u32) -> Self {
+    pub(super) fn of_part(
+        between: &Between<'_, N, D>,
+        which: usize,
+        part: u32,
+        sweep: Option<&Sweep<N, D>>,
+    ) -> Self {
         let mut slabs =
             Self { origin: Vector::<N, D>::zeros(), size: N::ZERO, slabs: SmallVec::new() };
         let Some((part, pose)) = between.part_in_other(which, part) else { return slabs };
-        let corners = corners(&part.solid, &pose);
-        if let Some(first) = corners.first() {
-            let own = max_component(&part.pose.translation);
-            let place = max(own, max_component(&pose.translation));
-            slabs.size = corners.iter().fold(place, |size, at| max(max_component(at), size));
-            slabs.origin = *first;
-            slabs.surround(&corners.iter().map(|corner| corner - first).collect());
-        }
+        let Some(corners) = corners(&part.solid, &pose) else { return slabs };
+        let own = max_component(&part.pose.translation);
+        let place = max(own, max_component(&pose.translation));
+        slabs.origin = corners[0];
+        let ends = corners.map(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
+        let all = corners.iter().chain(&ends);
+        slabs.size = all.fold(place, |size, at| max(max_component(at), size));
+        let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
+        slabs.surround(&corners.map(|at| at - corners[0]), &ends.map(|at| at - corners[0]), spread);
         slabs
     }
 
-    /// Adds slabs around corners that are seen from the first of them.
-    fn surround(&mut self, corners: &Corners<N, D>) {
-        let [_, one, ref rest @ ..] = corners[..] else { return };
-        let Some(other) = rest.first() else {
-            self.add(&one, corners);
-            return self.add(&normal_to(&one, &Vector::<N, D>::zeros()), corners);
-        };
-        self.add(&without(other, &one), corners);
-        self.add(&without(&one, other), corners);
-        self.add(&without(&one, &(other - one)), corners);
-        self.add(&normal_to(&one, other), corners);
-    }
-
-    fn add(&mut self, direction: &Vector<N, D>, corners: &Corners<N, D>) {
-        let Some((along, _)) = unit(direction) else { return };
-        let (lowest, highest) = range(corners, &along);
-        self.slabs.push(Slab { along, lowest, highest });
+    /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
+    fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
+        let [_, one, other] = corners;
+        let across_sides = [without(other, one), without(one, other), without(one, &(other - one))];
+        for direction in across_sides.into_iter().chain([normal_to(one, other)]) {
+            let Some((along, _)) = unit(&direction) else { continue };
+            let (start, end) = (range(corners, &along), range(ends, &along));
+            let (lowest, highest) = (min(start.0, end.0) - spread, max(start.1, end.1) + spread);
+            self.slabs.push(Slab { along, lowest, highest });
+        }
     }
 
     /// A part of the composite is certainly farther from the solid than a limit; overlaps count as negative.
     pub(super) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
-        let mut corners = corners(&part.solid, &part.pose);
-        if corners.is_empty() || self.slabs.is_empty() {
+        if self.slabs.is_empty() {
             return false;
         }
-        let mut size = self.size;
-        for corner in &mut corners {
-            *corner -= self.origin;
-            size = max(max_component(corner), size);
-        }
+        let Some(corners) = corners(&part.solid, &part.pose) else { return false };
+        let corners = corners.map(|corner| corner - self.origin);
+        let size = corners.iter().fold(self.size, |size, at| max(max_component(at), size));
         let gap = self.slabs.iter().fold(-N::INFINITY, |gap, slab| {
             let (lowest, highest) = range(&corners, &slab.along);
             max(max(lowest - slab.highest, slab.lowest - highest), gap)
@@ -93,25 +94,23 @@ impl<N: Space<D>, const D: usize> Slabs<N, D> {
     }
 }
 
-/// The placed corners of a part that is given by them.
+/// The placed corners of a part that is given by them; those of a segment begin and end at the same.
 fn corners<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     pose: &Pose<N, D>,
-) -> Corners<N, D> {
-    let placed = |corner: &Point<N, D>| pose.point(corner).coords;
-    match solid {
-        PartSolid::Triangle(triangle) => triangle.corners().iter().map(placed).collect(),
-        PartSolid::Segment(segment) => [segment.a(), segment.b()].map(placed).into_iter().collect(),
-        PartSolid::Shape(_) => Corners::new(),
-    }
+) -> Option<[Vector<N, D>; 3]> {
+    let corners = match solid {
+        PartSolid::Triangle(triangle) => *triangle.corners(),
+        PartSolid::Segment(segment) => [*segment.a(), *segment.b(), *segment.a()],
+        PartSolid::Shape(_) => return None,
+    };
+    Some(corners.map(|corner| pose.point(&corner).coords))
 }
 
 /// How low and how high the corners lie along a direction.
-fn range<N: Real, const D: usize>(corners: &[Vector<N, D>], along: &Vector<N, D>) -> (N, N) {
-    corners.iter().fold((N::INFINITY, -N::INFINITY), |(lowest, highest), corner| {
-        let height = corner.dot(along);
-        (min(height, lowest), max(height, highest))
-    })
+fn range<N: Real, const D: usize>(corners: &[Vector<N, D>; 3], along: &Vector<N, D>) -> (N, N) {
+    let [a, b, c] = [0, 1, 2].map(|index| corners[index].dot(along));
+    (min(min(a, b), c), max(max(a, b), c))
 }
 
 /// A vector less what is along another.

@@ -8,7 +8,7 @@
 use super::motion::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
-use crate::query::composite::PartPair;
+use crate::query::composite::{PartPair, Sweep};
 use crate::shape::{Geometry, Shape};
 
 /// At most so many spans are tried to find how far a bound carries.
@@ -214,6 +214,41 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
         });
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
+    }
+
+    /// Where the points of a body go in a time, in the frame of the other, for constant velocities. `rate` bounds how
+    /// fast any two points approach.
+    ///
+    /// A point that is at `u` from the other body's centre has the velocity `u' - S u` in the frame of that body,
+    /// which turns by `S`: a linear function of its place. Its derivative, `u'' - 2 S u' + S² u`, bends the way.
+    pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> Sweep<N, D> {
+        let way = rate.way(span);
+        let [body, other] = [which, 1 - which].map(|index| self.bodies[index]);
+        let [Some(own), Some(frame)] = [body.constant(), other.constant()] else {
+            return Sweep::anywhere(way);
+        };
+        let [center, pivot] = [self.centers[which], self.centers[1 - which]];
+        let [turn, turning] = [body, other].map(|body| body.turn_bound(self.time, self.time));
+        let swing = product(turn, body.arm);
+        let speed = self.drift(None, self.time) + swing;
+        let far = length(&(center - pivot)) + body.reach + speed * span;
+        let bends =
+            product(turn, swing) + N::TWO * turning * speed + product(turning * turning, far);
+        let bend = product(bends * N::HALF, span * span);
+        let pose = &self.poses[1 - which];
+        let (spin, linear) = (own.spin - frame.spin, own.linear - frame.linear);
+        let place = pose.translation;
+        let shift = linear + own.spin * (place - center) - frame.spin * (place - pivot);
+        let size = max(max_component(&place), max_component(&center))
+            + far
+            + max(body.size(), other.size());
+        let spread = bend + N::lit(64.0) * N::EPSILON * (size + way);
+        if spread < way {
+            let shift = pose.inverse_vector(&shift) * span;
+            let turn = pose.rotation.tr_mul(&(spin * pose.rotation)) * span;
+            return Sweep { turn, shift, spread };
+        }
+        Sweep::anywhere(way)
     }
 
     /// The parts of the bodies go their own ways, and it is known how they do.

@@ -55,8 +55,7 @@ impl<N: Real, const D: usize> Path<N, D> {
 
     /// Whether a contact at the start counts.
     fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        self.contact_at_start
-            || is_hit_at_start(gap, self.closing(normal), (tolerance, self.noise()))
+        self.contact_at_start || is_hit_at_start(gap, self.closing(normal), tolerance, self.noise())
     }
 }
 
@@ -76,7 +75,7 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
 /// nor gets deeper, or gets less deep, is none. What overlaps without bound is never parted.
 ///
 /// Up to the tolerance the gap, and up to the noise the speed at which it closes, is none.
-pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, (tolerance, noise): (N, N)) -> bool {
+pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, tolerance: N, noise: N) -> bool {
     let deep = gap < -tolerance;
     closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
 }

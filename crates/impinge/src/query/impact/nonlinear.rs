@@ -8,7 +8,7 @@ use core::iter;
 use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
 use crate::query::Pair;
 use crate::query::composite::{
-    Between, PairVisitor, PartSeparation, Wanted, nearest_again, nearest_between, visit_near_pairs,
+    Between, PairVisitor, PartSeparation, Sweep, Wanted, nearest_between, visit_near_pairs,
 };
 use crate::query::pair::{Placed, order};
 use crate::query::separation::separation;
@@ -28,6 +28,9 @@ const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
 /// Parts of composites are looked at one by one where they are apart by that much of the sizes at most.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
+
+/// They are advanced by themselves for as long as no point moves by more than that much of the sizes.
+const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// The first impact of two bodies that move and turn.
 ///
@@ -59,9 +62,9 @@ const PARTS_WITHIN: f64 = 1.0 / 128.0;
 /// 2006) of the fastest point of the shape and by how much its path can bend, or by spheres around the
 /// bodies while these are apart. A half-space that turns is fastest far out: its speed counts there
 /// where the other body can be. Composites are seen as a whole, by their largest speed, until they are within 1/128 of
-/// their sizes; then, for constant velocities, each two of their parts that are so near are advanced by themselves, by
-/// a normal and a speed of their own, until the first two touch. So all parts are searched twice for each 1/128 of the
-/// sizes that the fastest point moves by, however many steps those take that slide on each other.
+/// their sizes; then, for constant velocities, each two of their parts whose ways can cross are advanced by themselves,
+/// by a normal and a speed of their own, until the first two touch. So all parts are searched twice for each 1/32 of
+/// the sizes that the fastest point moves by, however many steps those take that slide on each other.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -219,18 +222,19 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
                 return Some(self.impact(&sight, ImpactStatus::Reached));
             }
             let time = sight.scene.moment.time;
-            let (step, near) = self.step(&sight, mode);
-            if time >= self.end || step > self.end - time || !step.is_finite_number() {
+            let step = self.step(&sight, mode);
+            if time >= self.end || step.time > self.end - time || !step.time.is_finite_number() {
                 return None;
             }
-            let later = time + step;
+            let later = time + step.time;
             if later <= time {
                 // A speed without bound carries nowhere; any other is smaller than time can tell.
+                let is_small = step.time > N::ZERO;
                 let status =
-                    if step > N::ZERO { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
+                    if is_small { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
                 return Some(self.impact(&sight, status));
             }
-            near_steps += near;
+            near_steps += step.near_steps;
             match self.look(if later < self.end { later } else { self.end }, Some(&sight)) {
                 Some(next) => sight = next,
                 None => break,
@@ -239,29 +243,32 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
         Some(self.impact(&sight, ImpactStatus::StepsSpent))
     }
 
-    /// For how long nothing can happen, and how many steps of parts that were near led there.
-    fn step(&self, sight: &Sight<'_, 'a, N, D>, mode: Mode<N>) -> (N, usize) {
+    /// For how long nothing can happen.
+    fn step(&self, sight: &Sight<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &sight.scene.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
         let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
         let (excess, apart) = (sight.excess(mode), between - radius1 - radius2 - self.target);
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
-        let within = N::lit(PARTS_WITHIN) * (self.bodies[0].size() + self.bodies[1].size());
-        if excess >= within || !moment.has_parts_on_known_ways() {
-            return (whole, 0);
+        let whole = Step { time: whole, near_steps: 0 };
+        let size = self.bodies[0].size() + self.bodies[1].size();
+        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_ways() {
+            return whole;
         }
         let rate = moment.first_order(self.end);
+        let longest = min(rate.time_for(N::lit(PARTS_WAY) * size), self.end - moment.time);
         let mut parts = PartSteps {
             search: self,
             sight,
             mode,
             spent: sight.found.separation.distance - excess,
             rate,
-            step: min(rate.time_for(within), self.end - moment.time),
-            near_steps: 0,
+            step: Step { time: longest, near_steps: 0 },
         };
+        // The nearest are likely to end the step: what the others do later is then not asked.
+        parts.visit(sight.found.parts);
         visit_near_pairs(&sight.scene.between, &mut parts);
-        if parts.step > whole { (parts.step, parts.near_steps) } else { (whole, 0) }
+        if parts.step.time > whole.time { parts.step } else { whole }
     }
 
     /// The bodies at a time; `None` if a pose is not finite.
@@ -289,10 +296,8 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     /// nearest before is so still, or bounds the search.
     fn look(&self, time: N, before: Option<&Sight<'_, 'a, N, D>>) -> Option<Sight<'_, 'a, N, D>> {
         let Scene { moment, pose1, between } = self.scene(time)?;
-        let found = before.map_or_else(
-            || nearest_between(&between, N::INFINITY, Wanted::Deepest),
-            |before| nearest_again(&between, before.found.parts),
-        )?;
+        let first = before.map(|before| before.found.parts);
+        let found = nearest_between(&between, N::INFINITY, Wanted::Deepest, first)?;
         let sizes = self.bodies[0].size() + self.bodies[1].size();
         let size = max_component(&between.pair.pose12.translation) + sizes;
         let rounding = N::lit(8.0) * N::EPSILON * size;
@@ -312,7 +317,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
         let (closing, noise) = sight.scene.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
-        self.contact_at_start || is_hit_at_start(sight.gap, closing, (sight.tolerance, noise))
+        self.contact_at_start || is_hit_at_start(sight.gap, closing, sight.tolerance, noise)
     }
 
     /// The impact at a moment, seen from the world.
@@ -382,8 +387,14 @@ struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     spent: N,
     /// How fast any two parts can approach.
     rate: Rate<N>,
-    step: N,
-    /// How many steps in a row the parts were near that ended the step.
+    step: Step<N>,
+}
+
+/// For how long nothing can happen.
+#[derive(Clone, Copy, Debug)]
+struct Step<N> {
+    time: N,
+    /// How many steps in a row the parts were near that end it.
     near_steps: usize,
 }
 
@@ -403,29 +414,33 @@ impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N, D> {
     fn limit(&self) -> N {
-        self.spent + self.rate.way(self.step)
+        self.spent
+    }
+
+    fn sweep(&self, which: usize) -> Option<Sweep<N, D>> {
+        Some(self.sight.scene.moment.sweep(which, &self.rate, self.step.time))
     }
 
     fn visit(&mut self, parts: [u32; 2]) {
-        let start = self.sight.scene.moment.time;
-        let Some((_, mut step)) = self.alone(&self.sight.scene, parts, self.step) else { return };
+        let (start, longest) = (self.sight.scene.moment.time, self.step.time);
+        let Some((_, mut time)) = self.alone(&self.sight.scene, parts, longest) else { return };
         let mut near_steps = 0;
         // What is in contact may part and come back: all parts are looked at after each of its steps.
         let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
         for _ in 0..tries {
-            if step >= self.step {
+            if time >= longest {
                 return;
             }
-            let Some(scene) = self.search.scene(start + step) else { break };
-            let Some((gap, safe)) = self.alone(&scene, parts, self.step - step) else { return };
+            let Some(scene) = self.search.scene(start + time) else { break };
+            let Some((gap, safe)) = self.alone(&scene, parts, longest - time) else { return };
             near_steps = if gap <= self.sight.near() { near_steps + 1 } else { 0 };
-            if gap <= self.sight.tolerance || start + (step + safe) <= start + step {
+            if gap <= self.sight.tolerance || start + (time + safe) <= start + time {
                 break;
             }
-            step += safe;
+            time += safe;
         }
-        if step < self.step {
-            (self.step, self.near_steps) = (step, near_steps);
+        if time < longest {
+            self.step = Step { time, near_steps };
         }
     }
 }

@@ -83,7 +83,7 @@ fn of_composites<N: Space<D>, const D: usize>(
     if !between.pair.pose12.is_finite() {
         return None;
     }
-    nearest_between(&between, limit, wanted).map(|found| found.separation)
+    nearest_between(&between, limit, wanted, None).map(|found| found.separation)
 }
 
 /// A separation in the frame of one solid, in that of the world.
