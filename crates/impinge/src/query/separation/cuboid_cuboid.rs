@@ -103,23 +103,31 @@ impl<N: Real> Reference<N> {
         below
     }
 
+    /// The part of a polygon that is above the face, or beside it by a slack at most.
+    fn above(&self, polygon: &Polygon<N>, slack: N) -> Polygon<N> {
+        let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        across.iter().fold(polygon.clone(), |polygon, &axis| {
+            let bound = self.half[axis] + slack;
+            clipped(&clipped(&polygon, axis, N::ONE, bound), axis, -N::ONE, bound)
+        })
+    }
+
     /// The middle of the lowest points of the other box among those above this face; `pose` is the
     /// other box's in the frame of this one, `distance` how low its lowest point is known to be.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
         let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
         let facing = face_toward(other, &pose.inverse_vector(&direction));
-        let mut polygon: Polygon<N> = facing.iter().map(|corner| pose.point(corner)).collect();
-        for axis in [(self.axis + 1) % 3, (self.axis + 2) % 3] {
-            polygon = clipped(&polygon, axis, N::ONE, self.half[axis]);
-            polygon = clipped(&polygon, axis, -N::ONE, self.half[axis]);
-        }
-        if polygon.is_empty() {
-            // No point is above this face: boxes that are apart, or rounding.
-            polygon.extend(facing.iter().map(|corner| pose.point(corner)));
-        }
-        let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));
+        let facing: Polygon<N> = facing.iter().map(|corner| pose.point(corner)).collect();
         let size = self.half.sum() + other.sum() + distance.abs();
-        let flat = lowest + N::lit(16.0) * N::EPSILON * size;
+        let noise = N::lit(16.0) * N::EPSILON * size;
+        // Up to rounding, no point may be above a face without width; none is if the boxes are apart.
+        let mut above = self.above(&facing, N::ZERO);
+        if above.is_empty() {
+            above = self.above(&facing, noise);
+        }
+        let polygon = if above.is_empty() { facing } else { above };
+        let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));
+        let flat = lowest + noise;
         let low: Polygon<N> = polygon.into_iter().filter(|p| self.height(p) <= flat).collect();
         crate::math::centroid(&low)
     }

@@ -328,7 +328,9 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
     {
-        return deepest_within(&between, limit).map(in_world);
+        // Points that differ by rounding alone are all there, whatever the limit.
+        let found = deepest_within(&between, max(limit, rounding(&between)));
+        return found.filter(|found| found.distance <= limit).map(in_world);
     }
     let nearest = of_ordered(&ordered, limit)?;
     // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
