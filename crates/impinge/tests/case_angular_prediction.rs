@@ -2,11 +2,11 @@
 //! solid and a surface where `contact` has one, whatever its angular prediction.
 
 use impinge::math::na::{Quaternion, Translation3, UnitQuaternion};
-use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::contact;
 use impinge::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
-use impinge::shape::{Polyline, ShapeHandle, TriMesh};
+use impinge::shape::{Plane, Polyline, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_reference::random::Random;
 
@@ -145,4 +145,88 @@ fn what_is_near_has_a_contact_in_space() {
 fn what_is_near_has_a_contact_in_the_plane() {
     in_the_plane::<f32>(3);
     in_the_plane::<f64>(4);
+}
+
+/// A box that stands on an edge of its bottom, tilted by an angle, upon a floor: how many of the four corners of its
+/// bottom are contacts.
+fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
+    solid: &ShapeHandle<N, 3>,
+    floor: &ShapeHandle<N, 3>,
+    tilt: f64,
+    angle: f64,
+) -> usize {
+    // The edge at the left end of the bottom is on the floor.
+    let (sine, cosine) = tilt.sin_cos();
+    let at = [cosine - sine, cosine + sine, 0.0].map(N::lit);
+    let pose = Isometry3::new(Vector::from(at), Vector::<N, 3>::z() * N::lit(tilt));
+    let upon = (pose, solid.clone());
+    let below = (Isometry3::identity(), floor.clone());
+    let pairs = [[&upon, &below], [&below, &upon]];
+    let [count, flipped] = pairs.map(|pair| contacts_of(pair, N::lit(1e-3), angle));
+    assert_eq!(count, flipped, "whichever is first: {solid:?} {floor:?} {tilt} {angle}");
+    count
+}
+
+/// Corners beyond the prediction count where turning by the angular prediction brings them as near.
+fn corners_that_turning_brings_near<N: Space<3, Isometry = Isometry3<N>>>() {
+    let one = Vector::<N, 3>::repeat(N::ONE);
+    let corner =
+        |index: u32| {
+            Point::from(Vector::<N, 3>::from_fn(|axis, _| {
+                if index >> axis & 1 == 1 { N::ONE } else { -N::ONE }
+            }))
+        };
+    let corners: Vec<_> = (0..8).map(corner).collect();
+    let wide = Cuboid::new(Vector::<N, 3>::new(N::lit(8.0), N::ONE, N::lit(8.0)));
+    let lowered = |index: usize| {
+        let place = |axis: usize| corners[index][axis] * wide.half_extents()[axis];
+        Point::<N, 3>::new(place(0), place(1) - N::ONE, place(2))
+    };
+    let slab: Vec<_> = (0..8).map(lowered).collect();
+    let solids =
+        [ShapeHandle::new(Cuboid::new(one)), ShapeHandle::new(ConvexHull::from_points(&corners))];
+    let floors = [
+        ShapeHandle::new(ConvexHull::from_points(&slab)),
+        ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<N, 3>::y()))),
+    ];
+    for (solid, floor) in solids.iter().flat_map(|solid| floors.iter().map(move |f| (solid, f))) {
+        for tilt in [0.01, 0.1, 0.25] {
+            let counts = [0.0, tilt / 8.0, tilt * 2.0]
+                .map(|angle| corners_of_tilted_box(solid, floor, tilt, angle));
+            assert_eq!(counts, [2, 2, 4], "{solid:?} on {floor:?}, tilted by {tilt}");
+        }
+    }
+}
+
+#[test]
+fn corners_that_turning_brings_near_are_contacts() {
+    corners_that_turning_brings_near::<f32>();
+    corners_that_turning_brings_near::<f64>();
+}
+
+/// The same of two boxes, whose pairs are computed in batches: all pairs of a batch have angles of their own.
+#[test]
+fn corners_of_boxes_in_batches() {
+    type V = Vector<f64, 3>;
+    let mut world = CollisionWorld::<f64, 3, ()>::new(0.02);
+    let shapes = [V::new(1.0, 1.0, 1.0), V::new(4.0, 1.0, 4.0)].map(Cuboid::new);
+    let mut expected = Vec::new();
+    for index in 0..43_u32 {
+        let (tilt, angle) = (0.05_f64, [0.0, 0.2, 0.004][index as usize % 3]);
+        let (sine, cosine) = tilt.sin_cos();
+        let away = V::new(0.0, 0.0, 20.0 * f64::from(index));
+        let at = away + V::new(cosine - sine, cosine + sine + 1.0, 0.0);
+        let pose = Isometry3::new(at, V::z() * tilt);
+        let query = GeometricQueryType::Contacts(5e-4, angle);
+        let groups = CollisionGroups::new();
+        let upon = world.add(pose, ShapeHandle::new(shapes[0]), groups, query, ());
+        let floor = Isometry3::new(away, V::zeros());
+        let below = world.add(floor, ShapeHandle::new(shapes[1]), groups, query, ());
+        expected.push((upon, below, if angle > tilt { 4 } else { 2 }));
+    }
+    world.update();
+    for (upon, below, count) in expected {
+        let found = world.contact_pair(upon, below).map_or(0, |pair| pair.num_contacts());
+        assert_eq!(found, count, "{upon:?}");
+    }
 }

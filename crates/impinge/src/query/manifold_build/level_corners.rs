@@ -2,7 +2,7 @@
 //!
 //! How deep a corner is follows from how far it is above the lowest one along the normal. Names, order and
 //! numbers are those of [facets](super::facet) over a [half-space](super::half_space), which define this and
-//! which take over where this declines: solids that may turn, other kinds, cores hardly longer than rounding.
+//! which take over for other kinds and cores hardly longer than rounding.
 
 use smallvec::SmallVec;
 
@@ -29,10 +29,7 @@ pub(super) fn build<N: Real>(
     let Kind::Plane(plane) = pair.second else { return false };
     let normal = -pair.pose12.vector(plane.normal());
     let ground = Ground { normal, origin: pair.pose12.translation, request };
-    // Not so either where the angle is no number.
-    let asks_no_angle = request.sine <= N::ZERO;
     match pair.first {
-        _ if !asks_no_angle => false,
         Kind::Cuboid(cuboid) => ground.settle((cuboid, N::ZERO), out),
         Kind::Polytope(hull) => ground.settle((hull, N::ZERO), out),
         Kind::Triangle(triangle) => ground.settle((triangle, N::ZERO), out),
@@ -56,7 +53,7 @@ struct Ground<'a, N: Real> {
 }
 
 /// The point of a core that is farthest along the normal, and what follows from it.
-struct Lowest<N: Real> {
+struct Lowest<'a, N: Real> {
     normal: Vector<N, 3>,
     core: Point<N, 3>,
     /// How far along the normal it is.
@@ -65,9 +62,10 @@ struct Lowest<N: Real> {
     radius: N,
     /// Of the whole solid from the half-space.
     distance: N,
-    /// Corners that are farther above it are left out.
+    /// Corners up to this far above it count without turning.
     most: N,
     tolerance: N,
+    request: &'a ManifoldRequest<N>,
 }
 
 /// A point of the solid's surface that may enter the manifold.
@@ -95,33 +93,27 @@ impl<N: Real> Ground<'_, N> {
         let size = solid.reach() + radius + self.origin.norm();
         let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
         let (height, most) = (normal.dot(&core.coords), prediction - distance + tolerance);
-        let lowest = Lowest { normal, core, height, radius, distance, most, tolerance };
+        let request = self.request;
+        let lowest = Lowest { normal, core, height, radius, distance, most, tolerance, request };
         let mut corners = Corners::new();
         let is_plain = solid.list(&lowest, &mut corners);
         if is_plain {
             out.normal = normal;
-            lowest.keep(&mut corners, self.request, out);
+            lowest.keep(&mut corners, out);
         }
         is_plain
     }
 }
 
-impl<N: Real> Lowest<N> {
+impl<N: Real> Lowest<'_, N> {
     /// Replaces the points of a manifold by corners, as many as are asked for.
-    fn keep(
-        &self,
-        corners: &mut Corners<N>,
-        request: &ManifoldRequest<N>,
-        out: &mut RawManifold<N, 3>,
-    ) {
+    fn keep(&self, corners: &mut Corners<N>, out: &mut RawManifold<N, 3>) {
         let mut deepest = 0;
-        for at in 0..corners.len() {
-            corners[at].distance =
-                min(max(corners[at].distance, self.distance), request.prediction);
+        for at in 1..corners.len() {
             deepest = if corners[at].distance < corners[deepest].distance { at } else { deepest };
         }
         corners[deepest].distance = self.distance;
-        let limit = request.max_points.max(1);
+        let limit = self.request.max_points.max(1);
         if corners.len() <= limit && renewed(corners, out) {
             return;
         }
@@ -140,11 +132,20 @@ impl<N: Real> Lowest<N> {
         choose(&mut candidates, (self.distance, self.tolerance), limit, out);
     }
 
-    /// Adds a corner that is so far above the lowest one, unless that is too far.
+    /// Adds a corner that is so far above the lowest one, if it counts: beyond the prediction where turning about the
+    /// lowest one brings it as near.
     #[inline(always)]
     fn push(&self, id: FeatureId, point: Point<N, 3>, rise: N, out: &mut Corners<N>) {
+        let (prediction, distance) = (self.request.prediction, self.distance + rise);
         if rise <= self.most {
-            out.push(Corner { id, point, distance: self.distance + rise });
+            let distance = min(max(distance, self.distance), prediction);
+            out.push(Corner { id, point, distance });
+        } else if self.request.sine > N::ZERO {
+            let away = point - self.core;
+            let arm = (away - self.normal * self.normal.dot(&away)).norm();
+            if distance <= prediction + self.request.sine * arm {
+                out.push(Corner { id, point, distance });
+            }
         }
     }
 
@@ -185,11 +186,11 @@ fn renewed<N: Real>(corners: &Corners<N>, out: &mut RawManifold<N, 3>) -> bool {
 /// A solid of which a half-space sees corners.
 trait Cornered<N: Real>: SupportMap<N, 3> {
     /// Lists the corners in the order of the general builder; `false` if it is not plain which these are.
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool;
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool;
 }
 
 impl<N: Real> Cornered<N> for Cuboid<N, 3> {
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool {
         if lowest.radius > N::ZERO {
             return list_rounded(self, lowest, out);
         }
@@ -216,7 +217,11 @@ impl<N: Real> Cornered<N> for Cuboid<N, 3> {
 }
 
 /// The corners of the part that a rounded box shows.
-fn list_rounded<N: Real>(cuboid: &Cuboid<N, 3>, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+fn list_rounded<N: Real>(
+    cuboid: &Cuboid<N, 3>,
+    lowest: &Lowest<'_, N>,
+    out: &mut Corners<N>,
+) -> bool {
     let half = cuboid.half_extents();
     if half.iter().any(|&half| half <= N::lit(64.0) * lowest.tolerance) {
         return false;
@@ -245,7 +250,7 @@ fn list_rounded<N: Real>(cuboid: &Cuboid<N, 3>, lowest: &Lowest<N>, out: &mut Co
 }
 
 impl<N: Real> Cornered<N> for Triangle<N, 3> {
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool {
         let corners = self.corners();
         for (at, id) in (0_u32..3).enumerate() {
             if corners[..at].iter().all(|corner| *corner != corners[at]) {
@@ -258,7 +263,7 @@ impl<N: Real> Cornered<N> for Triangle<N, 3> {
 }
 
 impl<N: Real> Cornered<N> for Polytope<N, 3> {
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool {
         list_hull(Level::new(), self, lowest, out);
         true
     }
@@ -268,7 +273,7 @@ impl<N: Real> Cornered<N> for Polytope<N, 3> {
 fn list_hull<N: Real>(
     level: Level,
     hull: &Polytope<N, 3>,
-    lowest: &Lowest<N>,
+    lowest: &Lowest<'_, N>,
     out: &mut Corners<N>,
 ) {
     with_lanes!(level, simd => list_in_lanes::<_, N, N::Lanes<_>>(simd, hull, lowest, out));
@@ -278,11 +283,12 @@ fn list_hull<N: Real>(
 fn list_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     hull: &Polytope<N, 3>,
-    lowest: &Lowest<N>,
+    lowest: &Lowest<'_, N>,
     out: &mut Corners<N>,
 ) {
     let along: [V; 3] = spread(simd, &lowest.normal);
-    let (height, most) = (V::all(simd, lowest.height), V::all(simd, lowest.most));
+    let most = if lowest.request.sine > N::ZERO { N::INFINITY } else { lowest.most };
+    let (height, most) = (V::all(simd, lowest.height), V::all(simd, most));
     let (vertices, mut rises) = (hull.vertices(), [N::ZERO; LANES]);
     let mut first = 0;
     for block in hull.blocks() {
@@ -302,7 +308,7 @@ fn list_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 impl<N: Real> Cornered<N> for Segment<N, 3> {
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool {
         let ends = [*self.a(), *self.b()];
         let along = ends[1] - ends[0];
         let climb = lowest.normal.dot(&along);
@@ -327,7 +333,7 @@ impl<N: Real> Cornered<N> for Segment<N, 3> {
 }
 
 impl<N: Real> Cornered<N> for Capsule<N, 3> {
-    fn list(&self, lowest: &Lowest<N>, out: &mut Corners<N>) -> bool {
+    fn list(&self, lowest: &Lowest<'_, N>, out: &mut Corners<N>) -> bool {
         self.segment().list(lowest, out)
     }
 }

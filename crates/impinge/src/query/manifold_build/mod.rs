@@ -13,7 +13,6 @@
 
 mod along;
 mod ball;
-mod box_faces;
 mod box_lanes;
 mod box_sides;
 mod capsule_face;
@@ -35,7 +34,6 @@ mod patch_shelves;
 mod reduce;
 mod rod_face;
 mod segments;
-mod shown;
 mod stretch;
 #[cfg(test)]
 pub(super) mod tests;
@@ -126,9 +124,22 @@ pub(crate) fn contacts3<N: Real>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_space(pair, request.prediction), out);
     }
-    if box_faces::build(pair, request, out) || level_corners::build(pair, request, out) {
+    if let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (pair.first, pair.second) {
+        return box_lanes::build3([cuboid1, cuboid2], &pair.pose12, request, out);
+    }
+    if level_corners::build(pair, request, out) {
         return;
     }
+    contacts_of_separation3(pair, request, certificate, out);
+}
+
+/// The manifold of a pair in space from its separation.
+fn contacts_of_separation3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+    certificate: Option<&mut Certificate<N, 3>>,
+    out: &mut RawManifold<N, 3>,
+) {
     let (separation, likely) = if hulls::treats(pair) {
         hulls::separation_again(pair, request.prediction, certificate).unzip()
     } else {

@@ -11,8 +11,9 @@ use crate::shape::Cuboid;
 pub(super) struct Inputs<N: Real, const D: usize> {
     boxes: [Placed<N, D>; 2],
     prediction: [N; LANES],
-    /// The lanes whose request has no angle.
-    pub(super) straight: u64,
+    sine: [N; LANES],
+    /// A bit for each lane that has a pair.
+    pub(super) taken: u8,
 }
 
 /// The first or the second box of eight pairs.
@@ -28,25 +29,33 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     pub(super) const fn new() -> Self {
         let rows = [[N::ZERO; LANES]; D];
         let placed = Placed { rotation: [rows; D], translation: rows, half: rows };
-        Self { boxes: [placed; 2], prediction: [N::ZERO; LANES], straight: 0 }
+        let row = [N::ZERO; LANES];
+        Self { boxes: [placed; 2], prediction: row, sine: row, taken: 0 }
     }
 
     /// Takes up to eight pairs. Lanes beyond them keep what they had.
     #[inline(always)]
     pub(super) fn gather(&mut self, jobs: &[BoxJob<'_, N, D>]) {
-        self.straight = 0;
+        self.taken = 0;
         for (lane, job) in jobs.iter().enumerate().take(LANES) {
             for (index, placed) in self.boxes.iter_mut().enumerate() {
                 placed.put(lane & (LANES - 1), job.poses[index], job.cuboids[index]);
             }
             self.prediction[lane & (LANES - 1)] = job.request.prediction;
-            self.straight |= u64::from(job.request.sine <= N::ZERO) << lane;
+            self.sine[lane & (LANES - 1)] = job.request.sine;
+            self.taken |= 1 << lane;
         }
     }
 
     #[inline(always)]
     pub(super) fn prediction<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> V {
         V::load(simd, &self.prediction)
+    }
+
+    /// The sines of the angles that the boxes may turn by.
+    #[inline(always)]
+    pub(super) fn sine<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> V {
+        V::load(simd, &self.sine)
     }
 
     /// The boxes, the second of each pair in the frame of the first, as `Pose::relative` has it.

@@ -1,10 +1,10 @@
-//! Boxes against boxes, eight pairs at a time.
+//! Boxes against boxes, eight pairs at a time; a lone pair is a batch of one.
 //!
-//! The algorithms of `box_faces.rs` and `box_sides.rs` and of the separating axis tests, each lane of
-//! a vector another pair, and with the same bits: the operations of each lane are those of one pair in
-//! the same order. What depends on the pair is chosen by masks, and a corner of the common area has a
+//! Each lane of a vector is another pair, and never looks at its neighbours: the bits of a pair do not depend on
+//! the batch. What depends on the pair is chosen by masks, and a corner of the common area has a
 //! slot of its own whether it is there or not ([`admit`]). Only the choice of the points ([`choose`])
-//! goes pair by pair. What those two decline goes to the general builder here too, one by one.
+//! goes pair by pair. Flat boxes, and pairs whose nearest points are off the faces that face each other, fall back to
+//! the generic builder, one by one.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
 
@@ -54,8 +54,8 @@ trait Eights<N: Real, const D: usize> {
     /// The end, pair by pair, of the first eight.
     fn settle(&self, jobs: &mut [BoxJob<'_, N, D>]);
 
-    /// All of it for one pair, without lanes.
-    fn one_by_one(job: &mut BoxJob<'_, N, D>);
+    /// The generic builder for one pair.
+    fn fall_back(job: &mut BoxJob<'_, N, D>);
 }
 
 /// Brings the manifolds of pairs of boxes of the plane up to date, as [`update_box_pairs3`].
@@ -63,13 +63,23 @@ pub(crate) fn update_box_pairs2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
     update_at::<N, plane::Found<N>, 2>(Level::new(), jobs);
 }
 
-/// Brings the manifolds of pairs of boxes up to date: the same bits as
-/// [`contacts3`](super::contacts3) one by one.
+/// Brings the manifolds of pairs of boxes up to date.
 ///
 /// Any number of pairs; the last vector is filled up with leftovers if that is no multiple of eight,
 /// so a few hundred at a time are best.
 pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
     update_at::<N, space::Found<N>, 3>(Level::new(), jobs);
+}
+
+/// The manifold of two boxes of which the second is placed in the frame of the first: a batch of one.
+pub(super) fn build3<N: Real>(
+    cuboids: [&Cuboid<N, 3>; 2],
+    pose12: &Pose<N, 3>,
+    request: &ManifoldRequest<N>,
+    raw: &mut RawManifold<N, 3>,
+) {
+    let poses = [&Pose::identity(), pose12];
+    update_box_pairs3(&mut [BoxJob { poses, cuboids, request, raw }]);
 }
 
 /// [`update_box_pairs3`] with the vectors of an instruction set.

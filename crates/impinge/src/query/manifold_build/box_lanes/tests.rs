@@ -1,4 +1,4 @@
-//! Eight at a time against one by one, bit for bit, on every instruction set.
+//! A pair in a batch of any size has the bits of a batch of one, on every instruction set.
 
 use super::super::tests::scene::Random;
 use super::{BoxJob, Eights, plane, space, update_at};
@@ -77,7 +77,9 @@ fn compare<N: Real, E: Eights<N, D>, const D: usize>(
         let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
         let (mut expected, mut found) = (fresh(), fresh());
         for (step, cases) in steps.iter().enumerate() {
-            jobs(cases, &mut expected).iter_mut().for_each(E::one_by_one);
+            for job in jobs(cases, &mut expected) {
+                update_at::<N, E, D>(Level::new(), &mut [job]);
+            }
             update_at::<N, E, D>(level, &mut jobs(cases, &mut found));
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
                 assert_eq!(
@@ -141,8 +143,8 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-fn request<N: Real>(prediction: f64, max_points: usize) -> ManifoldRequest<N> {
-    ManifoldRequest { prediction: N::lit(prediction), sine: N::ZERO, max_points }
+fn request<N: Real>(max_points: usize, sine: f64) -> ManifoldRequest<N> {
+    ManifoldRequest { prediction: N::lit(0.05), sine: N::lit(sine), max_points }
 }
 
 /// 203 pairs of a kind, in three steps.
@@ -158,7 +160,10 @@ fn drawn<N: Real, E: Turning<N, D>, const D: usize>(
         snaps.iter().map(|&snap| Draw::new::<N, E>(&mut random, snap, lean)).collect();
     let mut steps = Vec::new();
     for _ in 0..3 {
-        steps.push(draws.iter().map(|draw| draw.case(unit, &request(0.05, points))).collect());
+        let sine = |index: usize| if index.is_multiple_of(4) { 0.05 } else { 0.0 };
+        let case =
+            |(index, draw): (usize, &Draw<D>)| draw.case(unit, &request(points, sine(index)));
+        steps.push(draws.iter().enumerate().map(case).collect());
         draws = draws.iter().map(|draw| draw.shaken::<N, E>(&mut random, 0.002)).collect();
     }
     steps

@@ -77,7 +77,7 @@ fn compare<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
             pose12: Pose { rotation, translation: Vector::<N, 3>::zeros() },
         };
         let normal = -pair.pose12.vector(&up);
-        let asked = request::<N>(0.05 * scale, 0.0);
+        let asked = request::<N>(0.05 * scale, [0.0, 0.0, 0.1][round / 10 % 3]);
         let deep = N::lit(random.between(-[0.1, 1.5][round / 40 % 2], 0.06) * scale);
         let found = separation_in_space(&pair, N::INFINITY).expect("near enough");
         pair.pose12.translation = normal * (deep - found.distance);

@@ -1,6 +1,5 @@
 //! What every manifold must be, over random poses and in scenes worked out by hand.
 
-mod box_faces;
 mod faces;
 mod lasting;
 mod level_corners;

@@ -53,16 +53,16 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
-        let is_ordinary = bits(is_near) & inputs.straight.to_le_bytes()[0];
+        let is_asked = bits(is_near) & inputs.taken;
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
-        if is_ordinary == 0 {
+        if is_asked == 0 {
             return;
         }
         let sides = Sides::meeting(simd, &boxes, &axis);
-        let limits = Limits { gap: axis.gap, prediction, tolerance: sides.tolerance };
-        let mut admission = Admission::new(simd, &limits);
+        let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
+        let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
         self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
-        let is_built = bits(admission.is_found() & sides.is_fit) & is_ordinary;
+        let is_built = bits(admission.is_found() & sides.is_fit) & is_asked;
         self.sides = [
             bits(sides.is_y),
             bits(sides.is_upward),
@@ -78,9 +78,9 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         axis.normal[0].store(&mut self.normal[0]);
         axis.normal[1].store(&mut self.normal[1]);
         let is_second = axis.is_second;
-        self.slots.place(
+        admission.admit(
             simd,
-            &limits,
+            &mut self.slots,
             #[inline(always)]
             |[place, _], height| sides.point1(simd, &boxes, is_second, (place, height)),
         );
@@ -99,12 +99,12 @@ impl<N: Real> Eights<N, 2> for Found<N> {
             } else if names.sides & 128 != 0 {
                 self.choose(lane, names, u32::from(slots[lane]), job);
             } else {
-                Self::one_by_one(job);
+                Self::fall_back(job);
             }
         }
     }
 
-    fn one_by_one(job: &mut BoxJob<'_, N, 2>) {
+    fn fall_back(job: &mut BoxJob<'_, N, 2>) {
         contacts2(&job.pair(), job.request, None, job.raw);
     }
 }

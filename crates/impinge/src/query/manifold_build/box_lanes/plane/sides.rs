@@ -101,7 +101,7 @@ impl<V, M> Sides<V, M> {
         }
     }
 
-    /// Fills the slots with the ends of what the sides share, as far as they are admitted. Answers for
+    /// Fills the slots with the ends of what the sides share. Answers for
     /// each slot whether it is at the first or the second end of the other side, a bit for each pair.
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real>(
@@ -128,8 +128,8 @@ impl<V, M> Sides<V, M> {
         }
         let (mut at_ends, [near, far], [low, high]) = ([0; 2 * SLOTS], &above, &below);
         for (slot, found) in [near, far, low, high].into_iter().enumerate() {
-            found.end.place.store(&mut slots.flat[0][slot]);
-            admission.admit(slots, slot, found.end.height, found.is_inside);
+            let flat = [found.end.place, V::all(simd, N::ZERO)];
+            admission.store(simd, slots, slot, &flat, found.end.height, found.is_inside);
             at_ends[2 * slot] = bits(found.at_end[0]);
             at_ends[2 * slot + 1] = bits(found.at_end[1]);
         }

@@ -75,16 +75,16 @@ where
         simd: S,
         faces: &'a Faces<V, M>,
         limits: &Limits<V>,
-        (slots, corners): (&'a mut Slots<N, 3, SLOTS>, &'a mut Corners),
+        slots: &'a mut Slots<N, 3, SLOTS>,
+        corners: &'a mut Corners,
     ) -> Self {
-        let (shown, admission) = (faces.shown(simd), Admission::new(simd, limits));
+        let (shown, admission) = (faces.shown(simd), Admission::new(simd, *limits));
         Self { simd, faces, shown, admission, slots, corners }
     }
 
-    /// Fills the slots with what the limits admit; answers where the lowest candidate has the gap for
-    /// its height.
+    /// Fills the slots with the candidates.
     #[inline(always)]
-    pub(super) fn run(mut self) -> M {
+    pub(super) fn run(mut self) -> Admission<V> {
         let above = [self.above(0), self.above(1), self.above(2), self.above(3)];
         let mut below = [self.below(0), self.below(1), self.below(2), self.below(3)];
         drop_coincident(&above, &mut below);
@@ -102,7 +102,7 @@ where
         self.crossings(CORNERS + 4, 0, false);
         self.crossings(CORNERS + 8, 1, true);
         self.crossings(CORNERS + 12, 1, false);
-        self.admission.is_found()
+        self.admission
     }
 
     /// Where a corner of the parallelogram is seen, and its height.
@@ -173,7 +173,7 @@ where
             self.corners.at_end[axis][slot] = bits(place.at_end[axis]);
             self.corners.beyond[axis][slot] = bits(place.beyond[axis]);
         }
-        self.admit(slot, (&place.flat, place.height), place.is_inside);
+        self.store(slot, &place.flat, place.height, place.is_inside);
     }
 
     /// Crossings of a side of the parallelogram with all sides of the rectangle.
@@ -214,15 +214,13 @@ where
         if PARTIAL {
             is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
         }
-        self.admit(slot, (&flat, height), is_there);
+        self.store(slot, &flat, height, is_there);
     }
 
-    /// Stores a candidate where it is and the prediction admits it.
+    /// Stores a candidate where it is.
     #[inline(always)]
-    fn admit(&mut self, slot: usize, (flat, height): (&[V; 2], V), is_there: M) {
-        flat[0].store(&mut self.slots.flat[0][slot]);
-        flat[1].store(&mut self.slots.flat[1][slot]);
-        self.admission.admit(self.slots, slot, height, is_there);
+    fn store(&mut self, slot: usize, flat: &[V; 2], height: V, is_there: M) {
+        self.admission.store(self.simd, self.slots, slot, flat, height, is_there);
     }
 }
 

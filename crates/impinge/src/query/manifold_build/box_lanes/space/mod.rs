@@ -1,4 +1,4 @@
-//! Boxes in space: `box_faces.rs` and the separating axis test in lanes.
+//! Boxes in 3D: the separating axis test, and the corners of the area that the two faces share.
 
 mod axis;
 mod clip;
@@ -17,7 +17,7 @@ use super::{BoxJob, Eights, LANES};
 use crate::math::lanes::lit;
 use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
-use crate::query::manifold_build::contacts3;
+use crate::query::manifold_build::contacts_of_separation3;
 
 /// What is known of eight pairs before points are chosen.
 pub(super) struct Found<N: Real> {
@@ -56,19 +56,20 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         self.is_apart = bits(is_apart & axis.is_finite);
-        let is_ordinary = bits(is_near) & inputs.straight.to_le_bytes()[0];
+        let is_asked = bits(is_near) & inputs.taken;
         self.is_built = 0;
-        if is_ordinary == 0 {
+        if is_asked == 0 {
             return;
         }
         let faces = Faces::meeting(simd, &boxes, &axis);
-        let limits = Limits { gap: axis.gap, prediction, tolerance: faces.tolerance };
-        let is_found = if bits(!faces.is_whole) & is_ordinary == 0 {
+        let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
+        let limits = Limits { gap, prediction, sine, tolerance };
+        let is_found = if bits(!faces.is_whole) & is_asked == 0 {
             self.fill::<S, V, false>(simd, &boxes, &faces, &limits)
         } else {
             self.fill::<S, V, true>(simd, &boxes, &faces, &limits)
         };
-        self.is_built = bits(is_found & faces.is_fit) & is_ordinary;
+        self.is_built = bits(is_found & faces.is_fit) & is_asked;
         self.sides = [
             bits(faces.is_w[0]),
             bits(faces.is_w[1]),
@@ -95,13 +96,13 @@ impl<N: Real> Eights<N, 3> for Found<N> {
             } else if self.is_built >> lane & 1 == 1 {
                 self.choose(lane, &columns, job);
             } else {
-                Self::one_by_one(job);
+                Self::fall_back(job);
             }
         }
     }
 
-    fn one_by_one(job: &mut BoxJob<'_, N, 3>) {
-        contacts3(&job.pair(), job.request, None, job.raw);
+    fn fall_back(job: &mut BoxJob<'_, N, 3>) {
+        contacts_of_separation3(&job.pair(), job.request, None, job.raw);
     }
 }
 
@@ -116,15 +117,15 @@ impl<N: Real> Found<N> {
         faces: &Faces<V, V::Mask>,
         limits: &Limits<V>,
     ) -> V::Mask {
-        let slots = (&mut self.slots, &mut self.corners);
-        let is_found = Clip::<_, _, _, _, PARTIAL>::new(simd, faces, limits, slots).run();
-        self.slots.place(
+        let (slots, corners) = (&mut self.slots, &mut self.corners);
+        let found = Clip::<_, _, _, _, PARTIAL>::new(simd, faces, limits, slots, corners).run();
+        found.admit(
             simd,
-            limits,
+            &mut self.slots,
             #[inline(always)]
             |flat, height| faces.point1::<_, _, PARTIAL>(simd, boxes, (flat, height)),
         );
-        is_found
+        found.is_found()
     }
 
     #[inline(always)]

@@ -5,7 +5,6 @@ use super::Sides;
 use super::clip::{CORNERS, SIGNS};
 use crate::math::Real;
 use crate::query::RawPoint;
-use crate::query::manifold_build::box_faces::{edge, face, vertex};
 use crate::shape::FeatureId;
 
 /// The parts of a face: three times the place along its first axis plus that along its second, where
@@ -60,6 +59,23 @@ const fn index_of(id: FeatureId) -> usize {
         FeatureId::Face(number) => (2, number as usize),
     };
     if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
+}
+
+/// The number of the vertex with these positive coordinates.
+const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
+    FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
+}
+
+/// The number of the edge along an axis, given the signs of the next axis and the one after.
+const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 4, 8];
+    FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
+}
+
+/// The number of the face on one side of an axis.
+const fn face(axis: usize, is_positive: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 2, 4];
+    FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
 const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
