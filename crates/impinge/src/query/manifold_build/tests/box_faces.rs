@@ -86,7 +86,7 @@ fn check<N: Real>(tolerance: f64) {
             continue;
         };
         touching += 1;
-        build3(&pair, &separation, (&request, None), &mut general);
+        build3(&pair, &separation, &request, &mut general);
         compare([&fused, &general], &separation, tolerance, round);
         crossings += usize::from(fused.points.len() > 4);
         let straight = |axis: Vector<N, 3>| axis.amax() > N::ONE - N::lit(1e-6);
@@ -143,7 +143,7 @@ fn check_turned<N: Real>(tolerance: f64) {
         if let (Some(separation), true) =
             (separation, box_faces::build(&pair, &request(), &mut fused))
         {
-            build3(&pair, &separation, (&request(), None), &mut general);
+            build3(&pair, &separation, &request(), &mut general);
             compare([&fused, &general], &separation, tolerance, round);
             counts.count(&fused.points);
             built += 1;

@@ -101,7 +101,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
     }
 
     fn one_by_one(job: &mut BoxJob<'_, N, 3>) {
-        contacts3(&job.pair(), job.request, None, job.raw);
+        contacts3(&job.pair(), job.request, job.raw);
     }
 }
 
