@@ -31,8 +31,8 @@ use crate::query::separation::{
 };
 use crate::query::tiles::TiledParts;
 use crate::query::{
-    BoxJob, Certificate, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving,
-    OnFace, Pair, Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
+    BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
+    Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
     contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
     tangents2, tangents3, time_of_pair, update_box_pairs2, update_box_pairs3, witness_feature2,
     witness_feature3, witness_features2, witness_features3, witness_in_world,
@@ -142,12 +142,8 @@ type CompositeManifoldsFn<N, const D: usize> = fn(
     u64,
     Vec<ContactManifold<N, D>>,
 ) -> Vec<ContactManifold<N, D>>;
-type ContactsFn<N, const D: usize> = fn(
-    &Pair<'_, N, D>,
-    &ManifoldRequest<N>,
-    Option<&mut Certificate<N, D>>,
-    &mut RawManifold<N, D>,
-);
+type ContactsFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type UpdateLanesFn<N, const D: usize> =
     fn([&Solid<N, D>; 2], &mut DueContacts<'_, '_, N, D>) -> bool;
 type FindPairsFn<N, const D: usize> =

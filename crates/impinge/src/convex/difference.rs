@@ -146,12 +146,7 @@ where
 
     /// An answer in units of the pair, in those of the caller.
     pub(super) fn restored(&self, found: &Separation<N, D>) -> Separation<N, D> {
-        Separation {
-            distance: found.distance * self.scale,
-            normal: found.normal,
-            point1: Point::from(found.point1.coords * self.scale),
-            point2: Point::from(found.point2.coords * self.scale),
-        }
+        found.scaled(self.scale)
     }
 }
 

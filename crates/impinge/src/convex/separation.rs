@@ -30,6 +30,16 @@ impl<N: Real, const D: usize> Separation<N, D> {
         }
     }
 
+    /// The same fact in other units of length.
+    pub(crate) fn scaled(&self, scale: N) -> Self {
+        Self {
+            distance: self.distance * scale,
+            normal: self.normal,
+            point1: Point::from(self.point1.coords * scale),
+            point2: Point::from(self.point2.coords * scale),
+        }
+    }
+
     /// The cores swollen by their rounding radii.
     pub(crate) fn rounded(&self, rounding1: N, rounding2: N) -> Self {
         Self {

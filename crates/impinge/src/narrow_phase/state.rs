@@ -5,9 +5,8 @@ use crate::query::composite::Between;
 use crate::query::far::{Apart, Bounds};
 use crate::query::pair::is_swapped;
 use crate::query::{
-    BoxJob, Certificate, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair,
-    PairQuestion, Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise,
-    own_distance,
+    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
+    Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
 };
 use crate::shape::{Geometry, Kind, Shape};
 
@@ -126,11 +125,6 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
     ) -> Self::Manifolds;
 }
 
-/// It is a hull or a box.
-const fn is_flat<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> bool {
-    matches!(shape.0, Kind::Polytope(_) | Kind::Cuboid(_))
-}
-
 /// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
 #[derive(Clone, Debug, Default)]
 #[repr(C)]
@@ -145,18 +139,8 @@ pub(crate) struct InOrder<C> {
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: InOrder<RawManifold<N, D>>,
-    aside: Aside<N, D>,
-}
-
-/// What is kept of a pair to bring its contacts up to date sooner.
-#[derive(Clone, Debug, Default)]
-enum Aside<N: Real, const D: usize> {
-    #[default]
-    Nothing,
     /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
-    Copies([Solid<N, D>; 2]),
-    /// Of hulls and boxes, what is clear of them in canonical order.
-    Clear(Certificate<N, D>),
+    solids: Option<[Solid<N, D>; 2]>,
 }
 
 /// The contacts of a pair of which one solid at least is a composite.
@@ -214,17 +198,8 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         {
             return;
         }
-        if let Aside::Clear(certificate) = &mut self.aside
-            && swapped != self.kept.swapped
-        {
-            certificate.forget();
-        }
         self.kept.turn(swapped, RawManifold::flip_names);
-        let certificate = match &mut self.aside {
-            Aside::Clear(certificate) => Some(certificate),
-            _ => None,
-        };
-        (N::tables().contacts)(&pair, request, certificate, &mut self.kept.contacts);
+        (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
     }
 
     fn manifolds(
@@ -254,19 +229,12 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     /// The solids are these from now on.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.map(Shape::geometry);
-        self.aside = match (Solid::of(one), Solid::of(other)) {
-            (Some(one), Some(other)) => Aside::Copies([one, other]),
-            _ if is_flat(one) && is_flat(other) => Aside::Clear(Certificate::default()),
-            _ => Aside::Nothing,
-        };
+        self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
     }
 
     /// The copies of the solids, if both are such that a copy is worth it.
     pub(super) const fn solids(&self) -> Option<&[Solid<N, D>; 2]> {
-        match &self.aside {
-            Aside::Copies(solids) => Some(solids),
-            _ => None,
-        }
+        self.solids.as_ref()
     }
 
     /// The manifold, in canonical order.
@@ -283,7 +251,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
-        let Aside::Copies(solids) = &self.aside else { return None };
+        let solids = self.solids.as_ref()?;
         let kinds = [solids[0].kind(), solids[1].kind()];
         let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
@@ -311,7 +279,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<BoxJob<'a, N, D>> {
-        let Aside::Copies([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.aside else {
+        let Some([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.solids else {
             return None;
         };
         let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);

@@ -44,6 +44,5 @@ pub use proximity::{Proximity, proximity};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
 pub use ray::{RayBatch, RayCast, RayIntersection};
 pub(crate) use ray::{cast_on, surely_misses};
-pub(crate) use separation::Certificate;
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};

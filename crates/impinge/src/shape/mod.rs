@@ -38,7 +38,6 @@ mod polyline_parts;
 mod polytope;
 mod polytope_build;
 mod polytope_check;
-mod polytope_cones;
 mod polytope_feature;
 mod polytope_support;
 mod round;

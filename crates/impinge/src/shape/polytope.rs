@@ -57,14 +57,8 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fans: Vec<u32>,
     /// Where the fan of each vertex starts, and at last where the last one ends.
     pub(super) fan_starts: Vec<u32>,
-    /// The edges at each vertex again, as bits by their numbers; empty where these are too many, and in the
-    /// plane.
-    pub(super) edge_bits: Vec<u128>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
-    /// For each face how far a direction may lean from its normal and certainly still be shown it; empty of
-    /// large solids and in the plane. See `polytope_cones.rs`.
-    pub(super) cones: Vec<N>,
     /// Shared by copies, and by nothing else: a solid never changes once it is made.
     pub(super) identity: Arc<()>,
 }
@@ -178,11 +172,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// The planes of the faces, eight at a time; the last one fills the rest.
     pub(crate) fn planes(&self) -> &[Planes<N, D>] {
         &self.planes
-    }
-
-    /// The edges at each vertex, as bits by their numbers; empty if there are more than bits, and in the plane.
-    pub(crate) fn edge_bits(&self) -> &[u128] {
-        &self.edge_bits
     }
 
     /// The edges (in the plane: the faces) that end at a vertex.
@@ -303,10 +292,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             unit(&(b - a)).map(|(along, _)| along)
         };
         self.fan_directions = self.fans.iter().map(direction).collect();
-        if (1..=u128::BITS as usize).contains(&self.edges.len()) {
-            let bits = |fan: &[u32]| fan.iter().fold(0, |bits, &edge| bits | 1_u128 << edge);
-            self.edge_bits = (0..self.vertices.len()).map(|at| bits(self.fan(at))).collect();
-        }
     }
 }
 

@@ -47,8 +47,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             fans: Vec::new(),
             fan_starts: Vec::new(),
             fan_directions: Vec::new(),
-            edge_bits: Vec::new(),
-            cones: Vec::new(),
             center,
         }
     }
@@ -101,7 +99,6 @@ impl<N: Real> Polytope<N, 3> {
         hull.planes = Self::planes_of(&hull.faces);
         hull.connect()?;
         hull.collect_fans();
-        hull.collect_cones();
         Some(hull)
     }
 

@@ -251,24 +251,10 @@ impl<N: Real> Polytope<N, 3> {
         }
     }
 
-    /// The name of what [`SupportMap::core_feature`] answers. A face may be known that it likely is, which is
-    /// told at once then.
+    /// The name of what [`SupportMap::core_feature`] answers.
     #[inline]
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>, likely: Option<u32>) -> FeatureId {
-        match likely {
-            Some(face) if self.certainly_shows(face, direction) => FeatureId::Face(face),
-            _ => Self::named(self.part_toward(direction, Tilt::usual())),
-        }
-    }
-
-    /// Whether a unit vector is so near to the normal of a face that it is shown that face for certain.
-    #[inline]
-    fn certainly_shows(&self, face: u32, direction: &Vector<N, 3>) -> bool {
-        let index = face as usize;
-        match (self.faces.get(index), self.cones.get(index)) {
-            (Some(face), Some(&cone)) => (direction - face.normal).norm_squared() <= cone,
-            _ => false,
-        }
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
+        Self::named(self.part_toward(direction, Tilt::usual()))
     }
 
     /// A face by its number, which there must be, if it has few corners.

@@ -19,10 +19,10 @@ use crate::shape::{Cuboid, FaceRing, FeatureId, Kind};
 /// How many corners or sides are side by side.
 const LANES: usize = FaceRing::<f32>::MOST;
 
-/// Builds the manifold of two solids whose nearest points are known, and perhaps faces that they likely show
-/// each other. If it does not, the parts that they do show, where these are known then.
+/// Builds the manifold of two solids whose nearest points are known. If it does not, the parts that they
+/// show each other, where these are known then.
 pub(super) fn build<N: Real>(
-    (pair, likely): (&Pair<'_, N, 3>, Option<[u32; 2]>),
+    pair: &Pair<'_, N, 3>,
     frame: &Frame<N, 3>,
     (request, limit): (&ManifoldRequest<N>, usize),
     out: &mut RawManifold<N, 3>,
@@ -32,13 +32,12 @@ pub(super) fn build<N: Real>(
         return Err([None; 2]);
     }
     let toward = pair.pose12.inverse_vector(&-normal);
-    let [likely1, likely2] = [likely.map(|[first, _]| first), likely.map(|[_, second]| second)];
     let [mut first, mut second] = [FaceRing::blank(), FaceRing::blank()];
-    let part1 = match shown(&pair.first, (&normal, likely1), &mut first) {
+    let part1 = match shown(&pair.first, &normal, &mut first) {
         Err(None) => return Err([None; 2]),
         other => other,
     };
-    let part2 = shown(&pair.second, (&toward, likely2), &mut second);
+    let part2 = shown(&pair.second, &toward, &mut second);
     let parts = [part1, part2].map(|part| part.unwrap_or_else(|part| part));
     if part1.is_err() || part2.is_err() {
         return Err(parts);
@@ -65,12 +64,12 @@ pub(super) fn build<N: Real>(
 /// Either way gives the name of what it shows, where that is known.
 pub(super) fn shown<N: Real>(
     kind: &Kind<'_, N, 3>,
-    (direction, likely): (&Vector<N, 3>, Option<u32>),
+    direction: &Vector<N, 3>,
     ring: &mut FaceRing<N>,
 ) -> Result<Option<FeatureId>, Option<FeatureId>> {
     let part = match kind {
         Kind::Cuboid(_) => Cuboid::part_shown(direction),
-        Kind::Polytope(hull) => hull.part_shown(direction, likely),
+        Kind::Polytope(hull) => hull.part_shown(direction),
         Kind::Triangle(triangle) => {
             if let Some(part @ (FeatureId::Vertex(_) | FeatureId::Edge(_))) =
                 triangle.part_shown(direction)

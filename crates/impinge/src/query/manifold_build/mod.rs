@@ -56,7 +56,6 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
-use super::separation::hulls::{self, Certificate};
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -81,14 +80,13 @@ pub(crate) fn build2<N: Real>(
     }
 }
 
-/// Builds the manifold of two solids in space: at most `request.max_points` points. Faces may be known that
-/// the solids likely show each other.
+/// Builds the manifold of two solids in space: at most `request.max_points` points.
 ///
 /// As [`build2`].
 pub(crate) fn build3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
-    (request, likely): (&ManifoldRequest<N>, Option<[u32; 2]>),
+    request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
@@ -96,7 +94,7 @@ pub(crate) fn build3<N: Real>(
     if rod_face::build(pair, &frame, limits, out) {
         return;
     }
-    if let Err(shown) = faces::build((pair, likely), &frame, limits, out) {
+    if let Err(shown) = faces::build(pair, &frame, limits, out) {
         build((pair, shown), &frame, limits, out);
     }
 }
@@ -113,12 +111,10 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
 }
 
 /// The manifold of a pair in space: by the fused algorithm of its kinds where there is one and it does not
-/// decline, else from the separation. A pair that is asked again and again brings its certificate, which
-/// changes no bit.
+/// decline, else from the separation.
 pub(crate) fn contacts3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
-    certificate: Option<&mut Certificate<N, 3>>,
     out: &mut RawManifold<N, 3>,
 ) {
     if let Kind::Ball(_) = pair.first {
@@ -130,38 +126,31 @@ pub(crate) fn contacts3<N: Real>(
     if level_corners::build(pair, request, out) {
         return;
     }
-    contacts_of_separation3(pair, request, certificate, out);
+    contacts_of_separation3(pair, request, out);
 }
 
 /// The manifold of a pair in space from its separation.
 fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
-    certificate: Option<&mut Certificate<N, 3>>,
     out: &mut RawManifold<N, 3>,
 ) {
-    let (separation, likely) = if hulls::treats(pair) {
-        hulls::separation_again(pair, request.prediction, certificate).unzip()
-    } else {
-        (separation_in_space(pair, request.prediction), None)
-    };
-    match separation {
+    match separation_in_space(pair, request.prediction) {
         Some(separation) => match segments::crossing_parts(pair, &separation, request) {
             Some(parts) => {
                 out.normal = separation.normal;
                 names::settle_alone(&Candidate::alone(&separation, parts), out);
             }
-            None => build3(pair, &separation, (request, likely), out),
+            None => build3(pair, &separation, request, out),
         },
         None => out.points.clear(),
     }
 }
 
-/// The manifold of a pair in the plane; as [`contacts3`]. Certificates are of space alone.
+/// The manifold of a pair in the plane; as [`contacts3`].
 pub(crate) fn contacts2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
-    _: Option<&mut Certificate<N, 2>>,
     out: &mut RawManifold<N, 2>,
 ) {
     if let Kind::Ball(_) = pair.first {

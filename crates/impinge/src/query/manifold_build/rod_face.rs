@@ -38,7 +38,7 @@ pub(super) fn build<N: Real>(
     let part = match bare {
         Kind::Cylinder(cylinder, _) => cylinder.part_shown(&toward),
         Kind::Cone(cone, _) => cone.part_shown(&toward),
-        _ => match shown(&bare, (&toward, None), &mut ring) {
+        _ => match shown(&bare, &toward, &mut ring) {
             Ok(_) => return over_face((&core, &ring, radius), &pair.pose12, (frame, limit), out),
             Err(part) => part.and_then(|part| flat_part(&bare, part)),
         },

@@ -65,7 +65,6 @@ use crate::shape::{Geometry, ShapeKind};
 
 pub(crate) use ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
-pub(crate) use hulls::Certificate;
 pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use projection::Projection;
 pub(super) use rounded::bare;

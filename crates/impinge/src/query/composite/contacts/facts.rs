@@ -131,7 +131,7 @@ fn plain<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    (N::tables().contacts)(&placed.pair(), request, None, notes.blank());
+    (N::tables().contacts)(&placed.pair(), request, notes.blank());
     if notes.raw.points.is_empty() {
         return None;
     }

@@ -294,7 +294,7 @@ impl<'b, 'a, N: Real> Resting<'b, 'a, N> {
             return Some(());
         }
         let witness = Separation { normal: inward, ..witness? };
-        build3(&pair, &witness, (&self.request, None), raw);
+        build3(&pair, &witness, &self.request, raw);
         Some(())
     }
 

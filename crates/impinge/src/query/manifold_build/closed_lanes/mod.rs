@@ -144,7 +144,7 @@ fn update_at<F: Form<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize>(
 #[inline(never)]
 fn one_by_one<N: Space<D>, const D: usize>(pairs: &mut impl KeptPairs<N, D>, index: usize) {
     let (question, raw) = pairs.parts(index);
-    (N::tables().contacts)(&question.pair(), question.request, None, raw);
+    (N::tables().contacts)(&question.pair(), question.request, raw);
 }
 
 /// Eight by eight. The numbers of the next eight are gathered before those gathered last are used,

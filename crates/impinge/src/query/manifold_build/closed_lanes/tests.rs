@@ -73,7 +73,7 @@ fn compare<F: Form<N, D>, N: Space<D>, const D: usize>(
         sums = [0; 3];
         for (step, cases) in steps.iter().enumerate() {
             for (case, raw) in cases.iter().zip(&mut expected).filter(|(case, _)| case.is_due) {
-                (N::tables().contacts)(&case.question().pair(), &case.request, None, raw);
+                (N::tables().contacts)(&case.question().pair(), &case.request, raw);
             }
             let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {

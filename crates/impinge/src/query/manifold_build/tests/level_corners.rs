@@ -84,7 +84,7 @@ fn compare<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
         let (mut quick, mut general) = (RawManifold::default(), RawManifold::default());
         for _ in 0..3 {
             match separation_in_space(&pair, asked.prediction) {
-                Some(found) => build3(&pair, &found, (&asked, None), &mut general),
+                Some(found) => build3(&pair, &found, &asked, &mut general),
                 None => general.points.clear(),
             }
             if !level_corners::build(&pair, &asked, &mut quick) {

@@ -51,7 +51,7 @@ impl<N: Real> Scene<3> for N {
         request: &ManifoldRequest<N>,
         out: &mut RawManifold<N, 3>,
     ) {
-        build3(pair, separation, (request, None), out);
+        build3(pair, separation, request, out);
     }
 
     fn pose(translation: Vector<N, 3>, turn: [f64; 3]) -> Pose<N, 3> {

@@ -1,17 +1,21 @@
-//! An edge of each solid: faces of the Minkowski difference where they overlap, nearest points where
-//! they are apart.
+//! Queries of edges: faces of the Minkowski difference where the solids overlap, nearest points where they
+//! are apart.
 
-use super::face::{Meeting, Side};
-use super::pool::Asked;
-use super::{Found, LANES, noise};
-use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread};
+use super::face::ReferenceFace;
+use super::vertices::rows;
+use super::{LANES, noise};
+use crate::convex::Separation;
+use crate::math::lanes::{self, by_axis, dot, highest_lane, load, seen_from, spread};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
 use crate::shape::PolytopeEdge;
 
-/// An edge of the solid with the face, in its frame.
-pub(super) struct Edge<N: Real> {
+/// As many edges as 32 vertices may have.
+pub(super) const MAX_EDGES: usize = 90;
+
+/// An edge of the solid with the reference face, in its frame.
+pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
     pub(super) from: Vector<N, 3>,
     pub(super) along: Vector<N, 3>,
@@ -19,221 +23,159 @@ pub(super) struct Edge<N: Real> {
 }
 
 /// Eight edges of the other solid, in the same frame.
-pub(super) struct Edges<N: Real> {
+pub(super) struct EdgeBlock<N: Real> {
     pub(super) indices: [u8; LANES],
     pub(super) from: [[N; LANES]; 3],
     pub(super) along: [[N; LANES]; 3],
-    pub(super) normals: [[[N; LANES]; 3]; 2],
 }
 
-/// As many edges as 32 vertices may have.
-pub(super) const MOST_EDGES: usize = 90;
+impl<N: Real> EdgeBlock<N> {
+    /// Edges of no length.
+    pub(super) fn zero() -> Self {
+        let zero = [[N::ZERO; LANES]; 3];
+        Self { indices: [0; LANES], from: zero, along: zero }
+    }
+}
 
-/// The edges that may decide, ascending.
-#[derive(Clone, Copy)]
-pub(super) struct Chosen {
-    indices: [u8; MOST_EDGES],
+/// The indices of some edges, ascending.
+struct CandidateEdges {
+    indices: [u8; MAX_EDGES],
     len: usize,
 }
 
-impl Chosen {
-    pub(super) const NONE: Self = Self { indices: [0; MOST_EDGES], len: 0 };
-
-    /// Those that end at one of some vertices, given as bits; `edge_bits` are those of all vertices.
-    fn of(edge_bits: &[u128], mut vertices: u32) -> Self {
-        let mut bits = 0;
-        while vertices != 0 {
-            bits |= edge_bits[vertices.trailing_zeros() as usize];
-            vertices &= vertices - 1;
-        }
-        Self::of_bits(bits)
-    }
-
-    /// The same of some edges.
+impl CandidateEdges {
+    /// Those that end at one of some vertices, given as bits.
     #[inline(always)]
-    fn set_among(&mut self, edges: &[PolytopeEdge], some: &[u8], vertices: u32) {
-        self.len = 0;
-        for &index in some {
-            // Written over by the next one if this one is not.
-            self.indices[self.len] = index;
-            self.len += usize::from(ends_at(&edges[usize::from(index)], vertices));
+    fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
+        let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
+        for (index, edge) in (0_u8..).zip(edges) {
+            let [from, to] = edge.vertices;
+            // Without a branch: the next edge takes the place of one that is no candidate.
+            candidates.indices[candidates.len] = index;
+            candidates.len += usize::from((vertices >> from | vertices >> to) & 1 == 1);
         }
+        candidates
     }
 
-    /// Those whose numbers are bits.
-    pub(super) fn of_bits(bits: u128) -> Self {
-        let mut chosen = Self::NONE;
-        let [low, high] = halves(bits);
-        for (mut rest, first) in [(low, 0), (high, 64)] {
-            while rest != 0 {
-                let [index, ..] = (rest.trailing_zeros() + first).to_le_bytes();
-                chosen.indices[chosen.len] = index;
-                chosen.len += 1;
-                rest &= rest - 1;
-            }
-        }
-        chosen
-    }
-
-    pub(super) fn bits(&self) -> u128 {
-        self.indices().iter().fold(0, |bits, &index| bits | 1 << index)
-    }
-
-    pub(super) fn indices(&self) -> &[u8] {
+    fn indices(&self) -> &[u8] {
         &self.indices[..self.len]
     }
 }
 
-/// The lower and the upper half of some bits.
-#[expect(clippy::cast_possible_truncation, reason = "the halves are what is wanted")]
-const fn halves(bits: u128) -> [u64; 2] {
-    [bits as u64, (bits >> 64) as u64]
-}
-
-/// An edge ends at one of some vertices, given as bits.
-#[inline(always)]
-fn ends_at(edge: &PolytopeEdge, vertices: u32) -> bool {
-    (vertices >> edge.vertices[0] | vertices >> edge.vertices[1]) & 1 == 1
-}
-
 /// An edge of each solid that are a face of the Minkowski difference.
-pub(super) struct Crossing<N> {
+pub(super) struct EdgeQuery<N> {
     edges: [usize; 2],
-    /// How far it parts the solids.
-    pub(super) height: N,
+    /// How far the solids are apart along its normal.
+    pub(super) separation: N,
 }
 
-impl<N: Real> Meeting<'_, '_, N> {
+impl<N: Real> ReferenceFace<'_, '_, N> {
     /// The edges of each solid that may hold the points of the answer, if these are no farther from
     /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
-    /// other. Of those that are known to be all that decide, if this is what is known.
+    /// other.
     #[inline(always)]
-    fn choose<S: Simd, V: Wide<S, Scalar = N>>(
-        &self,
-        simd: S,
-        asked: Asked<N>,
-        [chosen1, chosen2]: &mut [Chosen; 2],
-    ) {
-        self.asked.set(self.asked.get().and(asked));
-        let pool = match &self.pool {
-            Some(pool) if pool.serves(asked) => pool,
-            _ => {
-                [*chosen1, *chosen2] = self.within_reach::<S, V>(simd, asked.reach);
-                return;
-            }
-        };
-        let [own, other] = self.near::<S, V>(simd, asked.reach);
-        chosen1.set_among(self.own.solid.edges, pool.own.indices(), own);
-        chosen2.set_among(self.other.solid.edges, pool.other.indices(), other);
-    }
-
-    /// [`Self::choose`] of all edges.
-    #[inline(always)]
-    pub(super) fn within_reach<S: Simd, V: Wide<S, Scalar = N>>(
+    fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         reach: N,
-    ) -> [Chosen; 2] {
-        let [own, other] = self.near::<S, V>(simd, reach);
-        [Chosen::of(self.own.solid.edge_bits, own), Chosen::of(self.other.solid.edge_bits, other)]
-    }
-
-    /// The vertices of each solid within reach, as bits.
-    #[inline(always)]
-    fn near<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, reach: N) -> [u32; 2] {
+    ) -> [CandidateEdges; 2] {
         let slack = N::lit(4.0) * noise();
-        let (least, most) = (self.other.heights.low - reach - slack, self.level() + reach + slack);
-        [self.own.heights.up_to::<S, V>(simd, -least), self.other.heights.up_to::<S, V>(simd, most)]
+        let (least, most) = (self.other.heights.low - reach - slack, self.offset() + reach + slack);
+        let own = self.own.heights.up_to::<S, V>(simd, -least);
+        let other = self.other.heights.up_to::<S, V>(simd, most);
+        [
+            CandidateEdges::at(self.own.solid.edges, own),
+            CandidateEdges::at(self.other.solid.edges, other),
+        ]
     }
 
     #[inline(always)]
-    fn ends(side: &Side<'_, '_, N>, index: usize) -> [Vector<N, 3>; 2] {
-        let [from, to] = side.solid.edges[index].vertices;
-        [side.cloud.at(from as usize), side.cloud.at(to as usize)]
-    }
-
-    #[inline(always)]
-    pub(super) fn edge(&self, index: usize) -> Edge<N> {
-        let [from, to] = Self::ends(&self.own, index);
+    fn edge(&self, index: u8) -> ReferenceEdge<N> {
+        let index = usize::from(index);
+        let [from, to] = self.own.ends(index);
         let along = to - from;
-        Edge { index, from, along, squared: along.norm_squared() }
+        ReferenceEdge { index, from, along, squared: along.norm_squared() }
     }
 
-    /// Up to eight edges of the other solid, with the normals of the faces beside them where these are asked
-    /// for. The rest are copies of the first, and with normals points without a direction.
+    /// The outward normals of the two faces beside an edge.
     #[inline(always)]
-    pub(super) fn edges<S: Simd, V: Wide<S, Scalar = N>>(
+    fn normals_beside(&self, edge: usize) -> [Vector<N, 3>; 2] {
+        self.own.solid.edges[edge].faces.map(|face| self.own.solid.normal(face as usize))
+    }
+
+    /// Up to eight edges of the other solid. The rest are copies of the first.
+    #[inline(always)]
+    fn edge_block<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        chosen: &[u8],
-        with_normals: bool,
-    ) -> Edges<N> {
-        let zero = [[N::ZERO; LANES]; 3];
-        let mut edges = Edges { indices: [0; LANES], from: zero, along: zero, normals: [zero; 2] };
-        let (mut ends, mut local) = (zero, [zero; 2]);
-        for (lane, &index) in chosen.iter().enumerate().take(LANES) {
-            let edge = &self.other.solid.edges[usize::from(index)];
-            edges.indices[lane] = index;
-            let [from, to] = edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize));
+        candidates: &[u8],
+    ) -> EdgeBlock<N> {
+        let (mut block, mut ends) = (EdgeBlock::zero(), [[N::ZERO; LANES]; 3]);
+        for lane in 0..LANES {
+            let index = candidates[if lane < candidates.len() { lane } else { 0 }];
+            block.indices[lane] = index;
+            let [from, to] = self.other.ends(usize::from(index));
             for axis in 0..3 {
-                (edges.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
-            }
-            if with_normals {
-                let [one, other] = edge.faces.map(|face| self.other.solid.normal(face as usize));
-                for axis in 0..3 {
-                    (local[0][axis][lane], local[1][axis][lane]) = (one[axis], other[axis]);
-                }
-            }
-        }
-        if with_normals {
-            for (local, normals) in local.iter().zip(&mut edges.normals) {
-                let turned = self.place.turned::<S, V>(simd, &load(simd, local));
-                (0..3).for_each(|axis| turned[axis].store(&mut normals[axis]));
-            }
-        } else {
-            for lane in chosen.len()..LANES {
-                edges.indices[lane] = edges.indices[0];
-                for (from, ends) in edges.from.iter_mut().zip(&mut ends) {
-                    (from[lane], ends[lane]) = (from[0], ends[0]);
-                }
+                (block.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
             }
         }
         for (axis, ends) in ends.iter().enumerate() {
-            let along = V::load(simd, ends) - V::load(simd, &edges.from[axis]);
-            along.store(&mut edges.along[axis]);
+            let along = V::load(simd, ends) - V::load(simd, &block.from[axis]);
+            along.store(&mut block.along[axis]);
         }
-        edges
+        block
     }
 
-    /// The face of the Minkowski difference between an edge of each solid that parts the solids most,
-    /// if by more than the face does, and more than noise.
+    /// The outward normals of the two faces beside each edge of a block.
     #[inline(always)]
-    pub(super) fn crossing<S: Simd, V: Wide<S, Scalar = N>>(
+    fn normals_beside_block<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        block: &EdgeBlock<N>,
+    ) -> [[V; 3]; 2] {
+        let (solid, mut normals) = (self.other.solid, [[[N::ZERO; LANES]; 3]; 2]);
+        for (lane, &index) in block.indices.iter().enumerate() {
+            let faces = solid.edges[usize::from(index)].faces;
+            for (normals, face) in normals.iter_mut().zip(faces) {
+                let normal = solid.normal(face as usize);
+                for (row, &coordinate) in normals.iter_mut().zip(&normal) {
+                    row[lane] = coordinate;
+                }
+            }
+        }
+        let rows: [[V; 3]; 3] = rows(simd, &self.pose.rotation);
+        [seen_from(&rows, &load(simd, &normals[0])), seen_from(&rows, &load(simd, &normals[1]))]
+    }
+
+    /// Queries the edge directions: the pair of edges that is a face of the Minkowski difference and parts
+    /// the solids most, if by more than the reference face does, and more than rounding errors.
+    #[inline(always)]
+    pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         reach: N,
-    ) -> Option<Crossing<N>> {
-        let mut chosen = [Chosen::NONE; 2];
-        self.choose::<S, V>(simd, Asked::crossing(reach), &mut chosen);
-        let [chosen1, chosen2] = &chosen;
-        let (mut best, mut least): (Option<Crossing<N>>, N) =
-            (None, self.height() + N::TWO * noise());
-        for eight in chosen2.indices().chunks(LANES) {
-            let edges2 = self.edges::<S, V>(simd, eight, true);
-            for &index in chosen1.indices() {
-                let edge1 = self.edge(usize::from(index));
-                let [face1, face2] = self.own.solid.edges[edge1.index].faces;
-                let (face1, face2) = (face1 as usize, face2 as usize);
-                let normals1 = [self.own.solid.normal(face1), self.own.solid.normal(face2)];
-                let heights = heights::<S, N, V>(simd, (&edge1, &normals1), &edges2);
-                let Some(heights) = heights else { continue };
-                let highest = highest_lane(heights);
-                let is_before = |best: &Crossing<N>| best.edges[0] > edge1.index;
-                if highest > least || highest == least && best.as_ref().is_some_and(is_before) {
-                    let is_highest = heights.simd_eq(V::all(simd, highest)).to_bitmask();
-                    let lane = is_highest.trailing_zeros() as usize;
+    ) -> Option<EdgeQuery<N>> {
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
+            (None, self.separation() + N::TWO * noise());
+        for eight in candidates2.indices().chunks(LANES) {
+            let edges2 = self.edge_block::<S, V>(simd, eight);
+            let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
+            for &index in candidates1.indices() {
+                let edge1 = self.edge(index);
+                let normals1 = self.normals_beside(edge1.index);
+                let separations =
+                    separations::<S, N, V>(simd, (&edge1, &normals1), (&edges2, &normals2));
+                let Some(separations) = separations else { continue };
+                let separation = highest_lane(separations);
+                let is_before = |best: &EdgeQuery<N>| best.edges[0] > edge1.index;
+                if separation > largest
+                    || separation == largest && best.as_ref().is_some_and(is_before)
+                {
+                    let is_largest = separations.simd_eq(V::all(simd, separation)).to_bitmask();
+                    let lane = is_largest.trailing_zeros() as usize;
                     let edges = [edge1.index, usize::from(edges2.indices[lane])];
-                    (best, least) = (Some(Crossing { edges, height: highest }), highest);
+                    (best, largest) = (Some(EdgeQuery { edges, separation }), separation);
                 }
             }
         }
@@ -242,35 +184,32 @@ impl<N: Real> Meeting<'_, '_, N> {
 
     /// The answer where the common perpendicular of two edges meets both, if it is proved.
     #[inline(always)]
-    pub(super) fn across<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(super) fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        crossing: &Crossing<N>,
-    ) -> Option<Found<N>> {
-        let (points, across) = self.of_edges(crossing.edges);
+        query: &EdgeQuery<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (points, across) = self.nearest_points(query.edges);
         let (normal, _) = unit(&across)?;
-        let beside = self.own.solid.edges[crossing.edges[0]].faces;
-        let [normal1, normal2] = beside.map(|face| self.own.solid.normal(face as usize));
+        let [normal1, normal2] = self.normals_beside(query.edges[0]);
         let is_outward = normal.dot(&(normal1 + normal2)) > N::ZERO;
         self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
     }
 
     /// The nearest points of the edges of two solids that are apart, if supporting planes prove them.
     #[inline(always)]
-    pub(super) fn nearest<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         reach: N,
-    ) -> Option<Found<N>> {
-        let mut chosen = [Chosen::NONE; 2];
-        self.choose::<S, V>(simd, Asked::nearest(reach), &mut chosen);
-        let [chosen1, chosen2] = &chosen;
+    ) -> Option<Separation<N, 3>> {
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
-        for eight in chosen2.indices().chunks(LANES) {
-            let edges2 = self.edges::<S, V>(simd, eight, false);
-            for &index in chosen1.indices() {
-                let edge1 = self.edge(usize::from(index));
-                let squares = squares::<S, N, V>(simd, &edge1, &edges2);
+        for eight in candidates2.indices().chunks(LANES) {
+            let edges2 = self.edge_block::<S, V>(simd, eight);
+            for &index in candidates1.indices() {
+                let edge1 = self.edge(index);
+                let squares = squared_distances::<S, N, V>(simd, &edge1, &edges2);
                 let lowest = -highest_lane(-squares);
                 let is_before = |best: [usize; 2]| best[0] > edge1.index;
                 if lowest < least || lowest == least && nearest.is_some_and(is_before) {
@@ -281,7 +220,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                 }
             }
         }
-        let (points, across) = self.of_edges(nearest?);
+        let (points, across) = self.nearest_points(nearest?);
         let [on_own, on_other] = points;
         let away = on_other - on_own;
         // The perpendicular of the edges is right to the last bits, however near the points are.
@@ -297,8 +236,8 @@ impl<N: Real> Meeting<'_, '_, N> {
     }
 
     /// The nearest points of two edges, and a vector perpendicular to both, to either side.
-    fn of_edges(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
-        let (ends1, ends2) = (Self::ends(&self.own, edge1), Self::ends(&self.other, edge2));
+    fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
+        let (ends1, ends2) = (self.own.ends(edge1), self.other.ends(edge2));
         let (point1, point2) =
             nearest_of_segments(&ends1.map(Point::from), &ends2.map(Point::from));
         let across = cross(&(ends1[1] - ends1[0]), &(ends2[1] - ends2[0]));
@@ -313,33 +252,34 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         normal: &Vector<N, 3>,
         [on_own, on_other]: [Vector<N, 3>; 2],
-    ) -> Option<Found<N>> {
-        let low = self.other.cloud.low::<S, V>(simd, normal);
-        let high = -self.own.cloud.low::<S, V>(simd, &-normal);
+    ) -> Option<Separation<N, 3>> {
+        let low = self.other.vertices.low::<S, V>(simd, normal);
+        let high = -self.own.vertices.low::<S, V>(simd, &-normal);
         let distance = low - high;
         let off = on_other - on_own - normal * distance;
         let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
-        is_proved.then_some(Found { distance, normal: *normal, on_own, on_other })
+        let (point1, point2) = (Point::from(on_own), Point::from(on_other));
+        is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
     }
 }
 
-/// How far eight pairs of edges part the solids: those that are a face of the Minkowski difference, the
-/// others by minus infinity; `None` if no pair is one.
+/// The separations of the solids along the common perpendiculars of eight pairs of edges: of those that are a
+/// face of the Minkowski difference, of the others minus infinity; `None` if no pair is one.
 #[inline(always)]
-fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    (edge1, normals1): (&Edge<N>, &[Vector<N, 3>; 2]),
-    edges2: &Edges<N>,
+    (edge1, normals1): (&ReferenceEdge<N>, &[Vector<N, 3>; 2]),
+    (edges2, normals2): (&EdgeBlock<N>, &[[V; 3]; 2]),
 ) -> Option<V> {
     let zero = V::all(simd, N::ZERO);
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
-    // The arcs between the normals of each edge cross on the sphere of normals, those of the second
-    // solid turned round.
+    // A pair is one if the arcs between the normals beside each edge cross on the Gauss map, those of the
+    // second solid negated.
     let left1 = dot(&along2, &spread(simd, &normals1[0])).simd_lt(zero);
     let right1 = dot(&along2, &spread(simd, &normals1[1])).simd_lt(zero);
-    let left2 = dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[0])).simd_lt(zero);
-    let right2 = dot(&along1, &load::<_, _, V, 3, LANES>(simd, &edges2.normals[1])).simd_lt(zero);
+    let left2 = dot(&along1, &normals2[0]).simd_lt(zero);
+    let right2 = dot(&along1, &normals2[1]).simd_lt(zero);
     let is_face = (left1 ^ right1) & (left2 ^ right2) & (left2 ^ right1);
     if is_face.to_bitmask() == 0 {
         return None;
@@ -362,10 +302,10 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
 /// 5.1.9. Edges of no length count as their first ends.
 #[inline(always)]
-pub(super) fn squares<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    edge1: &Edge<N>,
-    edges2: &Edges<N>,
+    edge1: &ReferenceEdge<N>,
+    edges2: &EdgeBlock<N>,
 ) -> V {
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
     let clamp = |share: V| share.larger(zero).smaller(one);

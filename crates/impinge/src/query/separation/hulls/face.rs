@@ -1,78 +1,93 @@
-//! A face of one solid, and the vertices of the other that lie nearest to it.
+//! The reference face, and what of the other solid lies over it.
 
-use core::cell::Cell;
 use core::ops::ControlFlow;
 
-use super::cloud::{Cloud, Heights, Place, highest_over};
-use super::pool::{Asked, Pool};
-use super::solid::Flat;
-use super::{Found, noise};
+use super::noise;
+use super::polyhedral::Polyhedral;
+use super::vertices::{Heights, Vertices, height_above};
+use crate::convex::Separation;
 use crate::math::simd::Simd;
-use crate::math::{Point, Real, Vector, Wide, cross, max, min};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, min};
 use crate::query::separation::segments::nearest_on_segment;
 
-/// A solid in the frame of the one whose face it is about.
-pub(super) struct Side<'s, 'a, N: Real> {
-    pub(super) solid: &'s Flat<'a, N>,
-    pub(super) cloud: &'s Cloud<N>,
+/// A solid in the frame of the one with the reference face.
+pub(super) struct LocalSolid<'s, 'a, N: Real> {
+    pub(super) solid: &'s Polyhedral<'a, N>,
+    pub(super) vertices: &'s Vertices<N>,
     /// Of the vertices, along the normal of the face or, of its own solid, against it.
     pub(super) heights: Heights<N>,
 }
 
-impl<'s, 'a, N: Real> Side<'s, 'a, N> {
+impl<N: Real> LocalSolid<'_, '_, N> {
+    /// The ends of an edge.
     #[inline(always)]
-    pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
-        simd: S,
-        solid: &'s Flat<'a, N>,
-        cloud: &'s Cloud<N>,
-        along: &Vector<N, 3>,
-    ) -> Self {
-        Self { solid, cloud, heights: cloud.heights::<S, V>(simd, along) }
+    pub(super) fn ends(&self, edge: usize) -> [Vector<N, 3>; 2] {
+        let [from, to] = self.solid.edges[edge].vertices;
+        [self.vertices.at(from as usize), self.vertices.at(to as usize)]
     }
 }
 
 /// The face of all that the other solid lies farthest above, or least deep below.
-pub(super) struct Meeting<'s, 'a, N: Real> {
-    pub(super) own: Side<'s, 'a, N>,
-    pub(super) other: Side<'s, 'a, N>,
-    /// Where the frame of the other solid lies.
-    pub(super) place: Place<N>,
-    pub(super) face: usize,
-    pub(super) normal: Vector<N, 3>,
-    pub(super) shrink: N,
-    /// The edges of each solid that may decide, if that is known.
-    pub(super) pool: Option<Pool<N>>,
-    /// What edges were asked about, and within what reach.
-    pub(super) asked: Cell<Asked<N>>,
+pub(super) struct ReferenceFace<'s, 'a, N: Real> {
+    pub(super) own: LocalSolid<'s, 'a, N>,
+    pub(super) other: LocalSolid<'s, 'a, N>,
+    /// The pose of the other solid.
+    pub(super) pose: Pose<N, 3>,
+    index: usize,
+    normal: Vector<N, 3>,
+    shrink: N,
 }
 
-/// Whether the other solid lies above the face, there where it is lowest.
-enum Seen<N: Real> {
-    /// Here, up to noise.
-    Above(Vector<N, 3>),
-    /// Beside it; a length that the distance of the solids, or their depth, does not exceed.
+/// The lowest point of the other solid along the normal of the face.
+enum LowestPoint<N: Real> {
+    /// It lies over the face, up to rounding errors.
+    Over(Vector<N, 3>),
+    /// It lies beside the face; a length that the distance of the solids, or their depth, does not exceed.
     Beside(N),
 }
 
-impl<N: Real> Meeting<'_, '_, N> {
+impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
+    /// The face of this index of the first solid; both solids come with their vertices in its frame.
+    #[inline(always)]
+    pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        index: usize,
+        [(own, own_vertices), (other, other_vertices)]: [(&'s Polyhedral<'a, N>, &'s Vertices<N>);
+            2],
+        pose: Pose<N, 3>,
+        shrink: N,
+    ) -> Self {
+        let normal = own.normal(index);
+        let heights = own_vertices.heights::<S, V>(simd, &-normal);
+        let own = LocalSolid { solid: own, vertices: own_vertices, heights };
+        let heights = other_vertices.heights::<S, V>(simd, &normal);
+        let other = LocalSolid { solid: other, vertices: other_vertices, heights };
+        Self { own, other, pose, index, normal, shrink }
+    }
+}
+
+impl<N: Real> ReferenceFace<'_, '_, N> {
     /// The answer; `None` if it is not proved.
     ///
-    /// Edges are looked at twice: first those near the plane, which mostly decide and are few, then all
+    /// Edges are queried twice: first those near the plane, which mostly decide and are few, then all
     /// within reach. No closures: those are not inlined into vector code.
     #[inline(always)]
-    pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
-        let height = self.height();
-        let (above, reaches) = match self.seen(self.lowest::<S, V>(simd)) {
-            Seen::Above(point) if height > N::ZERO => return Some(self.at(&point)),
-            Seen::Above(point) => (Some(self.at(&point)), [-height; 2]),
-            Seen::Beside(reach) if height > N::ZERO => {
-                (None, [min(height * N::TWO + N::lit(1.0 / 16.0), reach), reach])
+    pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+    ) -> Option<Separation<N, 3>> {
+        let separation = self.separation();
+        let (over, reaches) = match self.lowest_point(self.lowest_vertices::<S, V>(simd)) {
+            LowestPoint::Over(point) if separation > N::ZERO => return Some(self.at(&point)),
+            LowestPoint::Over(point) => (Some(self.at(&point)), [-separation; 2]),
+            LowestPoint::Beside(reach) if separation > N::ZERO => {
+                (None, [min(separation * N::TWO + N::lit(1.0 / 16.0), reach), reach])
             }
-            Seen::Beside(reach) => (None, [-height, max(reach, -height)]),
+            LowestPoint::Beside(reach) => (None, [-separation, max(reach, -separation)]),
         };
         for reach in reaches {
             let is_last = reach >= reaches[1];
-            if let ControlFlow::Break(found) = self.within::<S, V>(simd, reach, is_last, above) {
+            if let ControlFlow::Break(found) = self.within::<S, V>(simd, reach, is_last, over) {
                 return found;
             }
         }
@@ -86,94 +101,98 @@ impl<N: Real> Meeting<'_, '_, N> {
         simd: S,
         reach: N,
         is_last: bool,
-        above: Option<Found<N>>,
-    ) -> ControlFlow<Option<Found<N>>> {
-        let mut are_apart = self.height() > N::ZERO;
+        over: Option<Separation<N, 3>>,
+    ) -> ControlFlow<Option<Separation<N, 3>>> {
+        let mut are_apart = self.separation() > N::ZERO;
         if !are_apart {
-            let Some(crossing) = self.crossing::<S, V>(simd, reach) else {
-                return if above.is_some() {
-                    ControlFlow::Break(above)
+            let Some(query) = self.query_edges::<S, V>(simd, reach) else {
+                return if over.is_some() {
+                    ControlFlow::Break(over)
                 } else if is_last {
-                    ControlFlow::Break(self.nearly_above::<S, V>(simd))
+                    ControlFlow::Break(self.nearly_over::<S, V>(simd))
                 } else {
                     ControlFlow::Continue(())
                 };
             };
-            let found = self.across::<S, V>(simd, &crossing);
+            let found = self.edge_contact::<S, V>(simd, &query);
             if let Some(found) = found
                 && (is_last || self.is_certain::<S, V>(simd, &found))
             {
                 return ControlFlow::Break(Some(found));
             }
-            are_apart = found.is_none() && crossing.height > N::ZERO;
+            are_apart = found.is_none() && query.separation > N::ZERO;
         }
-        let found = if are_apart { self.nearest::<S, V>(simd, reach) } else { None };
+        let found = if are_apart { self.nearest_edges::<S, V>(simd, reach) } else { None };
         let is_decided = found.is_some() || is_last;
         if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
 
-    /// Whether an answer across edges is one whatever other edges there are: the solids are apart, or
+    /// Whether an answer of edges is one whatever other edges there are: the solids are apart, or
     /// have a point in common, so that none farther from the plane than the way out along the normal of
     /// the face can be better.
     #[inline(always)]
-    fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, found: &Found<N>) -> bool {
-        let middle = (found.on_own + found.on_other) * N::HALF;
+    fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        found: &Separation<N, 3>,
+    ) -> bool {
+        let middle = (found.point1.coords + found.point2.coords) * N::HALF;
         found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle)
     }
 
-    /// Whether both solids hold a point, up to noise.
+    /// Whether both solids contain a point, up to rounding errors.
     #[inline(always)]
     fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
-        let in_other = self.place.rotation.tr_mul(&(point - self.place.translation));
+        let in_other = self.pose.rotation.tr_mul(&(point - self.pose.translation));
         let (own, other) = (self.own.solid.planes, self.other.solid.planes);
-        highest_over::<S, N, V>(simd, own, self.shrink, point) <= noise()
-            && highest_over::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
+        height_above::<S, N, V>(simd, own, self.shrink, point) <= noise()
+            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
     }
 
     /// How far the other solid lies above the plane of the face.
-    pub(super) fn height(&self) -> N {
-        self.other.heights.low - self.level()
+    pub(super) fn separation(&self) -> N {
+        self.other.heights.low - self.offset()
     }
 
     /// How far along its normal the face lies.
-    pub(super) fn level(&self) -> N {
-        self.own.solid.offset(self.face) * self.shrink
+    pub(super) fn offset(&self) -> N {
+        self.own.solid.offset(self.index) * self.shrink
     }
 
-    /// The answer with a point of the other solid that lies above the face.
-    fn at(&self, point: &Vector<N, 3>) -> Found<N> {
-        let distance = self.height();
-        let on_own = point - self.normal * distance;
-        Found { distance, normal: self.normal, on_own, on_other: *point }
+    /// The answer with a point of the other solid that lies over the face.
+    fn at(&self, point: &Vector<N, 3>) -> Separation<N, 3> {
+        let distance = self.separation();
+        let (point1, point2) = (Point::from(point - self.normal * distance), Point::from(*point));
+        Separation { distance, normal: self.normal, point1, point2 }
     }
 
-    /// The first of the lowest vertices that lies above the face, or, of edges and faces that are lowest,
+    /// The first of the lowest vertices that lies over the face, or, of edges and faces that are lowest,
     /// some point that does.
-    fn seen(&self, lowest: u32) -> Seen<N> {
+    fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut reach, mut rest) = (N::INFINITY, lowest);
         while rest != 0 {
-            let point = self.other.cloud.at(rest.trailing_zeros() as usize);
+            let point = self.other.vertices.at(rest.trailing_zeros() as usize);
             match self.distance_beside(&point) {
-                None => return Seen::Above(point),
+                None => return LowestPoint::Over(point),
                 Some(beside) => reach = min(beside, reach),
             }
             rest &= rest - 1;
         }
-        let among = if lowest.count_ones() > 1 { self.among(lowest) } else { None };
-        among.map_or(Seen::Beside(reach), Seen::Above)
+        let among = if lowest.count_ones() > 1 { self.point_among(lowest) } else { None };
+        among.map_or(LowestPoint::Beside(reach), LowestPoint::Over)
     }
 
-    /// The vertices of the other solid that are lowest, up to noise, as bits.
+    /// The vertices of the other solid that are lowest, up to rounding errors, as bits.
     #[inline(always)]
-    fn lowest<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
+    fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
         self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
     }
 
-    /// The answer where no edges are better than the face by more than noise, though the lowest vertex lies
-    /// beside it: the solids are all but flush there, and an edge that is as low but for noise enters what
-    /// lies above the face.
+    /// The answer where no edges are better than the face by more than rounding errors, though the lowest
+    /// vertex lies beside it: the solids are almost coplanar there, and an edge that is as low but for
+    /// rounding errors has a part over the face.
     #[inline(always)]
-    fn nearly_above<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Found<N>> {
+    fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
         let most = self.other.heights.low + N::lit(3.0) * noise();
         let low = self.other.heights.up_to::<S, V>(simd, most);
         let is_low = |vertex: u32| low >> vertex & 1 == 1;
@@ -183,7 +202,7 @@ impl<N: Real> Meeting<'_, '_, N> {
                 continue;
             }
             let ends = if is_low(from) { [from, to] } else { [to, from] };
-            let [from, to] = ends.map(|vertex| self.other.cloud.at(vertex as usize));
+            let [from, to] = ends.map(|vertex| self.other.vertices.at(vertex as usize));
             let Some((share, _)) = self.span([from, to]) else { continue };
             let point = from + (to - from) * share;
             if self.normal.dot(&point) <= most {
@@ -193,21 +212,20 @@ impl<N: Real> Meeting<'_, '_, N> {
         None
     }
 
-    /// The ends of the sides of the face, and the vectors in its plane into the face across them, as long as
-    /// the sides.
+    /// The ends of the sides of the face, and the inward normals of its side planes, as long as the sides.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
-        let ring = self.own.solid.ring(self.face);
+        let ring = self.own.solid.ring(self.index);
         let last = ring[ring.len() - 1];
-        let mut from = self.own.cloud.at(last as usize);
+        let mut from = self.own.vertices.at(last as usize);
         ring.iter().map(move |&vertex| {
-            let to = self.own.cloud.at(vertex as usize);
+            let to = self.own.vertices.at(vertex as usize);
             let ends = [core::mem::replace(&mut from, to), to];
             (ends, cross(&self.normal, &(ends[1] - ends[0])))
         })
     }
 
-    /// The distance from the face of a point that does not lie above it; `None` of one that does, up
-    /// to noise.
+    /// The distance from the face of a point that does not lie over it; `None` of one that does, up
+    /// to rounding errors.
     fn distance_beside(&self, point: &Vector<N, 3>) -> Option<N> {
         let mut least: Option<N> = None;
         for (ends, inward) in self.sides() {
@@ -223,30 +241,32 @@ impl<N: Real> Meeting<'_, '_, N> {
         least.map(N::sqrt)
     }
 
-    /// A point of the edges between some vertices that lies above the face; or, of the faces between
-    /// them, above a corner of the face.
-    fn among(&self, lowest: u32) -> Option<Vector<N, 3>> {
+    /// A point of the edges between some vertices that lies over the face; or, of the faces between
+    /// them, over a corner of the face.
+    fn point_among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
         let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
         let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
         let mut crossing = edges.filter_map(|edge| {
-            self.clipped(edge.vertices.map(|vertex| self.other.cloud.at(vertex as usize)))
+            self.clipped(edge.vertices.map(|vertex| self.other.vertices.at(vertex as usize)))
         });
         if let Some(point) = crossing.next() {
             return Some(point);
         }
-        let corner = self.own.cloud.at(self.own.solid.ring(self.face)[0] as usize);
+        let corner = self.own.vertices.at(self.own.solid.ring(self.index)[0] as usize);
         let mut faces = (0..solid.faces()).filter(|&face| solid.ring(face).iter().all(is_lowest));
-        faces.any(|face| self.is_under(face, &corner)).then(|| corner + self.normal * self.height())
+        faces
+            .any(|face| self.is_under(face, &corner))
+            .then(|| corner + self.normal * self.separation())
     }
 
-    /// The middle of the part of an edge that lies above the face.
+    /// The middle of the part of an edge that lies over the face.
     fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
         let (from, to) = self.span([a, b])?;
         Some(a + (b - a) * ((from + to) * N::HALF))
     }
 
-    /// Where the part of an edge that lies above the face begins and ends, as shares of the edge.
+    /// Where the part of an edge that lies over the face begins and ends, as shares of the edge.
     fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
         let (mut from, mut to) = (N::ZERO, N::ONE);
         for (ends, inward) in self.sides() {
@@ -263,13 +283,13 @@ impl<N: Real> Meeting<'_, '_, N> {
         (from <= to).then_some((from, to))
     }
 
-    /// Whether a face of the other solid that lies along the plane lies above a point.
+    /// Whether a face of the other solid that is coplanar lies over a point.
     fn is_under(&self, face: usize, point: &Vector<N, 3>) -> bool {
         let ring = self.other.solid.ring(face);
-        let at = |place: usize| self.other.cloud.at(ring[place % ring.len()] as usize);
+        let at = |corner: usize| self.other.vertices.at(ring[corner % ring.len()] as usize);
         // It faces the other way, so it runs clockwise about the normal.
-        (0..ring.len()).all(|place| {
-            let (from, to) = (at(place), at(place + 1));
+        (0..ring.len()).all(|corner| {
+            let (from, to) = (at(corner), at(corner + 1));
             cross(&self.normal, &(to - from)).dot(&(point - from)) <= N::ZERO
         })
     }

@@ -9,7 +9,7 @@
 use super::super::rod::{Parting, Rod, Verdict, noise, settled};
 use super::super::segments::nearest_of_segments;
 use super::super::{general, wrong_kinds};
-use super::edges::{Edge, Edges, squares};
+use super::edges::{EdgeBlock, ReferenceEdge, squared_distances};
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::convex::Separation;
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
@@ -25,26 +25,30 @@ pub(in crate::query::separation) fn separation<N: Real>(
 ) -> Option<Separation<N, 3>> {
     let Kind::Polytope(hull) = pair.second else { wrong_kinds(pair) };
     let ask = |rod: &Rod<'_, N>, most: N| {
-        if is_usual(hull) { Beam::new(rod, hull).verdict(most) } else { Verdict::Undecided }
+        if has_few_features(hull) {
+            SegmentQuery::new(rod, hull).verdict(most)
+        } else {
+            Verdict::Undecided
+        }
     };
     settled(pair, (hull.reach(), limit), ask, || general::of_flat_cores(pair, limit))
 }
 
 /// A solid with few parts.
-fn is_usual<N: Real>(hull: &Polytope<N, 3>) -> bool {
+fn has_few_features<N: Real>(hull: &Polytope<N, 3>) -> bool {
     let has_room = hull.blocks().len() <= BLOCKS && hull.planes().len() <= PLANE_BLOCKS;
     has_room && hull.faces().len() > 3
 }
 
 /// A hull and the segment.
-struct Beam<'a, N: Real> {
+struct SegmentQuery<'a, N: Real> {
     rod: &'a Rod<'a, N>,
     hull: &'a Polytope<N, 3>,
-    planes: Planes<N>,
+    planes: PlaneHeights<N>,
 }
 
 /// What the planes of all faces say.
-struct Planes<N> {
+struct PlaneHeights<N> {
     /// The face that the segment is highest above, the first of equals, and how high.
     face: usize,
     gap: N,
@@ -54,9 +58,9 @@ struct Planes<N> {
     seen: u64,
 }
 
-impl<'a, N: Real> Beam<'a, N> {
+impl<'a, N: Real> SegmentQuery<'a, N> {
     fn new(rod: &'a Rod<'a, N>, hull: &'a Polytope<N, 3>) -> Self {
-        Self { rod, hull, planes: Planes::of(Level::new(), rod, hull) }
+        Self { rod, hull, planes: PlaneHeights::of(Level::new(), rod, hull) }
     }
 
     fn verdict(&self, most: N) -> Verdict<N> {
@@ -191,7 +195,7 @@ impl<'a, N: Real> Beam<'a, N> {
     }
 }
 
-impl<N: Real> Planes<N> {
+impl<N: Real> PlaneHeights<N> {
     /// With the vectors of an instruction set; the answer does not depend on it.
     fn of(level: Level, rod: &Rod<'_, N>, hull: &Polytope<N, 3>) -> Self {
         with_lanes!(level, simd => Self::in_lanes::<_, N::Lanes<_>>(simd, rod, hull))
@@ -225,27 +229,26 @@ impl<N: Real> Planes<N> {
 }
 
 /// The edge of a face that is seen that is nearest to the segment, the first of equals.
-fn nearest_edge<N: Real>(level: Level, beam: &Beam<'_, N>) -> Option<usize> {
-    with_lanes!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, beam))
+fn nearest_edge<N: Real>(level: Level, query: &SegmentQuery<'_, N>) -> Option<usize> {
+    with_lanes!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, query))
 }
 
 #[inline(always)]
 fn nearest_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    beam: &Beam<'_, N>,
+    query: &SegmentQuery<'_, N>,
 ) -> Option<usize> {
-    let (rod, seen) = (beam.rod, beam.planes.seen);
+    let (rod, seen) = (query.rod, query.planes.seen);
     let (from, along) = (rod.ends[0], rod.along);
-    let rod = Edge { index: 0, from, along, squared: along.norm_squared() };
-    let zero = [[N::ZERO; LANES]; 3];
-    let mut eight = Edges { indices: [0; LANES], from: zero, along: zero, normals: [zero; 2] };
+    let rod = ReferenceEdge { index: 0, from, along, squared: along.norm_squared() };
+    let mut eight = EdgeBlock::zero();
     let (mut count, mut best, mut least) = (0, None, N::INFINITY);
     let (mut places, mut next) = ([0; LANES], 0);
-    let edges = beam.hull.edges();
+    let edges = query.hull.edges();
     while next < edges.len() {
         let [one, other] = edges[next].faces;
         if (seen >> one | seen >> other) & 1 == 1 {
-            let [from, to] = edges[next].vertices.map(|vertex| beam.vertex(vertex));
+            let [from, to] = edges[next].vertices.map(|vertex| query.vertex(vertex));
             for axis in 0..3 {
                 eight.from[axis][count] = from[axis];
                 eight.along[axis][count] = to[axis] - from[axis];
@@ -255,7 +258,8 @@ fn nearest_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         }
         next += 1;
         if count == LANES || next == edges.len() && count > 0 {
-            let (mut numbers, found) = ([N::ZERO; LANES], squares::<S, N, V>(simd, &rod, &eight));
+            let (mut numbers, found) =
+                ([N::ZERO; LANES], squared_distances::<S, N, V>(simd, &rod, &eight));
             found.store(&mut numbers);
             for (squared, &place) in numbers.iter().zip(&places).take(count) {
                 if *squared < least {

@@ -1,13 +1,13 @@
 //! Against the general algorithm, and on every instruction set.
 
-use super::{BoxParts, Certificate, Flat, Guide, Verdict, at};
+use super::{BoxFeatures, Polyhedral, SatResult, sat};
 use crate::convex::Separation;
 use crate::math::na::{Quaternion, UnitQuaternion};
 use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
 use crate::query::separation::general;
-use crate::shape::{ConvexHull, Cuboid, Shape};
+use crate::shape::{ConvexHull, Cuboid, Kind, Shape};
 
 /// Numbers between −1 and 1 by splitmix64.
 pub(in crate::query) struct Random(pub(in crate::query) u64);
@@ -51,9 +51,9 @@ impl Random {
     }
 
     /// A hull of points on a sphere, of a grid (with coplanar faces and parallel edges), or a box.
-    fn solid<N: Real>(&mut self, kind: usize, unit: N) -> Box<dyn Shape<N, 3>> {
+    fn solid<N: Real>(&mut self, kind: usize) -> Box<dyn Shape<N, 3>> {
         let points: Vec<Point<N, 3>> = match kind {
-            0 => return Box::new(Cuboid::new(self.vector::<N>().abs() * unit)),
+            0 => return Box::new(Cuboid::new(self.vector::<N>().abs())),
             1 => (0..12).map(|_| Point::from(self.direction())).collect(),
             2 => (0..26).map(|_| Point::from(self.direction())).collect(),
             3 => (0..14)
@@ -61,10 +61,9 @@ impl Random {
                 .collect(),
             _ => (0..6).map(|_| Point::from(self.direction())).collect(),
         };
-        let points: Vec<_> = points.iter().map(|point| point * unit).collect();
         match ConvexHull::try_from_points(&points) {
             Ok(hull) => Box::new(hull),
-            Err(_) => Box::new(Cuboid::new(Vector::<N, 3>::repeat(N::HALF * unit))),
+            Err(_) => Box::new(Cuboid::new(Vector::<N, 3>::repeat(N::HALF))),
         }
     }
 }
@@ -73,23 +72,19 @@ fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// The verdict of a pair of which the second may be a box too.
-fn verdict<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> Verdict<N> {
-    with_solids(pair, |solids| at(level, solids, (&pair.pose12, limit), &mut Guide::default()))
-}
-
-fn with_solids<N: Real, T>(pair: &Pair<'_, N, 3>, ask: impl FnOnce([&Flat<'_, N>; 2]) -> T) -> T {
-    let parts = [pair.first, pair.second].map(|kind| match kind {
-        crate::shape::Kind::Cuboid(cuboid) => Some(BoxParts::new(cuboid)),
+/// The result of a pair of which the second may be a box too.
+fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
+    let kinds = [pair.first, pair.second];
+    let boxes = kinds.map(|kind| match kind {
+        Kind::Cuboid(cuboid) => Some(BoxFeatures::new(cuboid)),
         _ => None,
     });
-    let kinds = [pair.first, pair.second];
-    let flat = |which: usize| match (kinds[which], &parts[which]) {
-        (crate::shape::Kind::Polytope(hull), _) => Flat::of_polytope(hull).expect("a small hull"),
-        (_, Some(parts)) => parts.flat(),
+    let solid = |which: usize| match (kinds[which], &boxes[which]) {
+        (Kind::Polytope(hull), _) => Polyhedral::of_polytope(hull).expect("a small hull"),
+        (_, Some(features)) => features.polyhedral(),
         _ => unreachable!("hulls and boxes only"),
     };
-    ask([&flat(0), &flat(1)])
+    sat(level, [&solid(0), &solid(1)], &pair.pose12, limit)
 }
 
 /// How far off an answer is: from the distance, by its own points, and by what its normal separates.
@@ -115,10 +110,10 @@ pub(in super::super) fn error<N: Real>(
 
 fn compare<N: Real>(seed: u64, rounds: usize) {
     let random = &mut Random(seed);
-    let (mut undecided, mut count) = (0, 0);
+    let (mut unproved, mut count) = (0, 0);
     for round in 0..rounds {
         let [kind1, kind2] = [random.pick(5), random.pick(5)];
-        let (shape1, shape2) = (random.solid(kind1, N::ONE), random.solid(kind2, N::ONE));
+        let (shape1, shape2) = (random.solid(kind1), random.solid(kind2));
         let mut pair =
             Pair { first: shape1.geometry().0, second: shape2.geometry().0, pose12: random.turn() };
         pair.pose12.translation = random.vector::<N>() * N::lit([4.0, 0.3][round % 2]);
@@ -128,14 +123,14 @@ fn compare<N: Real>(seed: u64, rounds: usize) {
             pair.pose12.translation += truth.normal * (N::lit(gap) - truth.distance);
         }
         let truth = general::of_flat_cores(&pair, N::INFINITY).expect("no limit");
-        let found = Level::available().into_iter().map(|level| verdict(level, &pair, N::INFINITY));
+        let found = Level::available().into_iter().map(|level| result(level, &pair, N::INFINITY));
         let found: Vec<_> = found.collect();
         assert!(found.iter().all(|one| *one == found[0]), "round {round}: {found:?}");
         count += 1;
         match found[0] {
-            Verdict::Beyond => panic!("nothing is beyond infinity"),
-            Verdict::Undecided => undecided += 1,
-            Verdict::Found(found) => {
+            SatResult::Beyond => panic!("nothing is beyond infinity"),
+            SatResult::Unproved => unproved += 1,
+            SatResult::Found(found) => {
                 let error = error(&pair, &found, &truth);
                 let size = 4.0 + truth.distance.as_f64().abs();
                 assert!(
@@ -145,81 +140,11 @@ fn compare<N: Real>(seed: u64, rounds: usize) {
             }
         }
     }
-    assert!(undecided * 20 < count, "{undecided} of {count} are left to the general algorithm");
+    assert!(unproved * 20 < count, "{unproved} of {count} fall back to the general algorithm");
 }
 
 #[test]
 fn answers_are_those_of_the_general_algorithm() {
     compare::<f64>(1, 4000);
     compare::<f32>(2, 4000);
-}
-
-/// A pose a little further on: a small shift and a small turn.
-fn stepped<N: Real>(random: &mut Random, pose: &Pose<N, 3>, size: f64, unit: N) -> Pose<N, 3> {
-    let [i, j, k] = [0; 3].map(|_: i32| random.next() * size * 0.5);
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(1.0, i, j, k));
-    let turn = turn.to_rotation_matrix().into_inner().map(N::lit);
-    Pose {
-        rotation: turn * pose.rotation,
-        translation: pose.translation + random.vector::<N>() * (N::lit(size) * unit),
-    }
-}
-
-/// Walks from poses at which the solids just touch, in steps of all sizes, asked with a certificate and
-/// without; answers how many answers went by one, and by one that knew all edges.
-fn walk<N: Real>(seed: u64, walks: usize, scale: f64) -> [usize; 3] {
-    let random = &mut Random(seed);
-    let mut counts = [0; 3];
-    for round in 0..walks {
-        let [kind1, kind2] = [random.pick(5), random.pick(5)];
-        // Squares of the small ones are no numbers of the type.
-        let size = [1.0, 1.0, (-70.0_f64).exp2(), 60.0_f64.exp2()][round / 3 % 4];
-        let unit = N::lit(size);
-        let (shape1, shape2) = (random.solid(kind1, unit), random.solid(kind2, unit));
-        let mut pair =
-            Pair { first: shape1.geometry().0, second: shape2.geometry().0, pose12: random.turn() };
-        pair.pose12.translation = random.vector::<N>() * N::lit([4.0, 0.3][round % 2] * size);
-        let truth = general::of_flat_cores(&pair, N::INFINITY).expect("no limit");
-        let gap = [0.3, 0.05, 1e-3, 1e-6, 0.0, -1e-6, -1e-3, -0.1][random.pick(8)];
-        if round % 4 != 1 {
-            pair.pose12.translation += truth.normal * (N::lit(gap * size) - truth.distance);
-        }
-        let limit = N::lit([0.1, 0.02, 10.0][round % 3] * size);
-        let start = pair.pose12;
-        for level in Level::available() {
-            pair.pose12 = start;
-            let (mut certificate, mut own) = (Certificate::<N, 3>::default(), Random(seed));
-            for step in 0..24 {
-                let expected = verdict(level, &pair, limit);
-                let was_made = certificate.is_made();
-                let found = with_solids(&pair, |solids| {
-                    let ask =
-                        |guide: &mut Guide<N>| at(level, solids, (&pair.pose12, limit), guide);
-                    certificate.asked(solids, &pair.pose12, ask)
-                });
-                assert_eq!(
-                    format!("{found:?}"),
-                    format!("{expected:?}"),
-                    "round {round}, step {step}, kinds {kind1} and {kind2}, gap {gap}"
-                );
-                counts[0] += 1;
-                counts[1] += usize::from(was_made && certificate.is_made());
-                counts[2] += usize::from(certificate.knows_edges());
-                let step = [1e-3, 1e-4, 1e-6, 3e-3, 0.0, 1e-3, 0.03][own.pick(7)] * scale;
-                pair.pose12 = stepped(&mut own, &pair.pose12, step, unit);
-            }
-        }
-    }
-    counts
-}
-
-#[test]
-fn what_is_certified_has_the_same_bits() {
-    for (seed, scale) in [(1, 1.0), (2, 0.3), (3, 3.0)] {
-        let counts = [walk::<f64>(seed, 60, scale), walk::<f32>(seed + 10, 60, scale)];
-        for [asked, certified, with_edges] in counts {
-            assert!(certified * 5 > asked, "{certified} of {asked}, {with_edges} with edges");
-            assert!(with_edges * 6 > asked, "{certified} of {asked}, {with_edges} with edges");
-        }
-    }
 }

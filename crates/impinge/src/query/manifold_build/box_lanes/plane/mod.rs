@@ -105,7 +105,7 @@ impl<N: Real> Eights<N, 2> for Found<N> {
     }
 
     fn fall_back(job: &mut BoxJob<'_, N, 2>) {
-        contacts2(&job.pair(), job.request, None, job.raw);
+        contacts2(&job.pair(), job.request, job.raw);
     }
 }
 

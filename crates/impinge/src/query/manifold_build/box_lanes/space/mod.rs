@@ -102,7 +102,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
     }
 
     fn fall_back(job: &mut BoxJob<'_, N, 3>) {
-        contacts_of_separation3(&job.pair(), job.request, None, job.raw);
+        contacts_of_separation3(&job.pair(), job.request, job.raw);
     }
 }
 

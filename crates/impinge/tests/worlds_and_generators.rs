@@ -1,7 +1,7 @@
-//! Hulls and boxes that are followed step by step: what a world says of them goes by certificates, and is
-//! to the bit what is computed without.
+//! Hulls and boxes that are followed step by step: a world, which updates many pairs in one batch, has to the
+//! bit the contacts that a generator computes of each pair alone.
 //!
-//! The twin of each pair is a generator: it has the same history and knows nothing but poses and shapes.
+//! The generator of a pair has the same history and knows nothing but poses and shapes.
 
 use impinge::math::na::{Translation3, UnitQuaternion};
 use impinge::math::{Isometry3, Point, Real, Space, Vector};
@@ -165,7 +165,7 @@ fn follow<N: Space<3, Isometry = Isometry3<N>>>(seed: u64, scale: f64, far: f64)
 }
 
 #[test]
-fn certificates_change_no_bit() {
+fn a_world_has_the_contacts_of_generators() {
     let compared = [
         follow::<f32>(1, 1.0, 0.0),
         follow::<f64>(2, 1.0, 0.0),

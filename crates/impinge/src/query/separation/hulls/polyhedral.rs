@@ -1,22 +1,20 @@
-//! What polytopes and boxes have in common: vertices and planes in lanes, edges, and rings of faces.
+//! Convex polyhedra, hulls and boxes alike: vertices and face planes in lanes, edges, and the rings of faces.
 
 use core::array::from_fn;
 
-use super::edges::MOST_EDGES;
+use super::edges::MAX_EDGES;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
 use crate::math::{Real, Vector};
 use crate::shape::{Cuboid, Planes, Polytope, PolytopeEdge, SupportMap};
 
-/// A solid with flat faces, in its own frame.
-pub(super) struct Flat<'a, N: Real> {
+/// A convex polyhedron in its own frame.
+pub(super) struct Polyhedral<'a, N: Real> {
     /// The vertices, eight at a time; the last one fills the rest.
     pub(super) blocks: &'a [[[N; LANES]; 3]],
     pub(super) vertices: usize,
     /// The planes of the faces, eight at a time; the last one fills the rest.
     pub(super) planes: &'a [Planes<N, 3>],
     pub(super) edges: &'a [PolytopeEdge],
-    /// Those at each vertex, as bits.
-    pub(super) edge_bits: &'a [u128],
     rings: Rings<'a, N>,
     pub(super) reach: N,
 }
@@ -27,19 +25,18 @@ enum Rings<'a, N: Real> {
     OfBox,
 }
 
-impl<'a, N: Real> Flat<'a, N> {
-    /// `None` for a polytope with more parts than there is room for.
+impl<'a, N: Real> Polyhedral<'a, N> {
+    /// `None` for a polytope with more features than the lanes hold.
     pub(super) fn of_polytope(polytope: &'a Polytope<N, 3>) -> Option<Self> {
         let (blocks, planes) = (polytope.blocks(), polytope.planes());
         let fits = blocks.len() <= BLOCKS
             && planes.len() <= PLANE_BLOCKS
-            && polytope.edges().len() <= MOST_EDGES;
+            && polytope.edges().len() <= MAX_EDGES;
         fits.then(|| Self {
             blocks,
             vertices: polytope.vertices().len(),
             planes,
             edges: polytope.edges(),
-            edge_bits: polytope.edge_bits(),
             rings: Rings::OfPolytope(polytope),
             reach: polytope.reach(),
         })
@@ -76,14 +73,14 @@ impl<'a, N: Real> Flat<'a, N> {
     }
 }
 
-/// The vertices and planes of a box, in lanes.
-pub(super) struct BoxParts<N: Real> {
+/// The vertices and face planes of a box, in lanes.
+pub(super) struct BoxFeatures<N: Real> {
     blocks: [[[N; LANES]; 3]; 1],
     planes: [Planes<N, 3>; 1],
     reach: N,
 }
 
-impl<N: Real> BoxParts<N> {
+impl<N: Real> BoxFeatures<N> {
     pub(super) fn new(cuboid: &Cuboid<N, 3>) -> Self {
         let half = cuboid.half_extents();
         let signed = |axis: usize, bit: usize| if bit == 0 { -half[axis] } else { half[axis] };
@@ -102,13 +99,12 @@ impl<N: Real> BoxParts<N> {
         Self { blocks: [vertices], planes: [planes], reach: cuboid.reach() }
     }
 
-    pub(super) fn flat(&self) -> Flat<'_, N> {
-        Flat {
+    pub(super) fn polyhedral(&self) -> Polyhedral<'_, N> {
+        Polyhedral {
             blocks: &self.blocks,
             vertices: 8,
             planes: &self.planes,
             edges: &BOX_EDGES,
-            edge_bits: &BOX_EDGE_BITS,
             rings: Rings::OfBox,
             reach: self.reach,
         }
@@ -135,19 +131,6 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
     edges
 };
 
-/// The edges at the vertices of a box.
-const BOX_EDGE_BITS: [u128; 8] = {
-    let mut bits = [0; 8];
-    let mut number = 0;
-    while number < 12 {
-        let [from, to] = BOX_EDGES[number].vertices;
-        bits[from as usize] |= 1 << number;
-        bits[to as usize] |= 1 << number;
-        number += 1;
-    }
-    bits
-};
-
 /// The vertices around the faces of a box by their numbers; see [`Cuboid`].
 const BOX_RINGS: [[u32; 4]; 6] = {
     let mut rings = [[0; 4]; 6];
@@ -170,26 +153,26 @@ mod tests {
     use crate::math::cross;
 
     #[test]
-    fn parts_of_a_box_fit_together() {
-        let parts = BoxParts::new(&Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0)));
-        let flat = parts.flat();
+    fn features_of_a_box_fit_together() {
+        let features = BoxFeatures::new(&Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0)));
+        let solid = features.polyhedral();
         let at = |vertex: u32| {
-            Vector::<f64, 3>::from(from_fn(|axis| flat.blocks[0][axis][vertex as usize]))
+            Vector::<f64, 3>::from(from_fn(|axis| solid.blocks[0][axis][vertex as usize]))
         };
-        for edge in flat.edges {
+        for edge in solid.edges {
             let [a, b] = edge.vertices.map(at);
-            let [m, n] = edge.faces.map(|face| flat.normal(face as usize));
+            let [m, n] = edge.faces.map(|face| solid.normal(face as usize));
             assert!(cross(&m, &n).dot(&(b - a)) > 0.0, "{edge:?} lies between its faces");
             for face in edge.faces.map(|face| face as usize) {
-                let height = |v: Vector<f64, 3>| flat.normal(face).dot(&v) - flat.offset(face);
+                let height = |v: Vector<f64, 3>| solid.normal(face).dot(&v) - solid.offset(face);
                 assert_eq!((height(a), height(b)), (0.0, 0.0), "{edge:?} lies on face {face}");
             }
         }
-        for face in 0..flat.faces() {
-            let ring: Vec<_> = flat.ring(face).iter().map(|&vertex| at(vertex)).collect();
+        for face in 0..solid.faces() {
+            let ring: Vec<_> = solid.ring(face).iter().map(|&vertex| at(vertex)).collect();
             let turn = cross(&(ring[1] - ring[0]), &(ring[2] - ring[1]));
-            assert!(turn.dot(&flat.normal(face)) > 0.0, "face {face} runs counter-clockwise");
-            let height = |v: &Vector<f64, 3>| flat.normal(face).dot(v) - flat.offset(face);
+            assert!(turn.dot(&solid.normal(face)) > 0.0, "face {face} runs counter-clockwise");
+            let height = |v: &Vector<f64, 3>| solid.normal(face).dot(v) - solid.offset(face);
             assert!(ring.iter().all(|v| height(v) == 0.0), "the corners of face {face} lie on it");
         }
     }

@@ -1,0 +1,209 @@
+//! The vertices of a solid in lanes, and their heights along directions.
+
+use super::polyhedral::Polyhedral;
+use super::{BLOCKS, LANES, PLANE_BLOCKS};
+use crate::math::lanes::{by_axis, dot, highest_lane, load, plus, seen_from, spread};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Matrix, Pose, Real, Vector, Wide};
+use crate::shape::Planes;
+
+/// The vertices of a solid in some frame, in units of the pair.
+pub(super) struct Vertices<N: Real> {
+    blocks: [[[N; LANES]; 3]; BLOCKS],
+    used: usize,
+    count: usize,
+}
+
+/// How far [`Vertices`] lie along a direction.
+pub(super) struct Heights<N: Real> {
+    blocks: [[N; LANES]; BLOCKS],
+    used: usize,
+    count: usize,
+    pub(super) low: N,
+}
+
+impl<N: Real> Heights<N> {
+    /// The vertices that are not higher than this, as the bits of a number.
+    #[inline(always)]
+    pub(super) fn up_to<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u32 {
+        let mut bits = 0;
+        for (number, block) in self.blocks[..self.used].iter().enumerate() {
+            let is_low = V::load(simd, block).simd_le(V::all(simd, most)).to_bitmask();
+            bits |= is_low << (number * LANES);
+        }
+        // Beyond the last vertex are copies of it.
+        low_half(bits & !(u64::MAX << self.count))
+    }
+}
+
+/// The low half of a number.
+#[inline(always)]
+fn low_half(bits: u64) -> u32 {
+    let [a, b, c, d, ..] = bits.to_le_bytes();
+    u32::from_le_bytes([a, b, c, d])
+}
+
+/// The face of a solid that the other one lies farthest above, or least deep below.
+#[derive(Clone, Copy)]
+pub(super) struct FaceQuery<N> {
+    pub(super) index: usize,
+    /// The height of the other solid above its plane.
+    pub(super) separation: N,
+}
+
+impl<N: Real> Vertices<N> {
+    /// Those of a solid in its own frame.
+    #[inline(always)]
+    pub(super) fn in_own_frame<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        solid: &Polyhedral<'_, N>,
+        shrink: N,
+    ) -> Self {
+        let blocks = [[[N::ZERO; LANES]; 3]; BLOCKS];
+        let mut vertices = Self { blocks, used: solid.blocks.len(), count: solid.vertices };
+        let shrink = V::all(simd, shrink);
+        for (block, out) in solid.blocks.iter().zip(&mut vertices.blocks) {
+            let local: [V; 3] = load(simd, block);
+            for (axis, out) in out.iter_mut().enumerate() {
+                (local[axis] * shrink).store(out);
+            }
+        }
+        vertices
+    }
+
+    /// The same vertices in the outer frame of a pose.
+    #[inline(always)]
+    pub(super) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        pose: &Pose<N, 3>,
+    ) -> Self {
+        let blocks = [[[N::ZERO; LANES]; 3]; BLOCKS];
+        let mut placed = Self { blocks, used: self.used, count: self.count };
+        let rows: [[V; 3]; 3] = rows(simd, &pose.rotation);
+        let origin: [V; 3] = spread(simd, &pose.translation);
+        for (block, out) in self.blocks[..self.used].iter().zip(&mut placed.blocks) {
+            let points = plus(&seen_from(&rows, &load(simd, block)), &origin);
+            for (axis, out) in out.iter_mut().enumerate() {
+                points[axis].store(out);
+            }
+        }
+        placed
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, vertex: usize) -> Vector<N, 3> {
+        // The remainder spares the compiler a check: there are no more vertices.
+        let (block, lane) = (&self.blocks[vertex / LANES % BLOCKS], vertex % LANES);
+        Vector::<N, 3>::new(block[0][lane], block[1][lane], block[2][lane])
+    }
+
+    /// How far the vertices lie along a vector.
+    #[inline(always)]
+    pub(super) fn heights<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        along: &Vector<N, 3>,
+    ) -> Heights<N> {
+        let (along, used, count): ([V; 3], _, _) = (spread(simd, along), self.used, self.count);
+        let mut blocks = [[N::ZERO; LANES]; BLOCKS];
+        let mut low = V::all(simd, N::INFINITY);
+        for (block, out) in self.blocks[..used].iter().zip(&mut blocks) {
+            let height = dot(&load::<_, _, V, 3, LANES>(simd, block), &along);
+            low = height.smaller(low);
+            height.store(out);
+        }
+        Heights { blocks, used, count, low: -highest_lane(-low) }
+    }
+
+    /// How far along a vector the lowest vertex lies.
+    #[inline(always)]
+    pub(super) fn low<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &Vector<N, 3>) -> N {
+        let along: [V; 3] = spread(simd, along);
+        let mut low = V::all(simd, N::INFINITY);
+        for block in &self.blocks[..self.used] {
+            low = dot(&load::<_, _, V, 3, LANES>(simd, block), &along).smaller(low);
+        }
+        -highest_lane(-low)
+    }
+
+    /// Queries the face directions of the other solid: the plane that lies farthest below all vertices, the
+    /// first of equals.
+    #[inline(always)]
+    pub(super) fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        planes: &[Planes<N, 3>],
+        shrink: N,
+    ) -> FaceQuery<N> {
+        let mut separations = [[N::ZERO; LANES]; PLANE_BLOCKS];
+        let mut largest = V::all(simd, -N::INFINITY);
+        for (block, out) in planes.iter().zip(&mut separations) {
+            let normals: [V; 3] = load(simd, &block.normals);
+            let offsets = V::load(simd, &block.offsets) * V::all(simd, shrink);
+            let separation = self.lowest_along(simd, &normals) - offsets;
+            separation.store(out);
+            largest = separation.larger(largest);
+        }
+        let (separation, mut index) = (highest_lane(largest), 0);
+        for (number, separations) in separations[..planes.len()].iter().enumerate() {
+            let separations = V::load(simd, separations);
+            let is_largest = separations.simd_eq(V::all(simd, separation)).to_bitmask();
+            if is_largest != 0 {
+                index = number * LANES + is_largest.trailing_zeros() as usize;
+                break;
+            }
+        }
+        FaceQuery { index, separation }
+    }
+
+    /// The least height of the vertices along each of eight vectors.
+    #[inline(always)]
+    fn lowest_along<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &[V; 3]) -> V {
+        let mut low = V::all(simd, N::INFINITY);
+        for (number, block) in self.blocks[..self.used].iter().enumerate() {
+            let rest = self.count - number * LANES;
+            for lane in 0..if rest < LANES { rest } else { LANES } {
+                let [x, y, z] = block;
+                let vertex = [V::all(simd, x[lane]), V::all(simd, y[lane]), V::all(simd, z[lane])];
+                low = dot(along, &vertex).smaller(low);
+            }
+        }
+        low
+    }
+}
+
+/// The rows of a rotation, each in all lanes.
+#[inline(always)]
+pub(super) fn rows<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    rotation: &Matrix<N, 3>,
+) -> [[V; 3]; 3] {
+    by_axis(
+        #[inline(always)]
+        |row| {
+            by_axis(
+                #[inline(always)]
+                |column| V::all(simd, rotation[(row, column)]),
+            )
+        },
+    )
+}
+
+/// How far a point lies above the highest of some planes.
+#[inline(always)]
+pub(super) fn height_above<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    planes: &[Planes<N, 3>],
+    shrink: N,
+    point: &Vector<N, 3>,
+) -> N {
+    let point: [V; 3] = spread(simd, point);
+    let mut highest = V::all(simd, -N::INFINITY);
+    for block in planes {
+        let normals: [V; 3] = load(simd, &block.normals);
+        let offsets = V::load(simd, &block.offsets) * V::all(simd, shrink);
+        highest = (dot(&normals, &point) - offsets).larger(highest);
+    }
+    highest_lane(highest)
+}
