@@ -2,7 +2,6 @@
 
 use core::array::from_fn;
 use core::ops::Range;
-use std::sync::Arc;
 
 use smallvec::SmallVec;
 
@@ -65,8 +64,6 @@ pub struct Polytope<N: Real, const D: usize> {
     /// For each face how far a direction may lean from its normal and certainly still be shown it; empty of
     /// large solids and in the plane. See `polytope_cones.rs`.
     pub(super) cones: Vec<N>,
-    /// Shared by copies, and by nothing else: a solid never changes once it is made.
-    pub(super) identity: Arc<()>,
 }
 
 /// How many vertices or faces are looked at side by side.
@@ -163,11 +160,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
-    }
-
-    /// What copies share. Whoever holds it knows them again: no other solid gets the same.
-    pub(crate) fn identity(&self) -> &Arc<()> {
-        &self.identity
     }
 
     /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.
