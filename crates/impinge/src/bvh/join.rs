@@ -142,7 +142,7 @@ impl<const D: usize> Joiner<D> {
 
     /// The found pairs of slots as pairs of ids, by what became of them.
     fn report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
-        let (first, second) = self.found.parts();
+        let [first, second] = self.found.parts();
         for (&a, &b) in first.iter().zip(second) {
             let key = pack(sides.first.ids[(a & !ENDED) as usize], sides.second.ids[b as usize]);
             if a & ENDED == 0 {
@@ -267,7 +267,7 @@ fn expand<K: Kernel, const D: usize>(
     kernel: K,
     sides: Sides<'_, D>,
     layer: usize,
-    (first, second): (&[u32], &[u32]),
+    [first, second]: [&[u32]; 2],
     out: &mut TaskList,
 ) {
     let (layer_a, layer_b) = (&sides.first.layers[layer], &sides.second.layers[layer]);
@@ -300,7 +300,7 @@ fn expand<K: Kernel, const D: usize>(
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
     sides: Sides<'_, D>,
-    (first, second): (&[u32], &[u32]),
+    [first, second]: [&[u32]; 2],
     out: &mut TaskList,
     scratch: &mut Scratch<D>,
 ) {
@@ -322,13 +322,13 @@ fn join_leaves<K: Kernel, const D: usize>(
         }
         kernel.push(lanes, b, a * small(LANES), mask);
     }
-    let (blocks, slots) = lanes.parts();
+    let [blocks, slots] = lanes.parts();
     for (&b, &slot) in blocks.iter().zip(slots) {
         // Arithmetic in place of a branch: how it goes, no processor foresees.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
         let masks = boxes.differing(kernel, slot, b);
-        masks.push(kernel, upper, (slot, b), out);
+        masks.push(kernel, upper, slot, b, out);
     }
 }
 
@@ -355,7 +355,8 @@ impl Overlaps {
         self,
         kernel: K,
         lanes: u32,
-        (slot, b): (u32, u32),
+        slot: u32,
+        b: u32,
         out: &mut TaskList,
     ) {
         let differing = (self.now ^ self.before) & lanes;

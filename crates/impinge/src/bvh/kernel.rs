@@ -122,15 +122,15 @@ impl TaskList {
 
     /// The pairs, as their two arrays.
     #[inline]
-    pub(super) fn parts(&self) -> (&[u32], &[u32]) {
-        (&self.first[..self.len], &self.second[..self.len])
+    pub(super) fn parts(&self) -> [&[u32]; 2] {
+        [&self.first[..self.len], &self.second[..self.len]]
     }
 
     /// Some of the pairs, as their two arrays.
     #[inline]
-    pub(super) fn part(&self, range: core::ops::Range<usize>) -> (&[u32], &[u32]) {
-        let (first, second) = self.parts();
-        (&first[range.clone()], &second[range])
+    pub(super) fn part(&self, range: core::ops::Range<usize>) -> [&[u32]; 2] {
+        let [first, second] = self.parts();
+        [&first[range.clone()], &second[range]]
     }
 
     /// Makes room for sixteen more.
@@ -156,7 +156,7 @@ impl TaskList {
     pub(super) fn append(&mut self, other: &Self) {
         self.first.truncate(self.len);
         self.second.truncate(self.len);
-        let (first, second) = other.parts();
+        let [first, second] = other.parts();
         self.first.extend_from_slice(first);
         self.second.extend_from_slice(second);
         self.len = self.first.len();
@@ -399,7 +399,7 @@ mod tests {
             let mut list = TaskList::default();
             kernel.push(&mut list, 7, 100, mask);
             kernel.push(&mut list, 8, 200, mask >> 3);
-            let (first, second) = list.parts();
+            let [first, second] = list.parts();
             (mask, kernel.bounds(block), [first, second].concat())
         })
     }
@@ -426,7 +426,7 @@ mod tests {
                 let mut list = TaskList::default();
                 with_kernel!(lanes, kernel => kernel.push(&mut list, 1, 32, mask));
                 let expected = (0..16).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane + 32);
-                assert!(list.parts().1.iter().copied().eq(expected), "{lanes:?}, {mask:b}");
+                assert!(list.parts()[1].iter().copied().eq(expected), "{lanes:?}, {mask:b}");
             }
         }
     }

@@ -153,7 +153,7 @@ impl<const D: usize> Tree<D> {
             |block, limit| {
                 // At once, so that memory has both ready at the same time.
                 let ids = self.leaves()[block as usize];
-                let mut open = self.opened(kernel, probe, (0, block), limit);
+                let mut open = self.opened(kernel, probe, 0, block, limit);
                 hand_out(kernel, &ids, &mut open, limit, found)
             },
         )
@@ -176,7 +176,7 @@ impl<const D: usize> Tree<D> {
             return leaf(0, limit);
         }
         let (mut path, mut layer) = ([Open::NOTHING; LAYERS], top);
-        path[top] = self.opened(kernel, probe, (top, 0), limit);
+        path[top] = self.opened(kernel, probe, top, 0, limit);
         loop {
             match path[layer].next(kernel, limit) {
                 None if layer == top => return limit,
@@ -189,7 +189,7 @@ impl<const D: usize> Tree<D> {
                 }
                 Some(block) => {
                     layer -= 1;
-                    path[layer] = self.opened(kernel, probe, (layer, block), limit);
+                    path[layer] = self.opened(kernel, probe, layer, block, limit);
                 }
             }
         }
@@ -200,7 +200,8 @@ impl<const D: usize> Tree<D> {
         &self,
         kernel: K,
         probe: &impl Probe<D>,
-        (layer, number): (usize, u32),
+        layer: usize,
+        number: u32,
         limit: f32,
     ) -> Open {
         let block = &self.layers[layer].blocks[number as usize];

@@ -95,29 +95,25 @@ impl Frontier {
                         self.push_object(key, id);
                     }
                 }
-                Entry::Block { tree, layer, block } => {
-                    let place = (tree, layer, block);
-                    let opened = trees[usize::from(tree)];
-                    let blocks = &opened.layers[usize::from(layer)].blocks;
-                    self.open(opened, place, (keys.block)(&blocks[block as usize]), limit);
+                Entry::Block { tree: index, layer, block } => {
+                    let tree = trees[usize::from(index)];
+                    let opened = &tree.layers[usize::from(layer)].blocks[block as usize];
+                    let (mask, keys) = (keys.block)(opened);
+                    let lanes = BlockLanes { tree, index, layer, block, mask, keys };
+                    self.push_lanes(&lanes, limit);
                 }
             }
         }
     }
 
     /// Adds the lanes of a block that count and are within the limit.
-    fn open<N: Real, const D: usize>(
-        &mut self,
-        tree: &Tree<D>,
-        (index, layer, block): (u8, u8, u32),
-        (mut mask, lane_keys): (u32, [N; LANES]),
-        limit: N,
-    ) {
+    fn push_lanes<N: Real, const D: usize>(&mut self, lanes: &BlockLanes<'_, N, D>, limit: N) {
+        let &BlockLanes { tree, index, layer, block, mut mask, ref keys } = lanes;
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let child = block * small(LANES) + lane;
-            let key = lane_keys[lane as usize];
+            let key = keys[lane as usize];
             let is_beyond = key > limit;
             if is_beyond {
                 continue;
@@ -131,6 +127,18 @@ impl Frontier {
             }
         }
     }
+}
+
+/// A block of one of the trees with the keys of its lanes.
+struct BlockLanes<'t, N, const D: usize> {
+    tree: &'t Tree<D>,
+    /// The number of the tree.
+    index: u8,
+    layer: u8,
+    block: u32,
+    /// The lanes that count.
+    mask: u32,
+    keys: [N; LANES],
 }
 
 impl Lanes {

@@ -29,7 +29,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     }
     for layer in sides.second.layers.iter().skip(1).rev() {
         next.clear();
-        let (queries, blocks) = tasks.parts();
+        let [queries, blocks] = tasks.parts();
         for (&query, &block) in queries.iter().zip(blocks) {
             let mask = kernel.overlaps(&layer.reaches[block as usize], &reaches[query as usize]);
             kernel.push(next, query, block * small(LANES), mask);
@@ -37,14 +37,14 @@ pub(super) fn ask<K: Kernel, const D: usize>(
         core::mem::swap(tasks, next);
     }
     let (leaves, boxes) = (&sides.second.layers[0], Boxes::of(sides));
-    let (queries, blocks) = tasks.parts();
+    let [queries, blocks] = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
         let mut lanes = 0xffff;
         if sides.is_self {
             lanes = !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
         }
-        boxes.differing(kernel, slot, block).push(kernel, lanes, (slot, block), out);
+        boxes.differing(kernel, slot, block).push(kernel, lanes, slot, block, out);
     }
 }
 

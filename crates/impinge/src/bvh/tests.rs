@@ -55,7 +55,7 @@ impl<const D: usize> Twin<D> {
 
     /// Moves, removes or adds about one object in `rarity`; moves go up to `reach` halves along each
     /// axis, or anywhere.
-    fn change(&mut self, state: &mut u64, (side, reach): (u32, u32), rarity: u32) {
+    fn change(&mut self, state: &mut u64, side: u32, reach: u32, rarity: u32) {
         for id in self.first..self.list.len() {
             let number = u32::try_from(id).expect("small");
             if next(state, rarity) != 0 {
@@ -147,8 +147,8 @@ fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32
     let mut second = Twin::<D>::new(&mut state, 700, 90, side);
     let (mut joiner, mut found) = (Joiner::default(), (0, 0));
     for _ in 0..25 {
-        first.change(&mut state, (side, reach), rarity1);
-        second.change(&mut state, (side, reach), rarity2);
+        first.change(&mut state, side, reach, rarity1);
+        second.change(&mut state, side, reach, rarity2);
         let (mut own, mut across) = (Changes::default(), Changes::default());
         joiner.self_join(&first.tree, &mut own);
         joiner.cross_join(&first.tree, &second.tree, &mut across);
@@ -181,7 +181,7 @@ fn searches_find_what_a_list_finds() {
     let mut twin = Twin::<3>::new(&mut state, 0, 600, 10);
     let mut found_any = 0;
     for _ in 0..60 {
-        twin.change(&mut state, (10, 1000), 10);
+        twin.change(&mut state, 10, 1000, 10);
         twin.settle();
         let mut query = random_box(&mut state, 10);
         if next(&mut state, 4) == 0 {

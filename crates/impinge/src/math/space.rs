@@ -23,10 +23,6 @@ pub trait Space<const D: usize>: Real {
     /// Where an isometry takes the origin.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
-    /// The numbers of an isometry in a row, filled up with zeros.
-    #[doc(hidden)]
-    fn numbers(isometry: &Self::Isometry) -> [Self; 7];
-
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
@@ -51,12 +47,6 @@ impl<N: Real> Space<2> for N {
     #[inline]
     fn translation(isometry: &Isometry2<N>) -> Vector<N, 2> {
         isometry.translation.vector
-    }
-
-    #[inline]
-    fn numbers(isometry: &Isometry2<N>) -> [N; 7] {
-        let (t, r) = (&isometry.translation.vector, &isometry.rotation);
-        [t.x, t.y, r.re, r.im, N::ZERO, N::ZERO, N::ZERO]
     }
 
     fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
@@ -88,12 +78,6 @@ impl<N: Real> Space<3> for N {
     #[inline]
     fn translation(isometry: &Isometry3<N>) -> Vector<N, 3> {
         isometry.translation.vector
-    }
-
-    #[inline]
-    fn numbers(isometry: &Isometry3<N>) -> [N; 7] {
-        let (t, r) = (&isometry.translation.vector, &isometry.rotation.coords);
-        [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
     }
 
     fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {

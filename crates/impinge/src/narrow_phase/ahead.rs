@@ -28,7 +28,8 @@ pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
 /// Updates the pairs of a chunk that are due, one by one, a few of which are always known to be next.
 pub(super) fn update_due<N: Space<D>, const D: usize>(
     rows: &mut CompositeRows<'_, N, D>,
-    (table, due): (&ObjectTable<N, D>, Chosen),
+    table: &ObjectTable<N, D>,
+    due: Chosen,
     mut update: impl FnMut(&mut CompositeRows<'_, N, D>, usize),
 ) {
     let mut due = due.indices();
@@ -55,8 +56,7 @@ fn glance<N: Space<D>, const D: usize>(
 ) {
     let mut seen = N::ZERO;
     for &place in places {
-        let (first, second) = rows.keys[place];
-        let [one, other] = [first, second].map(|index| solid(table.shape(index).geometry()));
+        let [one, other] = rows.keys[place].map(|index| solid(table.shape(index).geometry()));
         seen = max(seen, max(rows.states[place].state.glance(), max(one, other)));
     }
     core::hint::black_box(seen);

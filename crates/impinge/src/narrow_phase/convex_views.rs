@@ -95,6 +95,6 @@ impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
         let (key, entry) = (group.keys()[place], &group.states()[place]);
         let home = self.table.pose(entry.state.home(key));
         debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
-        Some((key.0, key.1, entry.state.view(home, entry.number)))
+        Some((key[0], key[1], entry.state.view(home, entry.number)))
     }
 }

@@ -8,6 +8,7 @@ use super::entry::{
     Change, ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry,
 };
 use super::generator::DefaultContactDispatcher;
+use super::group::PairKey;
 use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
 use super::reuse::{ReuseError, usable_tolerance};
 use super::state::ContactState;
@@ -47,7 +48,7 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
     /// The pairs made due since the last update; some may be gone again.
-    pub(super) due: Vec<(u32, u32)>,
+    pub(super) due: Vec<PairKey>,
     /// Empty but for their memory, from update to update.
     pub(super) changes: Changes,
     pub(super) picked: Vec<Location>,
@@ -176,7 +177,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             return;
         }
         self.forget_order();
-        let (location, _) = self.enter(table, (first, second), Carried::Nothing);
+        let (location, _) = self.enter(table, [first, second], Carried::Nothing);
         self.locations.push(location);
     }
 
@@ -190,7 +191,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) {
         let Some(index) = self.pairs.index_of(first, second) else { return };
         let carried = self.leave(index);
-        push_change(table, (first, second), carried.end(), events);
+        push_change(table, [first, second], carried.end(), events);
         let removed = self.pairs.remove_at(index);
         self.locations.swap_remove(removed.index);
         self.forget_order();
@@ -217,7 +218,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) {
         let partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
         for (_, index) in partners {
-            let key = self.pairs.pairs()[index];
+            let key = PairKey::from(self.pairs.pairs()[index]);
             if !self.adjust(table, key, index) {
                 let carried = self.leave(index);
                 let (location, change) = self.enter(table, key, carried);
@@ -231,10 +232,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(super) fn built_in_lane(
         &self,
         table: &ObjectTable<N, D>,
-        key: (u32, u32),
+        key: PairKey,
     ) -> Option<(Lane, usize)> {
-        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
-        match table.query(key.0).pair(table.query(key.1)) {
+        let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
+        match table.query(key[0]).pair(table.query(key[1])) {
             PairQuery::Contacts { .. } => {
                 let max_points = self.contact_dispatcher.built_in(a, b)?;
                 Some((contact_lane(a, b), max_points))
@@ -248,10 +249,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Keeps a pair's state if the same built-in query still serves it, asking for what is asked
     /// now; moves it to the lane of its new kinds. Answers whether it could.
-    fn adjust(&mut self, table: &ObjectTable<N, D>, key: (u32, u32), index: usize) -> bool {
+    fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
         let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
         let Location { lane, place } = self.locations[index];
-        let query = table.query(key.0).pair(table.query(key.1));
+        let query = table.query(key[0]).pair(table.query(key[1]));
         match (lane, new_lane, query) {
             (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
                 let taken = self.lanes.contacts[usize::from(old)].swap_remove(place);
@@ -286,14 +287,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn enter(
         &mut self,
         table: &ObjectTable<N, D>,
-        key: (u32, u32),
+        key: PairKey,
         carried: Carried,
     ) -> (Location, Option<Change>) {
         self.due.push(key);
         self.touching.take();
-        match table.query(key.0).pair(table.query(key.1)) {
+        match table.query(key[0]).pair(table.query(key[1])) {
             PairQuery::Contacts { linear, angular } => {
-                self.enter_contacts(table, key, carried, (linear, angular))
+                self.enter_contacts(table, key, carried, linear, angular)
             }
             PairQuery::Proximity { margin } => self.enter_proximity(table, key, carried, margin),
         }
@@ -302,9 +303,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn enter_contacts(
         &mut self,
         table: &ObjectTable<N, D>,
-        key: (u32, u32),
+        key: PairKey,
         carried: Carried,
-        (linear, angular): (N, N),
+        linear: N,
+        angular: N,
     ) -> (Location, Option<Change>) {
         if let Some((lane, max_points)) = self.built_in_lane(table, key) {
             let (is_touching, change) = carried.into_touching();
@@ -312,7 +314,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
                 Lane::Contacts(group) => {
-                    let entry = new_entry(table, key, (request, number));
+                    let entry = new_entry(table, key, request, number);
                     self.lanes.contacts[usize::from(group)].push(key, entry, is_touching)
                 }
                 Lane::Composites => {
@@ -322,7 +324,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             };
             return (Location { lane, place }, change);
         }
-        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
+        let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
         let Some(algorithm) = self.contact_dispatcher.get_contact_algorithm(a, b) else {
             return (NOWHERE, carried.end());
         };
@@ -337,7 +339,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn enter_proximity(
         &mut self,
         table: &ObjectTable<N, D>,
-        key: (u32, u32),
+        key: PairKey,
         carried: Carried,
         margin: N,
     ) -> (Location, Option<Change>) {
@@ -348,7 +350,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             let place = self.lanes.proximity[usize::from(group)].push(key, entry, false);
             return (Location { lane, place }, change);
         }
-        let (a, b) = (table.shape(key.0).as_ref(), table.shape(key.1).as_ref());
+        let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
         let Some(algorithm) = self.proximity_dispatcher.get_proximity_algorithm(a, b) else {
             return (NOWHERE, carried.end());
         };
@@ -367,8 +369,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// A removal from a lane gave the place of the removed pair to another.
-    fn note_move(&mut self, moved: Option<(u32, u32)>, place: u32) {
-        let Some((first, second)) = moved else { return };
+    fn note_move(&mut self, moved: Option<PairKey>, place: u32) {
+        let Some([first, second]) = moved else { return };
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
         self.locations[index].place = place;
     }
@@ -377,8 +379,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 /// The state of a pair of convex solids that begins.
 pub(super) fn new_entry<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
-    key: (u32, u32),
-    (request, number): (ManifoldRequest<N>, u64),
+    key: PairKey,
+    request: ManifoldRequest<N>,
+    number: u64,
 ) -> ContactEntry<N, ContactState<N, D>> {
     let mut entry = ContactEntry::<N, ContactState<N, D>>::new(request, number);
     entry.state.set_solids(shapes(table, key));
@@ -388,9 +391,9 @@ pub(super) fn new_entry<N: Space<D>, const D: usize>(
 /// The shapes of a pair.
 fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
-    (first, second): (u32, u32),
+    key: PairKey,
 ) -> [&dyn Shape<N, D>; 2] {
-    [table.shape(first).as_ref(), table.shape(second).as_ref()]
+    key.map(|object| table.shape(object).as_ref())
 }
 
 /// Where pairs without an algorithm are.
@@ -399,7 +402,7 @@ const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
 /// Puts what happened to a pair into events.
 pub(super) fn push_change<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
-    (first, second): (u32, u32),
+    [first, second]: PairKey,
     change: Option<Change>,
     events: &mut Events,
 ) {

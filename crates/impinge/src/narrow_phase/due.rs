@@ -57,13 +57,13 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> 
         }
         let (key, entry, view) = self.rows.row(index);
         ContactView::expire_any(view);
-        let poses = [self.table.pose(key.0), self.table.pose(key.1)];
+        let poses = [self.table.pose(key[0]), self.table.pose(key[1])];
         Some(entry.state.turned(poses, &entry.request)?.0)
     }
 
     #[inline(always)]
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
-        let (first, second) = self.rows.keys[index];
+        let [first, second] = self.rows.keys[index];
         let poses = [self.table.pose(first), self.table.pose(second)];
         let entry = &mut self.rows.states[index];
         entry.state.turned(poses, &entry.request).expect("a pair that began has its solids")

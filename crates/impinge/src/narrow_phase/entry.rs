@@ -3,6 +3,7 @@
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use super::group::PairKey;
 use super::state::{KeptContacts, Posed, proximity_of};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
@@ -23,7 +24,7 @@ pub(crate) enum Change {
 /// The two solids of a pair, as of the last update.
 pub(crate) fn posed<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
-    (first, second): (u32, u32),
+    [first, second]: PairKey,
 ) -> Posed<'_, N, D> {
     Posed {
         pose1: table.pose(first),
@@ -164,7 +165,7 @@ impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
         &mut self,
         dispatcher: &dyn ContactDispatcher<N, D>,
         table: &ObjectTable<N, D>,
-        (first, second): (u32, u32),
+        [first, second]: PairKey,
         ids: &mut IdAllocator,
     ) -> bool {
         let able = self.algorithm.update(
@@ -199,7 +200,7 @@ impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,
         table: &ObjectTable<N, D>,
-        (first, second): (u32, u32),
+        [first, second]: PairKey,
     ) -> Option<Change> {
         let able = self.algorithm.update(
             dispatcher,

@@ -13,6 +13,9 @@ pub(super) const CHUNK: usize = 128;
 /// Pairs in a word of flags.
 const WORD: usize = 64;
 
+/// The two objects of a pair, by handle index.
+pub(crate) type PairKey = [u32; 2];
+
 /// Some of at most [`CHUNK`] pairs, a bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Chosen([u64; CHUNK / WORD]);
@@ -28,7 +31,7 @@ pub(super) struct Chosen([u64; CHUNK / WORD]);
 /// belongs to each state too.
 #[derive(Debug)]
 pub(crate) struct Group<S, V = (), R = ()> {
-    keys: Vec<(u32, u32)>,
+    keys: Vec<PairKey>,
     /// By pair: to be updated even if both objects stand still.
     due: Vec<bool>,
     /// By pair, a bit each, the others zero: it has contact points.
@@ -42,7 +45,7 @@ pub(crate) struct Group<S, V = (), R = ()> {
 
 /// The pairs of a group to work on, side by side.
 pub(crate) struct Rows<'a, S, V, R = ()> {
-    pub(crate) keys: &'a [(u32, u32)],
+    pub(crate) keys: &'a [PairKey],
     due: &'a mut [bool],
     touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
@@ -58,7 +61,7 @@ pub(crate) struct Taken<S> {
     pub(crate) state: S,
     pub(crate) is_touching: bool,
     /// The pair that now has its place, if any.
-    pub(crate) moved: Option<(u32, u32)>,
+    pub(crate) moved: Option<PairKey>,
 }
 
 impl<S, V, R> Default for Group<S, V, R> {
@@ -90,7 +93,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     }
 
     /// Adds a pair, which is due, and answers its place.
-    pub(crate) fn push(&mut self, key: (u32, u32), state: S, is_touching: bool) -> u32 {
+    pub(crate) fn push(&mut self, key: PairKey, state: S, is_touching: bool) -> u32 {
         let place = self.keys.len();
         self.keys.push(key);
         self.due.push(true);
@@ -129,7 +132,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
 
     /// Gives the place of a pair to another, which is due and does not touch, and answers whether the first
     /// one did.
-    pub(crate) fn replace(&mut self, place: u32, key: (u32, u32), state: S) -> bool {
+    pub(crate) fn replace(&mut self, place: u32, key: PairKey, state: S) -> bool {
         let at = place as usize;
         let was_touching = set_touching(&mut self.touching, at, false);
         (self.keys[at], self.due[at], self.states[at]) = (key, true, state);
@@ -184,12 +187,12 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     }
 
     /// The pair at a place.
-    pub(crate) fn key(&self, place: u32) -> (u32, u32) {
+    pub(crate) fn key(&self, place: u32) -> PairKey {
         self.keys[place as usize]
     }
 
     /// The pairs, in the order in which they lie.
-    pub(crate) fn keys(&self) -> &[(u32, u32)] {
+    pub(crate) fn keys(&self) -> &[PairKey] {
         &self.keys
     }
 
@@ -204,7 +207,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     }
 
     /// The touching pairs with their states, in the order in which they lie.
-    pub(crate) fn iter_touching(&self) -> impl Iterator<Item = ((u32, u32), &S)> {
+    pub(crate) fn iter_touching(&self) -> impl Iterator<Item = (PairKey, &S)> {
         let pairs = (0..).zip(&self.keys).zip(&self.states);
         let pairs = pairs.filter(|((place, _), _)| self.is_touching(*place));
         pairs.map(|((_, &key), state)| (key, state))
@@ -283,7 +286,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
 
     /// A pair with its state and its view.
     #[inline]
-    pub(crate) fn row(&mut self, index: usize) -> ((u32, u32), &mut S, Option<&mut V>) {
+    pub(crate) fn row(&mut self, index: usize) -> (PairKey, &mut S, Option<&mut V>) {
         (self.keys[index], &mut self.states[index], self.views.get_mut(index))
     }
 
@@ -294,7 +297,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         index: usize,
         table: &ObjectTable<N, D>,
     ) -> bool {
-        let (first, second) = self.keys[index];
+        let [first, second] = self.keys[index];
         self.take_mark(index) | table.has_changed(first) | table.has_changed(second)
     }
 
@@ -334,15 +337,15 @@ mod tests {
     fn the_last_pair_fills_the_gap() {
         let mut group = Group::<u32>::default();
         for n in 0..3 {
-            assert_eq!(group.push((n, n + 1), n, n == 2), n, "places are dense");
+            assert_eq!(group.push([n, n + 1], n, n == 2), n, "places are dense");
         }
         let taken = |state, is_touching, moved| Taken { state, is_touching, moved };
         assert_eq!(
             group.swap_remove(0),
-            taken(0, false, Some((2, 3))),
+            taken(0, false, Some([2, 3])),
             "the last moves to the front"
         );
-        assert_eq!((group.key(0), *group.state(0)), ((2, 3), 2), "with its state");
+        assert_eq!((group.key(0), *group.state(0)), ([2, 3], 2), "with its state");
         assert_eq!(group.touching(), [1], "and with its flag");
         assert_eq!(group.swap_remove(1), taken(1, false, None), "nobody moves when the last goes");
         assert_eq!(group.swap_remove(0), taken(2, true, None), "none is left");
@@ -354,7 +357,7 @@ mod tests {
         let mut group = Group::<u32>::default();
         let is_third = |n: u32| n.is_multiple_of(3);
         for n in 0..200 {
-            group.push((n, n), n, is_third(n));
+            group.push([n, n], n, is_third(n));
         }
         for step in 0..150 {
             let place = step * 7 % (200 - step);
@@ -376,7 +379,7 @@ mod tests {
     fn views_follow_their_pairs_once_there_are_any() {
         let mut group = Group::<u32, Option<u32>>::default();
         for n in 0..5 {
-            group.push((n, n + 1), n, false);
+            group.push([n, n + 1], n, false);
         }
         assert!(group.rows().views.is_empty(), "nobody asked");
         assert_eq!(*group.view(3), None, "made now");
@@ -386,10 +389,10 @@ mod tests {
             *view.expect("one for each") = Some(*state);
         }
         group.swap_remove(1);
-        group.push((9, 9), 9, false);
+        group.push([9, 9], 9, false);
         assert_eq!([1, 4].map(|place| *group.view(place)), [Some(4), None], "moved, and new");
         for n in 5..130 {
-            group.push((n, n), n, false);
+            group.push([n, n], n, false);
         }
         let sizes = group.rows().chunks().map(|rows| (rows.states.len(), rows.views.len()));
         assert_eq!(sizes.collect::<Vec<_>>(), [(128, 128), (2, 2)], "cut alike");

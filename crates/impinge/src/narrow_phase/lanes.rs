@@ -4,7 +4,7 @@ use super::entry::{
     Change, ContactEntry, ContactView, CustomContactEntry, CustomProximityEntry, ProximityEntry,
     Status,
 };
-use super::group::{Group, Taken};
+use super::group::{Group, PairKey, Taken};
 use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
@@ -137,7 +137,7 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
     }
 
     /// Takes a pair's state out; also answers which pair now has its place.
-    pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<(u32, u32)>) {
+    pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
         let place = location.place;
         match location.lane {
             Lane::Contacts(lane) => {
@@ -190,6 +190,6 @@ impl<N: Space<D>, const D: usize> Lanes<N, D> {
 }
 
 /// What a pair that was taken out carries over, and which pair has its place.
-fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<(u32, u32)>) {
+fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<PairKey>) {
     (Carried::Contacts { is_touching: taken.is_touching }, taken.moved)
 }

@@ -17,7 +17,6 @@ mod group;
 mod handle;
 mod ids;
 mod lanes;
-mod likeness;
 mod objects;
 mod query_type;
 mod reuse;

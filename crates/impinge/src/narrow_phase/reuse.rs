@@ -16,7 +16,7 @@ use smallvec::SmallVec;
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
-use super::group::Rows;
+use super::group::{PairKey, Rows};
 use super::state::KeptContacts;
 use crate::math::{Pose, Real, Space, max, min};
 
@@ -180,16 +180,21 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         reference.pose21 = self.pose21(key, is_swapped);
         // Solids meet where both of them are: of one without end, or larger, only what is near the other
         // counts.
-        let (home, other) = if is_swapped { (key.1, key.0) } else { key };
-        let [own, others] = [home, other].map(|object| self.table.bounds(object).reach());
+        let objects = home_first(key, is_swapped);
+        let [own, others] = objects.map(|object| self.table.bounds(object).reach());
         reference.reach = min(own, reference.pose21.translation.norm() + others);
         reference.distances.clear();
         state.each_point(|_, distance, _| reference.distances.push(*distance));
     }
 
     /// The pose of the solid in whose frame contacts are kept in that of the other.
-    fn pose21(&self, (first, second): (u32, u32), is_swapped: bool) -> Pose<N, D> {
-        let (home, other) = if is_swapped { (second, first) } else { (first, second) };
+    fn pose21(&self, key: PairKey, is_swapped: bool) -> Pose<N, D> {
+        let [home, other] = home_first(key, is_swapped);
         Pose::relative(self.table.pose(other), self.table.pose(home))
     }
+}
+
+/// The object in whose frame contacts are kept, then the other.
+const fn home_first([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
+    if is_swapped { [second, first] } else { [first, second] }
 }

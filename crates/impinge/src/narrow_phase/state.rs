@@ -1,5 +1,6 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
+use super::group::PairKey;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::query::composite::Between;
 use crate::query::far::{Apart, Bounds};
@@ -260,7 +261,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 
     /// Of the two objects of the pair, that in whose frame the contacts are kept.
     #[inline]
-    pub(super) const fn home(&self, (first, second): (u32, u32)) -> u32 {
+    pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
         if self.kept.swapped { second } else { first }
     }
 
@@ -306,7 +307,7 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
 
     /// Of the two objects of the pair, that in whose frame the contacts are kept.
     #[inline]
-    pub(super) const fn home(&self, (first, second): (u32, u32)) -> u32 {
+    pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
         if self.swapped { second } else { first }
     }
 
@@ -322,7 +323,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     pub(crate) fn view<'a>(
         &'a self,
         patch: usize,
-        (pose1, pair): (&'a Pose<N, D>, u64),
+        pose1: &'a Pose<N, D>,
+        pair: u64,
     ) -> Option<ManifoldView<'a, N, D>> {
         let placement = Placement { pose1, pair, is_swapped: self.swapped };
         self.contacts.view(patch, placement)

@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use super::default_narrow_phase::{new_entry, push_change};
 use super::entry::Change;
+use super::group::PairKey;
 use super::lanes::{Lane, Location};
 use super::{DefaultNarrowPhase, Events, Interaction, ObjectTable, PairQuery};
 use crate::math::Space;
@@ -14,7 +15,7 @@ use crate::query::ManifoldRequest;
 const AT_ONCE: usize = 16;
 
 /// Some pairs, by handle index.
-type Keys = SmallVec<[(u32, u32); AT_ONCE]>;
+type Keys = SmallVec<[PairKey; AT_ONCE]>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Takes in the pairs that began and lets those go that ended, as
@@ -30,7 +31,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ) {
         let all = |wanted: bool| {
             let those = interactions.iter().filter(move |(_, has_started)| *has_started == wanted);
-            those.map(|((first, second), _)| (first.index(), second.index()))
+            those.map(|((first, second), _)| [first.index(), second.index()])
         };
         let (mut starting, mut stopping) = (all(true), all(false));
         loop {
@@ -48,32 +49,32 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn turn_some_over(
         &mut self,
         table: &ObjectTable<N, D>,
-        [started, stopped]: [&[(u32, u32)]; 2],
+        [started, stopped]: [&[PairKey]; 2],
         events: &mut Events,
     ) {
         let both = started.len().min(stopped.len());
         for (&new, &old) in started.iter().zip(stopped) {
-            self.exchange(table, (old, new), events);
+            self.exchange(table, old, new, events);
         }
-        for &(first, second) in &started[both..] {
+        for &[first, second] in &started[both..] {
             self.pair_started(table, first, second);
         }
-        for &(first, second) in &stopped[both..] {
+        for &[first, second] in &stopped[both..] {
             self.pair_stopped(table, first, second, events);
         }
     }
 
     /// Brings what is known of some pairs into the cache, where whoever goes through them would wait for
     /// one after the other. Changes nothing.
-    fn fetch(&self, table: &ObjectTable<N, D>, started: &[(u32, u32)], stopped: &[(u32, u32)]) {
-        let packed = |&(first, second): &(u32, u32)| pack(first, second);
+    fn fetch(&self, table: &ObjectTable<N, D>, started: &[PairKey], stopped: &[PairKey]) {
+        let packed = |&[first, second]: &PairKey| pack(first, second);
         let keys: SmallVec<[u64; 2 * AT_ONCE]> =
             started.iter().chain(stopped).map(packed).collect();
         self.pairs.fetch(&keys);
         let kind = |object: u32| table.shape(object).geometry().kind() as u32;
-        let kinds = |sum: u32, &(first, second): &_| sum ^ kind(first) ^ kind(second);
+        let kinds = |sum: u32, &[first, second]: &PairKey| sum ^ kind(first) ^ kind(second);
         let mut seen = u64::from(started.iter().fold(0, kinds));
-        for &(first, second) in stopped {
+        for &[first, second] in stopped {
             let index = self.pairs.index_of(first, second);
             let location = index.map(|index| self.locations[index]);
             if let Some(Location { lane: Lane::Contacts(group), place }) = location {
@@ -88,12 +89,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn exchange(
         &mut self,
         table: &ObjectTable<N, D>,
-        (old, new): ((u32, u32), (u32, u32)),
+        old: PairKey,
+        new: PairKey,
         events: &mut Events,
     ) {
-        if self.replace(table, (old, new), events).is_none() {
-            self.pair_stopped(table, old.0, old.1, events);
-            self.pair_started(table, new.0, new.1);
+        if self.replace(table, old, new, events).is_none() {
+            self.pair_stopped(table, old[0], old[1], events);
+            self.pair_started(table, new[0], new[1]);
         }
     }
 
@@ -101,27 +103,28 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,
-        (old, new): ((u32, u32), (u32, u32)),
+        old: PairKey,
+        new: PairKey,
         events: &mut Events,
     ) -> Option<()> {
-        let index = self.pairs.index_of(old.0, old.1)?;
+        let index = self.pairs.index_of(old[0], old[1])?;
         let Location { lane, place } = self.locations[index];
         let (Lane::Contacts(group), PairQuery::Contacts { linear, angular }) =
-            (lane, table.query(new.0).pair(table.query(new.1)))
+            (lane, table.query(new[0]).pair(table.query(new[1])))
         else {
             return None;
         };
         let (_, max_points) =
             self.built_in_lane(table, new).filter(|built_in| built_in.0 == lane)?;
-        if self.pairs.index_of(new.0, new.1).is_some() {
+        if self.pairs.index_of(new[0], new[1]).is_some() {
             return None;
         }
         let request = ManifoldRequest::new(linear, angular, max_points);
-        let entry = new_entry(table, new, (request, self.ids.allocate()));
+        let entry = new_entry(table, new, request, self.ids.allocate());
         let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);
         let end = was_touching.then_some(Change::Contact { touching: false });
         push_change(table, old, end, events);
-        self.pairs.replace(old, new);
+        self.pairs.replace(old.into(), new.into());
         self.due.push(new);
         self.forget_order();
         Some(())

@@ -6,7 +6,7 @@ use super::ahead::update_due;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
-use super::group::{CHUNK, Chosen, Group, Rows};
+use super::group::{CHUNK, Chosen, Group, PairKey, Rows};
 use super::lanes::{Lane, Location};
 use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
@@ -22,7 +22,7 @@ const SPARSE: usize = 8;
 type Places = SmallVec<[usize; CHUNK]>;
 
 /// What changed, pair by pair.
-pub(super) type Changes = Vec<((u32, u32), Change)>;
+pub(super) type Changes = Vec<(PairKey, Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Brings all pairs up to date with the rows of the table and reports what changed.
@@ -74,7 +74,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             if !rows.references.is_empty() {
                 due.retain(|place| !reuse.keeps(&mut rows, place));
             }
-            update_due(&mut rows, (table, due), |rows, place| {
+            update_due(&mut rows, table, due, |rows, place| {
                 compute_contact(rows, table, place, changes);
                 reuse.note(rows, place);
             });
@@ -126,12 +126,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Updates the pairs of the objects that changed, and those that are due.
-    fn update_some(
-        &mut self,
-        table: &ObjectTable<N, D>,
-        due: &[(u32, u32)],
-        changes: &mut Changes,
-    ) {
+    fn update_some(&mut self, table: &ObjectTable<N, D>, due: &[PairKey], changes: &mut Changes) {
         let mut picked = core::mem::take(&mut self.picked);
         self.pick(table, due, &mut picked);
         for picked in picked.chunk_by(|one, other| one.lane == other.lane) {
@@ -143,15 +138,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Lists where the pairs of the objects that changed are, and those that are due: each once, lane by
     /// lane, in the order in which they lie.
-    fn pick(&self, table: &ObjectTable<N, D>, due: &[(u32, u32)], picked: &mut Vec<Location>) {
+    fn pick(&self, table: &ObjectTable<N, D>, due: &[PairKey], picked: &mut Vec<Location>) {
         for &row in table.changed() {
             // A pair of two changed objects is taken from the end with the smaller index.
             let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
             let partners = self.pairs.partners(row).filter(|(partner, _)| mine(*partner));
             picked.extend(partners.map(|(_, index)| self.locations[index]));
         }
-        let still = |&&(a, b): &&(u32, u32)| !table.has_changed(a) && !table.has_changed(b);
-        let due = due.iter().filter(still).filter_map(|&(a, b)| self.pairs.index_of(a, b));
+        let still = |&&[a, b]: &&PairKey| !table.has_changed(a) && !table.has_changed(b);
+        let due = due.iter().filter(still).filter_map(|&[a, b]| self.pairs.index_of(a, b));
         picked.extend(due.map(|index| self.locations[index]));
         picked.sort_unstable();
         picked.dedup();
@@ -222,10 +217,10 @@ fn update_convex<N: Space<D>, const D: usize>(
 ) {
     let mut due = rows.take_all_due(reuse.table);
     if rows.references.is_empty() || has_ball(solids) {
-        return compute_convex(&mut rows, reuse.table, due, (solids, changes));
+        return compute_convex(&mut rows, reuse.table, due, solids, changes);
     }
     due.retain(|place| !reuse.keeps(&mut rows, place));
-    compute_convex(&mut rows, reuse.table, due, (solids, changes));
+    compute_convex(&mut rows, reuse.table, due, solids, changes);
     due.indices().for_each(|place| reuse.note(&mut rows, place));
 }
 
@@ -240,7 +235,8 @@ fn compute_convex<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
     due: Chosen,
-    (solids, changes): (Option<&[Solid<N, D>; 2]>, &mut Changes),
+    solids: Option<&[Solid<N, D>; 2]>,
+    changes: &mut Changes,
 ) {
     if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
         let mut places = Places::new();
@@ -274,7 +270,7 @@ fn update_boxes_at<N: Space<D>, const D: usize>(
         (rest, first) = (after, place + 1);
         ContactView::expire_any(rows.views.get_mut(place));
         let key = rows.keys[place];
-        let poses = [table.pose(key.0), table.pose(key.1)];
+        let poses = [table.pose(key[0]), table.pose(key[1])];
         if let Some(job) = entry.state.box_job(poses, &entry.request) {
             jobs.push(job);
         }

@@ -5,6 +5,7 @@ use core::fmt;
 use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::entry::posed;
+use super::group::PairKey;
 use super::lanes::{CompositeGroup, ContactGroup, Lane, Lanes};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
@@ -284,7 +285,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
             let views = manifolds.filter_map(ManifoldView::of_manifold);
-            views.map(move |view| (key.0, key.1, view))
+            views.map(move |view| (key[0], key[1], view))
         })
     }
 
@@ -361,7 +362,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if self.locations.len() != self.pairs.len() {
             return Err("locations out of step with pairs".to_owned());
         }
-        for (&key, location) in self.pairs.pairs().iter().zip(&self.locations) {
+        for (&pair, location) in self.pairs.pairs().iter().zip(&self.locations) {
+            let key = PairKey::from(pair);
             let place = location.place;
             let found = match location.lane {
                 Lane::Contacts(group) => self.lanes.contacts[usize::from(group)].key(place),

@@ -116,7 +116,7 @@ impl PairTable {
     /// Takes the pair of `old` out, if it is there, and puts that of `new`, which the caller knows not
     /// to be there, in its place: no other pair moves. Returns where it stands. Constant time.
     pub fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
-        let index = self.unlink(old)?;
+        let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
         self.link(index, new.0, new.1);
         Some(index)
@@ -137,7 +137,7 @@ impl PairTable {
 
     /// Takes the pair out, if it is there.
     pub fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
-        let index = self.unlink((a, b))?;
+        let index = self.unlink(a, b)?;
         Some(self.close_gap(index))
     }
 
@@ -146,13 +146,14 @@ impl PairTable {
     /// # Panics
     /// If `index` is not below [`Self::len`].
     pub fn remove_at(&mut self, index: usize) -> Removed {
-        self.unlink(self.pairs[index]);
+        let (a, b) = self.pairs[index];
+        self.unlink(a, b);
         self.close_gap(index)
     }
 
     /// Takes the links of the pair out, if it is there, and says where it stands.
     #[inline]
-    fn unlink(&mut self, (a, b): (u32, u32)) -> Option<usize> {
+    fn unlink(&mut self, a: u32, b: u32) -> Option<usize> {
         let index = self.lines.remove(a, b)?;
         if a != b {
             self.lines.remove(b, a);

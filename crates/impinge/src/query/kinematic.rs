@@ -221,11 +221,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         let point2 = pose12.point(&self.local2);
         let geometry2 = self.geometry2.moved(pose12);
         let normal = self.normal(&point2, geometry2, pose12);
-        let (foot1, foot2) = feet(
-            (&self.local1, self.geometry1.moved(&Pose::identity())),
-            (&point2, geometry2),
-            &normal,
-        );
+        let geometry1 = self.geometry1.moved(&Pose::identity());
+        let (foot1, foot2) = feet([&self.local1, &point2], [geometry1, geometry2], &normal);
         let distance = normal.dot(&(foot2 - foot1)) - self.rounding1 - self.rounding2;
         let point1 = foot1 + normal * self.rounding1;
         Separation { distance, normal, point1, point2: point1 + normal * distance }
@@ -446,20 +443,20 @@ const LEAST_SINE_SQUARED: f64 = 1e-6;
 /// A point or line stays where its solid takes it and the plane gives way; both planes: the point on
 /// the first stays.
 fn feet<N: Real, const D: usize>(
-    (point1, geometry1): (&Point<N, D>, NeighborhoodGeometry<N, D>),
-    (point2, geometry2): (&Point<N, D>, NeighborhoodGeometry<N, D>),
+    [point1, point2]: [&Point<N, D>; 2],
+    geometries: [NeighborhoodGeometry<N, D>; 2],
     normal: &Vector<N, D>,
 ) -> Feet<N, D> {
     use NeighborhoodGeometry::{Line, Plane, Point};
     let gap = point2 - point1;
     let flat = |v: &Vector<N, D>| v - normal * normal.dot(v);
-    match (geometry1, geometry2) {
-        (_, Plane(face)) => (*point1, point1 + normal * (gap.dot(&face) / normal.dot(&face))),
-        (Plane(face), _) => (point2 - normal * (gap.dot(&face) / normal.dot(&face)), *point2),
-        (Point, Point) => (*point1, *point2),
-        (Point, Line(along)) => (*point1, point2 - along * ratio(&flat(&gap), &flat(&along))),
-        (Line(along), Point) => (point1 + along * ratio(&flat(&gap), &flat(&along)), *point2),
-        (Line(along1), Line(along2)) => {
+    match geometries {
+        [_, Plane(face)] => (*point1, point1 + normal * (gap.dot(&face) / normal.dot(&face))),
+        [Plane(face), _] => (point2 - normal * (gap.dot(&face) / normal.dot(&face)), *point2),
+        [Point, Point] => (*point1, *point2),
+        [Point, Line(along)] => (*point1, point2 - along * ratio(&flat(&gap), &flat(&along))),
+        [Line(along), Point] => (point1 + along * ratio(&flat(&gap), &flat(&along)), *point2),
+        [Line(along1), Line(along2)] => {
             let (a, b) = crossing(&flat(&gap), &flat(&along1), &flat(&along2));
             (point1 + along1 * a, point2 + along2 * b)
         }

@@ -113,7 +113,7 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     let (x1, x2) = (pose1.translation[0], pose2.translation[0]);
     let is_beyond = x1 > x2;
     if kind1 == kind2 && !(is_beyond | (x1 < x2)) {
-        return compare_at_length((pose1, shape1), (pose2, shape2)) == Ordering::Greater;
+        return compare_at_length(pose1, shape1, pose2, shape2) == Ordering::Greater;
     }
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
@@ -145,15 +145,17 @@ fn compare<N: Real, const D: usize>(
     } else if x1 > x2 {
         Ordering::Greater
     } else {
-        compare_at_length((pose1, shape1), (pose2, shape2))
+        compare_at_length(pose1, shape1, pose2, shape2)
     }
 }
 
 /// [`compare`] for solids of one kind.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
-    (pose1, shape1): (&Pose<N, D>, Geometry<'_, N, D>),
-    (pose2, shape2): (&Pose<N, D>, Geometry<'_, N, D>),
+    pose1: &Pose<N, D>,
+    shape1: Geometry<'_, N, D>,
+    pose2: &Pose<N, D>,
+    shape2: Geometry<'_, N, D>,
 ) -> Ordering {
     compare_poses(pose1, pose2).then_with(|| compare_solids(&shape1.0, &shape2.0))
 }

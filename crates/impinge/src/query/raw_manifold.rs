@@ -6,7 +6,7 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
 
 /// Which points a manifold shall hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct ManifoldRequest<N: Real> {
     /// Points farther apart than this are left out; zero or more.
     pub(crate) prediction: N,

@@ -2,7 +2,6 @@
 
 use core::array::from_fn;
 use core::ops::Range;
-use std::sync::Arc;
 
 use smallvec::SmallVec;
 
@@ -59,8 +58,6 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) fan_starts: Vec<u32>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(super) fan_directions: Vec<Option<Vector<N, D>>>,
-    /// Shared by copies, and by nothing else: a solid never changes once it is made.
-    pub(super) identity: Arc<()>,
 }
 
 /// How many vertices or faces are looked at side by side.
@@ -157,11 +154,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
-    }
-
-    /// What copies share. Whoever holds it knows them again: no other solid gets the same.
-    pub(crate) fn identity(&self) -> &Arc<()> {
-        &self.identity
     }
 
     /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.

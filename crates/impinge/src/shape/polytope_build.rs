@@ -1,7 +1,5 @@
 //! How polytopes are put together from what is already known to be convex.
 
-use std::sync::Arc;
-
 use smallvec::SmallVec;
 
 use super::polytope::count32;
@@ -37,7 +35,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             reach: Self::reach_of(&vertices),
             blocks: Self::blocks_of(&vertices),
             quartets: Self::blocks_of(&vertices),
-            identity: Arc::new(()),
             vertices,
             faces: Vec::new(),
             planes: SmallVec::new(),

@@ -85,7 +85,8 @@ pub(crate) struct KnownSegment<'a, N: Real> {
 impl<'a, N: Real> KnownSegment<'a, N> {
     /// A segment by its ends, as its surface has them.
     pub(crate) fn new(
-        (surface, siding): (&'a dyn Surface<N, 2>, Option<Siding>),
+        surface: &'a dyn Surface<N, 2>,
+        siding: Option<Siding>,
         others: &'a dyn KnownSegments<N>,
         ends: [Point<N, 2>; 2],
     ) -> Self {
@@ -94,7 +95,7 @@ impl<'a, N: Real> KnownSegment<'a, N> {
     }
 
     /// The segments joined to this one at one of its ends; `None` if these are not known.
-    fn joined(&self, siding: Siding, (part, end): (u32, u32)) -> Option<Joined<N>> {
+    fn joined(&self, siding: Siding, part: u32, end: u32) -> Option<Joined<N>> {
         let at = self.ends.get(end as usize)?;
         if siding.joining == Joining::Unknown || !self.others.are_all_at(at) {
             return None;
@@ -141,7 +142,7 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
         let own = self.is_own(normal);
         match feature {
             FeatureId::Vertex(end) if own != Some(true) => {
-                let known = self.joined(siding, (part, end));
+                let known = self.joined(siding, part, end);
                 let known = known.map(|joined| self.seam_admits(siding, &joined, normal));
                 known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
             }
@@ -160,7 +161,7 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
             && !siding.keeps_internal_edges
             && self.is_own(first) != Some(true)
             && self.is_own(second) != Some(true)
-            && let Some(joined) = self.joined(siding, (part, end))
+            && let Some(joined) = self.joined(siding, part, end)
         {
             let is_first = self.seam_admits(siding, &joined, first);
             return [is_first, !is_first && self.seam_admits(siding, &joined, second)];

@@ -14,7 +14,7 @@ use crate::shape::{FeatureId, Siding, Surface};
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         let own = Face::of(self, self.corners(part));
-        self.face_admits((&own, &mut Beside::unknown()), feature, normal)
+        self.face_admits(&own, &mut Beside::unknown(), feature, normal)
     }
 
     fn admits_in_turn(
@@ -24,8 +24,8 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         [first, second]: [&Vector<N, 3>; 2],
     ) -> [bool; 2] {
         let (own, mut beside) = (Face::of(self, self.corners(part)), Beside::unknown());
-        let is_first = self.face_admits((&own, &mut beside), feature, first);
-        [is_first, !is_first && self.face_admits((&own, &mut beside), feature, second)]
+        let is_first = self.face_admits(&own, &mut beside, feature, first);
+        [is_first, !is_first && self.face_admits(&own, &mut beside, feature, second)]
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
@@ -156,7 +156,8 @@ impl<N: Real> HeightField<N, 3> {
     /// Whether a triangle has a normal at a feature; what lies beside it is looked up once.
     fn face_admits(
         &self,
-        (own, beside): (&Face<N>, &mut Beside<N>),
+        own: &Face<N>,
+        beside: &mut Beside<N>,
         feature: FeatureId,
         normal: &Vector<N, 3>,
     ) -> bool {
@@ -170,17 +171,18 @@ impl<N: Real> HeightField<N, 3> {
                 FeatureId::Edge(side) => {
                     let fold =
                         beside.fold.get_or_insert_with(|| Fold::at(self, own, side as usize));
-                    self.edge_admits((own, fold), side as usize, normal)
+                    self.edge_admits(own, fold, side as usize, normal)
                 }
                 FeatureId::Vertex(corner) => {
-                    self.vertex_admits((own, &mut beside.star), corner as usize, normal)
+                    self.vertex_admits(own, &mut beside.star, corner as usize, normal)
                 }
             }
     }
 
     fn edge_admits(
         &self,
-        (own, fold): (&Face<N>, &Fold<N>),
+        own: &Face<N>,
+        fold: &Fold<N>,
         side: usize,
         normal: &Vector<N, 3>,
     ) -> bool {
@@ -201,7 +203,8 @@ impl<N: Real> HeightField<N, 3> {
 
     fn vertex_admits(
         &self,
-        (own, star): (&Face<N>, &mut Option<Star<N>>),
+        own: &Face<N>,
+        star: &mut Option<Star<N>>,
         corner: usize,
         normal: &Vector<N, 3>,
     ) -> bool {

@@ -55,7 +55,7 @@ impl<N: Real> TriMesh<N, 3> {
             FeatureId::Edge(side) if !(self.keeps_internal_edges || is_free(normals[0])) => {
                 let bend = self.bend_at(part, side as usize);
                 let admits = |normal: &Vector<N, 3>| {
-                    self.bent_edge_admits(bend.as_ref(), (part, side as usize), normal)
+                    self.bent_edge_admits(bend.as_ref(), part, side as usize, normal)
                 };
                 let is_first = admits(normals[0]);
                 [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
@@ -95,7 +95,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
-        self.bent_edge_admits(self.bend_at(part, side).as_ref(), (part, side), normal)
+        self.bent_edge_admits(self.bend_at(part, side).as_ref(), part, side, normal)
     }
 
     /// How a side is bent, where that is plain.
@@ -111,7 +111,8 @@ impl<N: Real> TriMesh<N, 3> {
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
-        (part, side): (u32, usize),
+        part: u32,
+        side: usize,
         normal: &Vector<N, 3>,
     ) -> bool {
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {

@@ -224,7 +224,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             return None;
         }
         let (parts, ends) = ([0, kept.parts[index]], kept.ends(index));
-        let known = KnownSegment::new((self.surface, self.siding), kept, ends);
+        let known = KnownSegment::new(self.surface, self.siding, kept, ends);
         if !known.faces(parts[1], &self.from) {
             return None;
         }
