@@ -40,7 +40,7 @@ use crate::shape::{Geometry, SupportMap};
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
-    let found = convex::separation_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    let found = convex::separation_by(&flat, round, &pair.pose12, loosened, &Overlap { pair });
     found.filter(|found| found.distance <= limit)
 }
 
@@ -48,7 +48,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
-    let found = convex::distance_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    let found = convex::distance_by(&flat, round, &pair.pose12, loosened, &Overlap { pair });
     found.filter(|distance| *distance <= limit)
 }
 
