@@ -27,7 +27,7 @@ pub(in crate::query::separation) fn separation<N: Real>(
     let ask = |rod: &Rod<'_, N>, most: N| {
         if is_usual(hull) { Beam::new(rod, hull).verdict(most) } else { Verdict::Undecided }
     };
-    settled(pair, (hull.reach(), limit), ask, || general::of_flat_cores(pair, limit))
+    settled(pair, hull.reach(), limit, ask, || general::of_flat_cores(pair, limit))
 }
 
 /// A solid with few parts.
