@@ -23,7 +23,7 @@ const ROUNDS: usize = 96;
 
 /// A side of the polygon, from its vertex to that of the next side.
 #[derive(Clone, Copy)]
-struct Side<N: Real> {
+struct PolygonEdge<N: Real> {
     start: Vertex<N, 2>,
     /// The unit normal out of the polygon.
     outward: Vector<N, 2>,
@@ -32,9 +32,9 @@ struct Side<N: Real> {
 }
 
 /// Counter-clockwise.
-type Ring<N> = SmallVec<[Side<N>; 16]>;
+type Ring<N> = SmallVec<[PolygonEdge<N>; 16]>;
 
-impl<N: Real> Side<N> {
+impl<N: Real> PolygonEdge<N> {
     fn new(start: Vertex<N, 2>, end: &Vertex<N, 2>) -> Self {
         let edge = end.point - start.point;
         let sound = edge.norm_squared() > noise::<N>() * noise();
@@ -60,7 +60,7 @@ pub(super) fn deepest<N: Real>(
 
 fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> Ring<N> {
     let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(&start, end)| Side::new(start, end)).collect()
+    corners.iter().zip(next).map(|(&start, end)| PolygonEdge::new(start, end)).collect()
 }
 
 /// The triangle that is known to hold the origin, if there is one and it is not a sliver.
@@ -131,8 +131,8 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
             ring[index].offset = -candidate.height;
             continue;
         }
-        ring[index] = Side::new(side.start, &candidate.vertex);
-        ring.insert(index + 1, Side::new(candidate.vertex, &next));
+        ring[index] = PolygonEdge::new(side.start, &candidate.vertex);
+        ring.insert(index + 1, PolygonEdge::new(candidate.vertex, &next));
     }
     climb(difference, &mut best);
     locate(difference, &best, &vertices(ring, &best))

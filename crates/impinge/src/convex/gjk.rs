@@ -36,7 +36,7 @@ enum Outcome {
     Near,
 }
 
-struct Search<N: Real, const D: usize> {
+struct GjkSearch<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
     /// The best normal so far; its height is a lower bound of the distance.
     best: Candidate<N, D>,
@@ -89,7 +89,7 @@ where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
-    let mut search = Search::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(Candidate::along(difference, *start));
     search.gap = if difference.is_flat() { gap() } else { rough_gap() };
     search.near = rounding.map_or(N::ZERO, near);
     let mut outcome = search.run(difference, limit);
@@ -114,24 +114,25 @@ fn near<N: Real>(rounding: N) -> N {
     rounding - N::lit(CLEAR)
 }
 
-/// Whether the difference, swollen by a rounding, certainly holds the origin: found by a simplex that holds
-/// a ball around it, or by a point nearer than the rounding. Not looked for where the way out along `start`
-/// is shorter than `least`.
+/// Whether the difference, swollen by a radius, certainly holds the origin: found by a simplex that holds
+/// a ball around it, or by a point nearer than the radius. Not looked for where the way out along `start`
+/// is shorter than `min_depth`.
 pub(super) fn overlaps<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
-    (rounding, least): (N, N),
+    radius: N,
+    min_depth: N,
 ) -> bool
 where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
-    let mut search = Search::new(Candidate::along(difference, *start));
-    search.near = near(rounding);
-    if search.best.height > rounding - least {
+    let mut search = GjkSearch::new(Candidate::along(difference, *start));
+    search.near = near(radius);
+    if search.best.height > radius - min_depth {
         return false;
     }
-    match search.run(difference, rounding) {
+    match search.run(difference, radius) {
         Outcome::Near => true,
         Outcome::Overlap => search.is_clear(),
         Outcome::Beyond | Outcome::Apart => false,
@@ -143,7 +144,7 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
 ) -> Vector<N, D> {
-    let mut search = Search::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(Candidate::along(difference, *start));
     (search.gap, search.for_points) = (noise(), false);
     search.run(difference, N::INFINITY);
     search.best.normal
@@ -154,13 +155,13 @@ pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
 ) -> (Vector<N, D>, Simplex<N, D>) {
-    let mut search = Search::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(Candidate::along(difference, *start));
     search.gap = N::ZERO;
     search.run(difference, N::INFINITY);
     (search.last.normal, search.simplex)
 }
 
-impl<N: Simplicial<D>, const D: usize> Search<N, D> {
+impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     fn new(first: Candidate<N, D>) -> Self {
         Self {
             simplex: Simplex::new(first.vertex),

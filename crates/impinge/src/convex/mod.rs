@@ -77,7 +77,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    of_pair(&Pair::new(a, b, pose12)?, (a.rounding(), b.rounding()), limit)
+    of_pair(&Pair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
 /// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
@@ -94,13 +94,14 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let pair = Pair::new(a, b, pose12)?.between_flat_cores();
-    of_pair(&pair, (a.rounding(), b.rounding()), limit)
+    of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
 /// [`separation`] of solids of which it is known where the best normal of an overlap can lie: that is found
 /// without growing a polytope, and the same up to rounding.
 pub(crate) fn separation_by<N, A, B, const D: usize>(
-    (a, b): (&A, &B),
+    a: &A,
+    b: &B,
     pose12: &Pose<N, D>,
     limit: N,
     peaks: &dyn Peaks<N, D>,
@@ -111,48 +112,68 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
-    of_pair(&pair, (a.rounding(), b.rounding()), limit)
+    of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
 /// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
 /// a ball around the origin, of a size that no rounding comes near, or points of the cores are nearer to each
 /// other than their rounding by as much. `false` says nothing, and is the answer where the way out along the
-/// line of their middles is shorter than `least`, in units of the pair.
+/// line of their middles is shorter than `min_depth`, in units of the pair.
 ///
 /// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
 /// find a separating plane or such a simplex, about four.
-pub(crate) fn overlap<N, A, B, const D: usize>(a: &A, b: &B, pose12: &Pose<N, D>, least: N) -> bool
+pub(crate) fn overlap<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    min_depth: N,
+) -> bool
 where
     N: Simplicial<D>,
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
     let Some(pair) = Pair::new(a, b, pose12) else { return false };
-    let rounding = (a.rounding() + b.rounding()) / pair.scale();
-    gjk::overlaps(&pair, &pair.start(), (rounding, least))
+    let radius = (a.rounding() + b.rounding()) / pair.scale();
+    gjk::overlaps(&pair, &pair.start(), radius, min_depth)
 }
 
 /// The distance in [`separation`] of two solids, or zero if they certainly overlap, as [`overlap`] finds it on
-/// the way. Both cores are hulls of points if `is_flat`.
+/// the way.
 pub(crate) fn distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
     pose12: &Pose<N, D>,
-    (limit, is_flat): (N, bool),
+    limit: N,
 ) -> Option<N>
 where
     N: Simplicial<D>,
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12)?;
-    let pair = if is_flat { pair.between_flat_cores() } else { pair };
-    distance_of_pair(&pair, (a.rounding(), b.rounding()), limit)
+    distance_of_pair(&Pair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
+}
+
+/// The distance in [`flat_separation`], or zero if the solids certainly overlap, as [`distance`].
+pub(crate) fn flat_distance<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    limit: N,
+) -> Option<N>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
+    let pair = Pair::new(a, b, pose12)?.between_flat_cores();
+    distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
 /// The distance in [`separation_by`], or zero if the solids certainly overlap, as [`distance`].
 pub(crate) fn distance_by<N, A, B, const D: usize>(
-    (a, b): (&A, &B),
+    a: &A,
+    b: &B,
     pose12: &Pose<N, D>,
     limit: N,
     peaks: &dyn Peaks<N, D>,
@@ -163,12 +184,12 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
-    distance_of_pair(&pair, (a.rounding(), b.rounding()), limit)
+    distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
 fn distance_of_pair<N, A, B, const D: usize>(
     pair: &Pair<'_, N, A, B, D>,
-    roundings: (N, N),
+    radii: [N; 2],
     limit: N,
 ) -> Option<N>
 where
@@ -176,17 +197,17 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let rounding = (roundings.0 + roundings.1) / pair.scale();
-    let limit = limit_of_cores(pair, roundings, limit);
-    Some(match gjk::answer(pair, &pair.start(), limit, Some(rounding))? {
+    let radius = (radii[0] + radii[1]) / pair.scale();
+    let limit = limit_of_cores(pair, radii, limit);
+    Some(match gjk::answer(pair, &pair.start(), limit, Some(radius))? {
         Answer::Overlap => N::ZERO,
-        Answer::Signed(found) => pair.restored(&found).rounded(roundings.0, roundings.1).distance,
+        Answer::Signed(found) => pair.restored(&found).rounded(radii[0], radii[1]).distance,
     })
 }
 
 fn of_pair<N, A, B, const D: usize>(
     pair: &Pair<'_, N, A, B, D>,
-    roundings: (N, N),
+    radii: [N; 2],
     limit: N,
 ) -> Option<Separation<N, D>>
 where
@@ -194,14 +215,14 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let found = gjk::solve(pair, &pair.start(), limit_of_cores(pair, roundings, limit))?;
-    Some(pair.restored(&found).rounded(roundings.0, roundings.1))
+    let found = gjk::solve(pair, &pair.start(), limit_of_cores(pair, radii, limit))?;
+    Some(pair.restored(&found).rounded(radii[0], radii[1]))
 }
 
 /// A limit of the solids as one of their cores, in units of the pair.
 fn limit_of_cores<N, A, B, const D: usize>(
     pair: &Pair<'_, N, A, B, D>,
-    (rounding1, rounding2): (N, N),
+    radii: [N; 2],
     limit: N,
 ) -> N
 where
@@ -209,7 +230,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let core_limit = (limit + rounding1 + rounding2) / pair.scale();
+    let core_limit = (limit + radii[0] + radii[1]) / pair.scale();
     let slack = noise::<N>() * (N::ONE + core_limit.abs());
     core_limit + slack
 }

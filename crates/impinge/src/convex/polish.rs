@@ -38,7 +38,7 @@ type Branches<N, const D: usize> = SmallVec<[Branch<N, D>; 4]>;
 
 /// What a core contributes.
 #[derive(Clone)]
-struct Side<N: Real, const D: usize> {
+struct ActiveSet<N: Real, const D: usize> {
     branches: Branches<N, D>,
     weights: SmallVec<[N; 4]>,
 }
@@ -124,7 +124,7 @@ fn active<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &Candidate<N, D>,
     vertices: &[Vertex<N, D>],
-) -> Option<[Side<N, D>; 2]> {
+) -> Option<[ActiveSet<N, D>; 2]> {
     let mut sides = [Branches::new(), Branches::new()];
     for vertex in vertices.iter().chain([&best.vertex]) {
         for (index, on) in [vertex.on1, vertex.on2].iter().enumerate() {
@@ -138,7 +138,7 @@ fn active<N: Simplicial<D>, const D: usize>(
         return None;
     }
     keep_extreme(&mut sides, &best.normal);
-    Some(sides.map(Side::new))
+    Some(sides.map(ActiveSet::new))
 }
 
 /// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
@@ -169,7 +169,7 @@ fn keep_extreme<N: Simplicial<D>, const D: usize>(
     }
 }
 
-impl<N: Simplicial<D>, const D: usize> Side<N, D> {
+impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     fn new(branches: Branches<N, D>) -> Self {
         let share = N::ONE / branches.iter().fold(N::ZERO, |count, _| count + N::ONE);
         Self { weights: branches.iter().map(|_| share).collect(), branches }
@@ -220,7 +220,7 @@ impl<N: Simplicial<D>, const D: usize> Side<N, D> {
 fn add_lower<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     current: &Candidate<N, D>,
-    sides: &mut [Side<N, D>; 2],
+    sides: &mut [ActiveSet<N, D>; 2],
 ) -> bool {
     let mut added = false;
     for (index, on) in [current.vertex.on1, current.vertex.on2].iter().enumerate() {
@@ -230,7 +230,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
         let is_beyond = outward.dot(on) > most + noise::<N>();
         if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
             sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
-            sides[index] = Side::new(std::mem::take(&mut sides[index].branches));
+            sides[index] = ActiveSet::new(std::mem::take(&mut sides[index].branches));
             added = true;
         }
     }
@@ -238,7 +238,10 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
 }
 
 /// Drops the point that would have to pull instead of push; says whether there was one.
-fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2], slack: N) -> bool {
+fn drop_worst<N: Simplicial<D>, const D: usize>(
+    sides: &mut [ActiveSet<N, D>; 2],
+    slack: N,
+) -> bool {
     let place = match (sides[0].worst(slack), sides[1].worst(slack)) {
         (Some((index, one)), Some((_, two))) if one <= two => (0, index),
         (Some((index, _)), None) => (0, index),
@@ -252,7 +255,7 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(sides: &mut [Side<N, D>; 2], sla
 /// A step of the normal; the weights are set to those that go with it.
 fn step<N: Simplicial<D>, const D: usize>(
     current: &Candidate<N, D>,
-    sides: &mut [Side<N, D>; 2],
+    sides: &mut [ActiveSet<N, D>; 2],
 ) -> Option<Vector<N, D>> {
     let [first, second] = &*sides;
     let (normal, height) = (&current.normal, current.height);

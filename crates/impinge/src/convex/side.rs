@@ -47,7 +47,8 @@ pub(super) fn better<N: Real>(
     let mut found: Option<Better<N>> = None;
     for (axis, rise) in difference.round_sides().into_iter().flatten() {
         let least = found.as_ref().map_or(height, |found| found.best.height) + noise();
-        let ring = Ring::near(axis, rise, normal).filter(|ring| ring.is_level(difference, height));
+        let ring =
+            NormalRing::near(axis, rise, normal).filter(|ring| ring.is_level(difference, height));
         let top = ring.and_then(|ring| ring.best(difference, least));
         found = top.map(|(ring, start)| ring.polished(difference, start)).or(found);
     }
@@ -56,7 +57,7 @@ pub(super) fn better<N: Real>(
 
 /// A circle of unit vectors, with a place to measure angles from.
 #[derive(Clone, Copy)]
-struct Ring<N: Real> {
+struct NormalRing<N: Real> {
     axis: Vector<N, 3>,
     rise: N,
     /// Unit, across the axis and across each other.
@@ -64,7 +65,7 @@ struct Ring<N: Real> {
     aside: Vector<N, 3>,
 }
 
-impl<N: Real> Ring<N> {
+impl<N: Real> NormalRing<N> {
     /// The ring of a side, measured from a normal near it; `None` if that is not near.
     fn near(axis: Vector<N, 3>, rise: N, normal: &Vector<N, 3>) -> Option<Self> {
         let lean = normal.dot(&axis);

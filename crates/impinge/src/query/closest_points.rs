@@ -53,7 +53,7 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     max_distance: N,
 ) -> ClosestPoints<N, D> {
     let limit = max(max_distance, N::ZERO);
-    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
+    let Some([placed1, placed2]) = Placed::within(m1, g1, m2, g2, limit) else {
         return ClosestPoints::Disjoint;
     };
     match (N::tables().touching_in_world)(&placed1, &placed2, limit) {

@@ -69,7 +69,7 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     prediction: N,
 ) -> Option<Contact<N, D>> {
-    let [placed1, placed2] = Placed::within((m1, g1), (m2, g2), prediction)?;
+    let [placed1, placed2] = Placed::within(m1, g1, m2, g2, prediction)?;
     let found = (N::tables().contact_in_world)(&placed1, &placed2, prediction)?;
     found.distance.is_finite_number().then(|| Contact {
         world1: found.point1,

@@ -42,7 +42,7 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     margin: N,
 ) -> Proximity {
     let limit = max(margin, N::ZERO);
-    let Some([placed1, placed2]) = Placed::within((m1, g1), (m2, g2), limit) else {
+    let Some([placed1, placed2]) = Placed::within(m1, g1, m2, g2, limit) else {
         return Proximity::Disjoint;
     };
     match (N::tables().distance_in_world)(&placed1, &placed2, limit) {

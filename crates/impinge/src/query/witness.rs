@@ -98,7 +98,7 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> Option<Witness<N, D>> {
-    let [placed1, placed2] = Placed::within((m1, g1), (m2, g2), max_distance)?;
+    let [placed1, placed2] = Placed::within(m1, g1, m2, g2, max_distance)?;
     (N::tables().witness_in_world)(&placed1, &placed2, max_distance)
 }
 

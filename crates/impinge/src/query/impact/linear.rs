@@ -102,12 +102,13 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     {
         return Some(arrival);
     }
-    by_steps((start, path), found, tolerance)
+    by_steps(start, path, found, tolerance)
 }
 
 /// The arrival by steps from where the solids lie as they do at the start.
 fn by_steps<N: Space<D>, const D: usize>(
-    (start, path): (&Pair<'_, N, D>, &Path<N, D>),
+    start: &Pair<'_, N, D>,
+    path: &Path<N, D>,
     mut found: Separation<N, D>,
     tolerance: N,
 ) -> Option<Arrival<N, D>> {
@@ -128,7 +129,7 @@ fn by_steps<N: Space<D>, const D: usize>(
         let step = path.velocity * (later - along);
         along = later;
         pair.pose12.translation = path.place(start, along);
-        if let Some(touch) = touching(&pair, (&found, &step), (path.target, tolerance)) {
+        if let Some(touch) = touching(&pair, &found, &step, path.target, tolerance) {
             return Some(Arrival::reached(along, touch));
         }
         found = separation(&pair, N::INFINITY)?;
@@ -176,8 +177,10 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
 /// proof.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    (before, step): (&Separation<N, D>, &Vector<N, D>),
-    (target, tolerance): (N, N),
+    before: &Separation<N, D>,
+    step: &Vector<N, D>,
+    target: N,
+    tolerance: N,
 ) -> Option<Separation<N, D>> {
     let Pair { first, second, pose12 } = pair;
     let (normal, point1, point2) = (before.normal, before.point1, before.point2 + step);
@@ -252,7 +255,7 @@ mod tests {
             if found.distance - target <= tolerance {
                 continue;
             }
-            let expected = by_steps((&start, &path), found, tolerance);
+            let expected = by_steps(&start, &path, found, tolerance);
             count += usize::from(expected.is_some());
             let Some(arrival) = meeting_of_balls(&start, &path, tolerance) else { continue };
             met += 1;

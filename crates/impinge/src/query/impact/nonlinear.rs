@@ -115,7 +115,7 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     } else {
         ([one, two], start1.pose.translation)
     };
-    let search = Search {
+    let search = ImpactSearch {
         bodies,
         origin,
         end: options.max_time,
@@ -153,7 +153,7 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
 }
 
 /// The search for an impact of two bodies in canonical order.
-struct Search<'a, N: Space<D>, const D: usize> {
+struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     bodies: [Body<'a, N, D>; 2],
     /// The point of the world that all places are seen from: near the bodies, to keep digits.
     origin: Vector<N, D>,
@@ -168,7 +168,7 @@ struct Search<'a, N: Space<D>, const D: usize> {
 }
 
 /// Where the bodies are at a time.
-struct Scene<'b, 'a, N: Space<D>, const D: usize> {
+struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
     /// Without a normal as long as none is known.
     moment: Moment<'b, 'a, N, D>,
     /// The pose of the first body in canonical order; of a ball without its rotation.
@@ -177,8 +177,8 @@ struct Scene<'b, 'a, N: Space<D>, const D: usize> {
 }
 
 /// How the bodies lie at a time.
-struct Sight<'b, 'a, N: Space<D>, const D: usize> {
-    scene: Scene<'b, 'a, N, D>,
+struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
+    scene: BodyPoses<'b, 'a, N, D>,
     found: PartSeparation<N, D>,
     /// The nearest points, seen from the origin of the search.
     points: [Vector<N, D>; 2],
@@ -199,7 +199,7 @@ enum Mode<N> {
     Contact(N),
 }
 
-impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
+impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     fn run(&self) -> Option<Impact<N, D>> {
         let mut sight = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
@@ -244,7 +244,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     }
 
     /// For how long nothing can happen.
-    fn step(&self, sight: &Sight<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
+    fn step(&self, sight: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &sight.scene.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
         let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
@@ -272,13 +272,13 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     }
 
     /// The bodies at a time; `None` if a pose is not finite.
-    fn scene(&self, time: N) -> Option<Scene<'_, 'a, N, D>> {
+    fn scene(&self, time: N) -> Option<BodyPoses<'_, 'a, N, D>> {
         let poses = self.bodies.each_ref().map(|body| body.motion.pose_about(&self.origin, time));
         let [one, two] =
             [0, 1].map(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
         let pair = Pair::new([one.shape, two.shape], [&one.pose, &two.pose]);
         let finite = one.pose.is_finite() && two.pose.is_finite() && pair.pose12.is_finite();
-        finite.then(|| Scene {
+        finite.then(|| BodyPoses {
             moment: Moment {
                 normal: Vector::<N, D>::zeros(),
                 bodies: self.bodies.each_ref(),
@@ -294,34 +294,38 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
 
     /// How the bodies lie at a time; `None` if a pose is not finite, and for composites without parts. What was
     /// nearest before is so still, or bounds the search.
-    fn look(&self, time: N, before: Option<&Sight<'_, 'a, N, D>>) -> Option<Sight<'_, 'a, N, D>> {
-        let Scene { moment, pose1, between } = self.scene(time)?;
+    fn look(
+        &self,
+        time: N,
+        before: Option<&Configuration<'_, 'a, N, D>>,
+    ) -> Option<Configuration<'_, 'a, N, D>> {
+        let BodyPoses { moment, pose1, between } = self.scene(time)?;
         let first = before.map(|before| before.found.parts);
         let found = nearest_between(&between, N::INFINITY, Wanted::Deepest, first)?;
         let sizes = self.bodies[0].size() + self.bodies[1].size();
         let size = max_component(&between.pair.pose12.translation) + sizes;
         let rounding = N::lit(8.0) * N::EPSILON * size;
         let normal = pose1.vector(&found.separation.normal);
-        Some(Sight {
+        Some(Configuration {
             gap: found.separation.distance - self.target,
             size,
             tolerance: self.tolerance.map_or(rounding, |tolerance| max(tolerance, rounding)),
             points: [found.separation.point1, found.separation.point2]
                 .map(|point| pose1.point(&point).coords),
-            scene: Scene { moment: Moment { normal, ..moment }, pose1, between },
+            scene: BodyPoses { moment: Moment { normal, ..moment }, pose1, between },
             found,
         })
     }
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
-    fn counts_at_start(&self, sight: &Sight<'_, '_, N, D>) -> bool {
+    fn counts_at_start(&self, sight: &Configuration<'_, '_, N, D>) -> bool {
         let (closing, noise) = sight.scene.moment.closing(&sight.points, sight.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start || is_hit_at_start(sight.gap, closing, sight.tolerance, noise)
     }
 
     /// The impact at a moment, seen from the world.
-    fn impact(&self, sight: &Sight<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
+    fn impact(&self, sight: &Configuration<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
         let parts = sight.scene.between.parts(sight.found.parts);
         let features = (N::tables().witness_features)(&parts.pair(), &sight.found.local);
         let [point1, point2] = sight.points.map(|point| (point + self.origin).into());
@@ -339,7 +343,7 @@ impl<'a, N: Space<D>, const D: usize> Search<'a, N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     /// By how much a contact may get deeper, or bodies part, and not be told from resting.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
@@ -380,8 +384,8 @@ impl<N: Space<D>, const D: usize> Sight<'_, '_, N, D> {
 /// The largest step in which no two parts use up the excess: each two are advanced by themselves, until they do or
 /// others have done so earlier.
 struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
-    search: &'s Search<'a, N, D>,
-    sight: &'s Sight<'b, 'a, N, D>,
+    search: &'s ImpactSearch<'a, N, D>,
+    sight: &'s Configuration<'b, 'a, N, D>,
     mode: Mode<N>,
     /// The distance of parts at which the excess is used up.
     spent: N,
@@ -401,7 +405,7 @@ struct Step<N> {
 impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
     /// By how much two parts may come nearer in a scene, and for how long they certainly do not; `None` if they cannot
     /// in the time that is left, by their largest speed in any direction.
-    fn alone(&self, scene: &Scene<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
+    fn alone(&self, scene: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
         let (moment, end) = (&scene.moment, self.search.end);
         let placed = scene.between.parts(parts);
         let parts = moment.parts(&placed, &scene.pose1);

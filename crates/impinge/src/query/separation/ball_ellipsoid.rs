@@ -44,7 +44,7 @@ pub(in crate::query) fn project<N: Real, const D: usize>(
         return from_afar(ellipsoid, point);
     }
     let scale = largest.power_of_two_below();
-    let scaled = Scaled::new(&(ellipsoid.half_axes() / scale), &(point.coords / scale));
+    let scaled = ScaledEllipsoid::new(&(ellipsoid.half_axes() / scale), &(point.coords / scale));
     let found = scaled.project();
     Projection {
         distance: found.distance * scale,
@@ -64,7 +64,7 @@ fn from_afar<N: Real, const D: usize>(
 }
 
 /// An ellipsoid whose longest half axis is about 1, and a point.
-struct Scaled<N: Real, const D: usize> {
+struct ScaledEllipsoid<N: Real, const D: usize> {
     half_axes: Vector<N, D>,
     /// The shortest of them.
     least: N,
@@ -73,7 +73,7 @@ struct Scaled<N: Real, const D: usize> {
     point: Vector<N, D>,
 }
 
-impl<N: Real, const D: usize> Scaled<N, D> {
+impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
     fn new(half_axes: &Vector<N, D>, point: &Vector<N, D>) -> Self {
         let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
         let excess = half_axes.map(|half| (half - least) * (half + least));

@@ -27,7 +27,7 @@ pub(super) fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> P
     let outward = highest.normal;
     let flat = Projection { distance, outward, point: center - outward * distance };
     // Written so that NaN ends here too.
-    if distance > N::ZERO { project_from_outside(hull, center, (highest, &flat)) } else { flat }
+    if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
 /// A point outside; `flat` is how the plane of the face that it is highest above sees it.
@@ -36,7 +36,8 @@ pub(super) fn project<N: Real>(hull: &Polytope<N, 3>, center: &Point<N, 3>) -> P
 fn project_from_outside<N: Real>(
     hull: &Polytope<N, 3>,
     center: &Point<N, 3>,
-    (highest, flat): (&PolytopeFace<N, 3>, &Projection<N, 3>),
+    highest: &PolytopeFace<N, 3>,
+    flat: &Projection<N, 3>,
 ) -> Projection<N, 3> {
     let noise = noise(hull.reach() + center.coords.norm());
     let certain =

@@ -21,7 +21,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
 
 /// A side of a triangle whose inside is on its left.
 #[derive(Clone, Copy)]
-struct Side<N: Real> {
+struct DirectedEdge<N: Real> {
     from: Point<N, 2>,
     along: Vector<N, 2>,
     length: N,
@@ -29,7 +29,7 @@ struct Side<N: Real> {
     height: N,
 }
 
-impl<N: Real> Side<N> {
+impl<N: Real> DirectedEdge<N> {
     fn new([from, to]: [Point<N, 2>; 2], center: &Point<N, 2>) -> Option<Self> {
         let (along, length) = unit(&(to - from))?;
         let height = -perp(&along).dot(&(center - from));
@@ -66,15 +66,20 @@ pub(super) fn project<N: Real>(
     let size = max(max_component(&(b - a)), max_component(&(c - a))).power_of_two_below();
     let turns_left = cross2(&((b - a) / size), &((c - a) / size)) >= N::ZERO;
     let [a, b, c] = if turns_left { [a, b, c] } else { [a, c, b] };
-    let sides =
-        [Side::new([a, b], center)?, Side::new([b, c], center)?, Side::new([c, a], center)?];
+    let sides = [
+        DirectedEdge::new([a, b], center)?,
+        DirectedEdge::new([b, c], center)?,
+        DirectedEdge::new([c, a], center)?,
+    ];
     if !has_area(&sides) {
         return None;
     }
     if let Some(below) = sides.iter().find(|side| side.is_below(center)) {
         return Some(below.projection(center));
     }
-    let higher = |one: Side<N>, other: Side<N>| if other.height > one.height { other } else { one };
+    let higher = |one: DirectedEdge<N>, other: DirectedEdge<N>| {
+        if other.height > one.height { other } else { one }
+    };
     let highest = higher(higher(sides[0], sides[1]), sides[2]);
     if highest.height > N::ZERO {
         return Some(from_corner(&[a, b, c], center, &highest));
@@ -84,7 +89,7 @@ pub(super) fn project<N: Real>(
 }
 
 /// Not all corners lie on the longest side, up to rounding; nothing that is not a number has an area.
-fn has_area<N: Real>(sides: &[Side<N>; 3]) -> bool {
+fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
     let [side, next, last] = sides;
     let longest = max(max(side.length, next.length), last.length);
     let sine = cross2(&side.along, &next.along);
@@ -97,7 +102,7 @@ fn has_area<N: Real>(sides: &[Side<N>; 3]) -> bool {
 fn from_corner<N: Real>(
     corners: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
-    highest: &Side<N>,
+    highest: &DirectedEdge<N>,
 ) -> Projection<N, 2> {
     let far = corners.iter().fold(N::ZERO, |far, p| max(max_component(&(center - p)), far));
     let size = far.power_of_two_below();

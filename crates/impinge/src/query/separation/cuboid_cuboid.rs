@@ -39,13 +39,13 @@ fn along<N: Real>(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     let (normal, distance) = (axis.normal, axis.gap);
     let (point1, point2) = match axis.kind {
         AxisKind::Face1(index) => {
-            let face = Reference { half: boxes.half1, axis: index, toward: normal[index] };
+            let face = ReferenceFace { half: boxes.half1, axis: index, toward: normal[index] };
             let point2 = face.deepest(&boxes.half2, &boxes.pose12, distance);
             (face.onto(&point2), point2)
         }
         AxisKind::Face2(index) => {
             let toward = -boxes.axis2(index).dot(&normal);
-            let face = Reference { half: boxes.half2, axis: index, toward };
+            let face = ReferenceFace { half: boxes.half2, axis: index, toward };
             let point1 = face.deepest(&boxes.half1, &boxes.pose12.inverse(), distance);
             (boxes.pose12.point(&point1), boxes.pose12.point(&face.onto(&point1)))
         }
@@ -79,13 +79,13 @@ fn edge_toward<N: Real>(
 }
 
 /// A face of a box, in its own frame: at `axis`, on the side that `toward` has the sign of.
-struct Reference<N: Real> {
+struct ReferenceFace<N: Real> {
     half: Vector<N, 3>,
     axis: usize,
     toward: N,
 }
 
-impl<N: Real> Reference<N> {
+impl<N: Real> ReferenceFace<N> {
     fn sign(&self) -> N {
         if self.toward < N::ZERO { -N::ONE } else { N::ONE }
     }

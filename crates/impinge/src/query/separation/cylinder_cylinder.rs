@@ -29,7 +29,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         return None;
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
-    let meeting = Meeting::new(first, second, &pair.pose12, units.shrink);
+    let meeting = CylinderPair::new(first, second, &pair.pose12, units.shrink);
     let verdict = meeting.resolve(out_of_reach(&units, limit));
     match verdict.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
@@ -109,7 +109,7 @@ struct Size<N> {
 }
 
 /// A cylinder about the y axis, and another one.
-struct View<N: Real> {
+struct CylinderView<N: Real> {
     own: Size<N>,
     other: Size<N>,
     /// The middle of the other one, and the unit vector along its axis.
@@ -127,11 +127,11 @@ struct Tried<N: Real> {
 type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
 
 /// Two cylinders, seen from each.
-struct Meeting<N: Real> {
-    views: [View<N>; 2],
+struct CylinderPair<N: Real> {
+    views: [CylinderView<N>; 2],
 }
 
-impl<N: Real> Meeting<N> {
+impl<N: Real> CylinderPair<N> {
     fn new(first: &Cylinder<N>, second: &Cylinder<N>, pose12: &Pose<N, 3>, shrink: N) -> Self {
         let [size1, size2] = [first, second].map(|solid| Size {
             half: solid.half_height() * shrink,
@@ -143,8 +143,13 @@ impl<N: Real> Meeting<N> {
         let axis_from_second = pose12.inverse_vector(&Vector::<N, 3>::y());
         Self {
             views: [
-                View { own: size1, other: size2, center, axis },
-                View { own: size2, other: size1, center: from_second, axis: axis_from_second },
+                CylinderView { own: size1, other: size2, center, axis },
+                CylinderView {
+                    own: size2,
+                    other: size1,
+                    center: from_second,
+                    axis: axis_from_second,
+                },
             ],
         }
     }
@@ -163,7 +168,7 @@ impl<N: Real> Meeting<N> {
     }
 }
 
-impl<N: Real> View<N> {
+impl<N: Real> CylinderView<N> {
     /// The normal of the cap that faces the other solid.
     fn cap(&self) -> Tried<N> {
         let up = if self.center.y < N::ZERO { -N::ONE } else { N::ONE };
@@ -404,7 +409,9 @@ pub(super) mod tests {
 
     /// Compares with the general algorithm, over pairs made of random sizes between 0 and 1.
     pub(in super::super) fn compare<N: Real>(
-        (seed, rounds, accuracy): (u64, usize, f64),
+        seed: u64,
+        rounds: usize,
+        accuracy: f64,
         solids: fn([Vector<N, 3>; 2]) -> Solids<N>,
         separation: fn(&Pair<'_, N, 3>, N) -> Option<Separation<N, 3>>,
     ) {
@@ -439,8 +446,8 @@ pub(super) mod tests {
                 Box::new(Cylinder::new(sizes[1].x, sizes[1].y)),
             ]
         }
-        compare::<f64>((1, 3000, 1e-12), solids, separation);
-        compare::<f32>((2, 3000, 3e-6), solids, separation);
+        compare::<f64>(1, 3000, 1e-12, solids, separation);
+        compare::<f32>(2, 3000, 3e-6, solids, separation);
     }
 
     #[test]
@@ -455,7 +462,7 @@ pub(super) mod tests {
             let mut pose12 = random.turn();
             pose12.translation = random.vector() * 1.5;
             let units = Units::of(first.reach(), second.reach(), &pose12.translation);
-            let meeting = Meeting::new(&first, &second, &pose12, units.shrink);
+            let meeting = CylinderPair::new(&first, &second, &pose12, units.shrink);
             undecided += usize::from(matches!(meeting.resolve(f64::INFINITY), Verdict::Undecided));
         }
         assert!(undecided < 400, "{undecided} of 1000 are left to the general algorithm");

@@ -66,12 +66,12 @@ pub(super) fn distance<N: Simplicial<D>, const D: usize>(
     let found = match (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
         (Some(map1), Some(map2)) => {
             let loosened = loosened(&map1, &map2, &pair.pose12, limit);
-            convex::distance(&map1, &map2, &pair.pose12, (loosened, true))
+            convex::flat_distance(&map1, &map2, &pair.pose12, loosened)
         }
         _ => {
             let (map1, map2) = maps(pair);
             let loosened = loosened(map1, map2, &pair.pose12, limit);
-            convex::distance(map1, map2, &pair.pose12, (loosened, false))
+            convex::distance(map1, map2, &pair.pose12, loosened)
         }
     };
     found.filter(|distance| *distance <= limit)

@@ -88,10 +88,10 @@ impl<N: Real> Meeting<N> {
         let (gap1, side1) = best_side(simd, &own, &other);
         let (gap2, side2) = best_side(simd, &other, &own);
         if gap2 > gap1 {
-            self.settle(simd, (1, side2, gap2), (&other, &own));
+            self.settle(simd, 1, side2, gap2, [&other, &own]);
             self.normal = -self.normal;
         } else {
-            self.settle(simd, (0, side1, gap1), (&own, &other));
+            self.settle(simd, 0, side1, gap1, [&own, &other]);
         }
         if !self.is_settled(noise) {
             return false;
@@ -105,8 +105,10 @@ impl<N: Real> Meeting<N> {
     fn settle<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        (which, side, gap): (usize, usize, N),
-        (own, other): (&Outline<N, V>, &Outline<N, V>),
+        which: usize,
+        side: usize,
+        gap: N,
+        [own, other]: [&Outline<N, V>; 2],
     ) {
         let mut normals = [[N::ZERO; LANES]; 2];
         own.normals[0].store(&mut normals[0]);
@@ -146,7 +148,7 @@ impl<N: Real> Meeting<N> {
 
     /// Of the way from one corner to another the square of what it rises along the normal, and of its length.
     #[inline(always)]
-    pub(in crate::query) fn lean(&self, which: usize, (from, to): (usize, usize)) -> (N, N) {
+    pub(in crate::query) fn tilt(&self, which: usize, from: usize, to: usize) -> (N, N) {
         let way = self.corner(which, to) - self.corner(which, from);
         let rise = way.dot(&self.normal);
         (rise * rise, way.norm_squared())
@@ -275,7 +277,7 @@ fn of_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let b = [V::all(simd, b.x), V::all(simd, b.y)];
     let vertices = [is_last.select(b[0], a[0]), is_last.select(b[1], a[1])];
     let ends = [is_last.select(a[0], b[0]), is_last.select(a[1], b[1])];
-    Outline::of_ends(simd, (vertices, ends), (2, rounding))
+    Outline::of_ends(simd, vertices, ends, 2, rounding)
 }
 
 #[inline(always)]
@@ -294,7 +296,7 @@ fn of_triangle<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         vertices[axis] = is_last.select(c, is_later.select(b, a));
         ends[axis] = is_last.select(a, is_later.select(c, b));
     }
-    Outline::of_ends(simd, (vertices, ends), (3, N::ZERO))
+    Outline::of_ends(simd, vertices, ends, 3, N::ZERO)
 }
 
 #[inline(always)]
@@ -307,7 +309,7 @@ fn of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, half: &Vector<N, 2>
         V::load(simd, &[-yes, no, yes, -no, -no, -no, -no, -no]),
     ];
     let vertices = [xs * V::all(simd, half.x), ys * V::all(simd, half.y)];
-    Outline::of_sides((vertices, normals), (4, N::ZERO))
+    Outline::of_sides(vertices, normals, 4, N::ZERO)
 }
 
 #[inline(always)]
@@ -318,5 +320,5 @@ fn of_polytope<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let ([vertices], [planes]) = (polygon.blocks(), polygon.planes()) else { return None };
     let normals = [V::load(simd, &planes.normals[0]), V::load(simd, &planes.normals[1])];
     let corners = [V::load(simd, &vertices[0]), V::load(simd, &vertices[1])];
-    Some(Outline::of_sides((corners, normals), (polygon.vertices().len(), N::ZERO)))
+    Some(Outline::of_sides(corners, normals, polygon.vertices().len(), N::ZERO))
 }

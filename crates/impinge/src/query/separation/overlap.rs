@@ -17,7 +17,7 @@ const DEEP: f64 = 1.0 / 8.0;
 
 /// How the separation of a pair is found.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum DistanceMethod {
     /// Nothing is saved if the depth is not asked for.
     Formula,
     /// By formulas for features; depths take longer than the proof that there is one.
@@ -38,7 +38,7 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
         return (known <= limit).then_some(known);
     }
     let way = way_in_space(pair);
-    if way == Way::Revolved && is_plain(pair, limit) && are_bare(pair) {
+    if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
         return revolved::distance(pair, limit);
     }
     distance(pair, limit, way)
@@ -143,13 +143,13 @@ fn beside_ball<N: Real, const D: usize>(
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
-    way: Way,
+    way: DistanceMethod,
 ) -> Option<N> {
     if is_plain(pair, limit) {
-        if way == Way::Search && are_bare(pair) {
+        if way == DistanceMethod::Search && are_bare(pair) {
             return general::distance(pair, limit);
         }
-        if way != Way::Formula && certainly_overlap(pair, way) {
+        if way != DistanceMethod::Formula && certainly_overlap(pair, way) {
             return Some(N::ZERO);
         }
     }
@@ -171,8 +171,11 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 /// solids the cores need not overlap.
 ///
 /// Costs a few support points of each solid; where they are apart these are for nothing.
-fn certainly_overlap<N: Simplicial<D>, const D: usize>(pair: &Pair<'_, N, D>, way: Way) -> bool {
-    let least = if way == Way::Axes { N::lit(DEEP) } else { N::ZERO };
+fn certainly_overlap<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    way: DistanceMethod,
+) -> bool {
+    let least = if way == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
         return convex::overlap(&map1, &map2, &pair.pose12, least);
     }
@@ -189,40 +192,44 @@ fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
 }
 
 /// Of the kinds in their order: see the table of space.
-fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Way {
+fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
     };
     match (inner(pair.first), inner(pair.second)) {
         (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
-            Way::Formula
+            DistanceMethod::Formula
         }
         (
             Segment(_) | Capsule(_),
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
-        ) => Way::Formula,
-        (Cuboid(_), Cuboid(_)) => Way::Formula,
-        (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => Way::Axes,
-        (Cylinder(..), Cylinder(..)) => Way::Features,
+        ) => DistanceMethod::Formula,
+        (Cuboid(_), Cuboid(_)) => DistanceMethod::Formula,
+        (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => {
+            DistanceMethod::Axes
+        }
+        (Cylinder(..), Cylinder(..)) => DistanceMethod::Features,
         (
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
             Cylinder(..) | Cone(..),
         )
-        | (Cylinder(..) | Cone(..), Cone(..)) => Way::Revolved,
-        _ => Way::Search,
+        | (Cylinder(..) | Cone(..), Cone(..)) => DistanceMethod::Revolved,
+        _ => DistanceMethod::Search,
     }
 }
 
 /// Of the kinds in their order: see the table of the plane.
-fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> Way {
+fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
     match (first, second) {
         (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
-            Way::Formula
+            DistanceMethod::Formula
         }
-        _ if FlatCore::of(first).is_some() && FlatCore::of(second).is_some() => Way::Formula,
-        _ => Way::Search,
+        _ if FlatCore::of(first).is_some() && FlatCore::of(second).is_some() => {
+            DistanceMethod::Formula
+        }
+        _ => DistanceMethod::Search,
     }
 }
 
@@ -242,7 +249,7 @@ mod tests {
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
-        way: fn(&Pair<'_, N, D>) -> Way,
+        way: fn(&Pair<'_, N, D>) -> DistanceMethod,
     ) -> (usize, usize) {
         let (mut found, mut overlapping) = (0, 0);
         for (first, second) in solids.iter().flat_map(|a| solids.iter().map(move |b| (a, b))) {
@@ -250,8 +257,8 @@ mod tests {
                 let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
                 let depth = separation(&pair, N::INFINITY).expect("finite").distance;
                 let is_deep = depth < N::ZERO;
-                let is_searched = way(&pair) != Way::Formula;
-                let is_found = is_searched && certainly_overlap(&pair, Way::Features);
+                let is_searched = way(&pair) != DistanceMethod::Formula;
+                let is_found = is_searched && certainly_overlap(&pair, DistanceMethod::Features);
                 assert!(is_deep || !is_found, "they are apart at {pose12:?}");
                 let known = distance(&pair, N::INFINITY, way(&pair)).expect("finite");
                 if depth > N::ZERO {
@@ -336,7 +343,8 @@ mod tests {
 
     /// Distances that are a part of the separation are so to the bit, however the solids lie.
     fn are_parts<N: Space<D>, const D: usize>(
-        (firsts, seconds): (&Solids<N, D>, &Solids<N, D>),
+        firsts: &Solids<N, D>,
+        seconds: &Solids<N, D>,
         pose_of: impl Fn(&mut Random) -> Pose<N, D>,
         known: impl Fn(&Pair<'_, N, D>) -> Option<N>,
     ) {
@@ -373,10 +381,10 @@ mod tests {
         };
         let ball: [Box<dyn Shape<f32, 3>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| random.turn::<f32>();
-        are_parts((&ball, &solids()), pose_of, known_in_space);
+        are_parts(&ball, &solids(), pose_of, known_in_space);
         let plane: [Box<dyn Shape<f32, 3>>; 1] =
             [Box::new(Plane::new(-Vector::<f32, 3>::x_axis()))];
-        are_parts((&solids()[..9], &plane), pose_of, known_in_space);
+        are_parts(&solids()[..9], &plane, pose_of, known_in_space);
         let flat: [Box<dyn Shape<f32, 2>>; 4] = [
             Box::new(Triangle::new(corners[0].xy(), corners[1].xy(), corners[3].xy())),
             Box::new(ConvexPolygon::from_points(&corners.map(|corner| corner.xy()))),
@@ -385,7 +393,7 @@ mod tests {
         ];
         let ball: [Box<dyn Shape<f32, 2>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| Pose::from_translation(random.vector::<f32>().xy());
-        are_parts((&ball, &flat), pose_of, |pair| known(pair, beside_ball_in_plane));
+        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_in_plane));
     }
 
     #[test]
@@ -404,7 +412,7 @@ mod tests {
         let pose12 = Pose::from_translation(Vector::<f32, 3>::new(f32::NAN, 0.0, 0.0));
         let (first, second) = (cone.geometry().0, cone.geometry().0);
         let pair = Pair { first, second, pose12 };
-        assert!(!certainly_overlap(&pair, Way::Features), "not a number");
+        assert!(!certainly_overlap(&pair, DistanceMethod::Features), "not a number");
         assert_eq!(distance_in_space(&pair, f32::INFINITY), None, "not a number");
     }
 }

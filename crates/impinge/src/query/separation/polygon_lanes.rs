@@ -21,13 +21,13 @@ pub(in crate::query) type Row<N> = [N; LANES];
 /// A convex polygon in its own frame, swollen by a rounding radius; its last vertex fills the rest.
 pub(super) struct Polygon<N: Real> {
     vertices: [Row<N>; 2],
-    sides: Sides<N>,
+    sides: PolygonSides<N>,
     count: usize,
     rounding: N,
 }
 
 /// The sides, each at the vertex that it starts from.
-enum Sides<N: Real> {
+enum PolygonSides<N: Real> {
     /// Their outward unit normals.
     Normals([Row<N>; 2]),
     /// Where they end.
@@ -41,7 +41,7 @@ impl<N: Real> Polygon<N> {
     pub(super) fn of(kind: &Kind<'_, N, 2>) -> Option<Self> {
         Some(match kind {
             Kind::Ball(ball) => {
-                let (zero, sides) = ([[N::ZERO; LANES]; 2], Sides::None);
+                let (zero, sides) = ([[N::ZERO; LANES]; 2], PolygonSides::None);
                 Self { vertices: zero, sides, count: 1, rounding: ball.radius() }
             }
             Kind::Segment(segment) => Self::of_segment(segment, N::ZERO),
@@ -56,7 +56,7 @@ impl<N: Real> Polygon<N> {
     pub(super) fn of_segment(segment: &Segment<N, 2>, rounding: N) -> Self {
         let (a, b) = (segment.a(), segment.b());
         let row = |x: N, y: N| [x, y, y, y, y, y, y, y];
-        let sides = Sides::Ends([row(b.x, a.x), row(b.y, a.y)]);
+        let sides = PolygonSides::Ends([row(b.x, a.x), row(b.y, a.y)]);
         Self { vertices: [row(a.x, b.x), row(a.y, b.y)], sides, count: 2, rounding }
     }
 
@@ -66,7 +66,7 @@ impl<N: Real> Polygon<N> {
         let (b, c) = if is_clockwise { (c, b) } else { (b, c) };
         let row = |x: N, y: N, z: N| [x, y, z, z, z, z, z, z];
         let vertices = [row(a.x, b.x, c.x), row(a.y, b.y, c.y)];
-        let sides = Sides::Ends([row(b.x, c.x, a.x), row(b.y, c.y, a.y)]);
+        let sides = PolygonSides::Ends([row(b.x, c.x, a.x), row(b.y, c.y, a.y)]);
         Self { vertices, sides, count: 3, rounding: N::ZERO }
     }
 
@@ -78,12 +78,12 @@ impl<N: Real> Polygon<N> {
             [-zero, one, zero, -one, -one, -one, -one, -one],
             [-one, zero, one, -zero, -zero, -zero, -zero, -zero],
         ];
-        Self { vertices, sides: Sides::Normals(normals), count: 4, rounding: N::ZERO }
+        Self { vertices, sides: PolygonSides::Normals(normals), count: 4, rounding: N::ZERO }
     }
 
     fn of_polytope(polygon: &Polytope<N, 2>) -> Option<Self> {
         let ([vertices], [planes]) = (polygon.blocks(), polygon.planes()) else { return None };
-        let sides = Sides::Normals(planes.normals);
+        let sides = PolygonSides::Normals(planes.normals);
         Some(Self {
             vertices: *vertices,
             sides,
@@ -187,14 +187,14 @@ impl<N: Real, V> Outline<N, V> {
         let Polygon { vertices: rows, ref sides, count, rounding } = *polygon;
         let vertices = [V::load(simd, &rows[0]), V::load(simd, &rows[1])];
         match sides {
-            Sides::Normals(normals) => {
+            PolygonSides::Normals(normals) => {
                 let normals = [V::load(simd, &normals[0]), V::load(simd, &normals[1])];
-                Some(Self::of_sides((vertices, normals), (count, rounding)))
+                Some(Self::of_sides(vertices, normals, count, rounding))
             }
-            Sides::None => Some(Self::of_sides((vertices, vertices), (count, rounding))),
-            Sides::Ends(ends) => {
+            PolygonSides::None => Some(Self::of_sides(vertices, vertices, count, rounding)),
+            PolygonSides::Ends(ends) => {
                 let ends = [V::load(simd, &ends[0]), V::load(simd, &ends[1])];
-                Self::of_ends(simd, (vertices, ends), (count, rounding))
+                Self::of_ends(simd, vertices, ends, count, rounding)
             }
         }
     }
@@ -203,8 +203,10 @@ impl<N: Real, V> Outline<N, V> {
     #[inline(always)]
     pub(super) fn of_ends<S: Simd>(
         simd: S,
-        (vertices, ends): ([V; 2], [V; 2]),
-        (count, rounding): (usize, N),
+        vertices: [V; 2],
+        ends: [V; 2],
+        count: usize,
+        radius: N,
     ) -> Option<Self>
     where
         V: Wide<S, Scalar = N>,
@@ -218,14 +220,16 @@ impl<N: Real, V> Outline<N, V> {
         }
         let length = squared.sqrt();
         let normals = [side[1] / length, -(side[0] / length)];
-        Some(Self::of_sides((vertices, normals), (count, rounding)))
+        Some(Self::of_sides(vertices, normals, count, radius))
     }
 
     /// The outline of these vertices and normals of sides.
     #[inline(always)]
     pub(super) fn of_sides<S: Simd>(
-        (vertices, normals): ([V; 2], [V; 2]),
-        (count, rounding): (usize, N),
+        vertices: [V; 2],
+        normals: [V; 2],
+        count: usize,
+        radius: N,
     ) -> Self
     where
         V: Wide<S, Scalar = N>,
@@ -233,7 +237,7 @@ impl<N: Real, V> Outline<N, V> {
         let mut rows = [[N::ZERO; LANES]; 2];
         vertices[0].store(&mut rows[0]);
         vertices[1].store(&mut rows[1]);
-        Self { vertices, normals, rows, count, has_sides: count > 1, rounding }
+        Self { vertices, normals, rows, count, has_sides: count > 1, rounding: radius }
     }
 
     /// The same outline seen from the frame in which its own has the given pose.
@@ -412,19 +416,20 @@ fn overlapping<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     noise: N,
 ) -> Separation<N, 2> {
     let tangent = perp(&best.normal);
-    let [low1, high1] = feature(simd, own, (&best.normal, &tangent), noise);
-    let [low2, high2] = feature(simd, other, (&-best.normal, &tangent), noise);
+    let [low1, high1] = feature(simd, own, &best.normal, &tangent, noise);
+    let [low2, high2] = feature(simd, other, &-best.normal, &tangent, noise);
     super::polygon_polygon::in_middle([low1, high1], [low2.0, high2.0], best)
 }
 
-/// The lowest and highest of the vertices that reach within `noise` of the farthest along a normal, as
+/// The lowest and highest of the vertices that reach within `tolerance` of the farthest along a normal, as
 /// measured along a tangent.
 #[inline(always)]
 fn feature<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     outline: &Outline<N, V>,
-    (normal, tangent): (&Vector<N, 2>, &Vector<N, 2>),
-    noise: N,
+    normal: &Vector<N, 2>,
+    tangent: &Vector<N, 2>,
+    tolerance: N,
 ) -> [(N, Point<N, 2>); 2] {
     let (_, support) = highest(simd, outline.along(simd, normal));
     let farthest = outline.at(support);
@@ -433,7 +438,7 @@ fn feature<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         V::all(simd, farthest.y) - outline.vertices[1],
     ];
     let across = [V::all(simd, normal.x), V::all(simd, normal.y)];
-    let is_near = dot(&across, &below).simd_le(V::all(simd, noise));
+    let is_near = dot(&across, &below).simd_le(V::all(simd, tolerance));
     let along = outline.along(simd, tangent);
     let (high, most) = highest(simd, is_near.select(along, V::all(simd, -N::INFINITY)));
     let (low, least) = highest(simd, is_near.select(-along, V::all(simd, -N::INFINITY)));

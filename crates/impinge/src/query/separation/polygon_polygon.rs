@@ -142,12 +142,12 @@ fn apart<N: Real>(
         nearest_points(outline1, outline2, &around(near1, outline1), &around(near2, outline2));
     let mut direct = direct_axis(outline1, outline2, &points, best, noise);
     // Rounding may have hidden the best axis behind another one that is nearly parallel.
-    if (points.1 - points.0).norm() - direct.gap > N::lit(4.0) * noise {
+    if (points[1] - points[0]).norm() - direct.gap > N::lit(4.0) * noise {
         let all = |outline: &Outline<N>| (0..outline.vertices.len()).collect::<Vec<_>>();
         points = nearest_points(outline1, outline2, &all(outline1), &all(outline2));
         direct = direct_axis(outline1, outline2, &points, best, noise);
     }
-    Separation { distance: direct.gap, normal: direct.normal, point1: points.0, point2: points.1 }
+    Separation { distance: direct.gap, normal: direct.normal, point1: points[0], point2: points[1] }
 }
 
 /// The two sides that meet at a vertex.
@@ -161,15 +161,15 @@ fn nearest_points<N: Real>(
     outline2: &Outline<N>,
     sides1: &[usize],
     sides2: &[usize],
-) -> (Point<N, 2>, Point<N, 2>) {
-    let mut best = (outline1.vertices[0], outline2.vertices[0]);
+) -> [Point<N, 2>; 2] {
+    let mut best = [outline1.vertices[0], outline2.vertices[0]];
     let mut least = N::INFINITY;
     for &side1 in sides1 {
         for &side2 in sides2 {
-            let found = nearest_of_ends(&outline1.side(side1), &outline2.side(side2));
-            let squared = (found.1 - found.0).norm_squared();
+            let (point1, point2) = nearest_of_ends(&outline1.side(side1), &outline2.side(side2));
+            let squared = (point2 - point1).norm_squared();
             if squared < least {
-                (best, least) = (found, squared);
+                (best, least) = ([point1, point2], squared);
             }
         }
     }
@@ -184,16 +184,16 @@ fn nearest_points<N: Real>(
 fn direct_axis<N: Real>(
     outline1: &Outline<N>,
     outline2: &Outline<N>,
-    points: &(Point<N, 2>, Point<N, 2>),
+    points: &[Point<N, 2>; 2],
     best: &Axis<N>,
-    noise: N,
+    tolerance: N,
 ) -> Axis<N> {
     // What the rounding of the gaps adds up to; the direction of close points loses far more.
-    let slack = N::lit(8.0) * noise;
-    let between = points.1 - points.0;
+    let slack = N::lit(8.0) * tolerance;
+    let between = points[1] - points[0];
     let beside = (between - best.normal * best.gap).norm();
     let direct = unit(&between)
-        .filter(|_| beside > noise)
+        .filter(|_| beside > tolerance)
         .map(|(normal, length)| (length, axis(outline1, outline2, normal)));
     match direct {
         Some((gap, direct)) if direct.gap + slack >= best.gap => Axis { gap, ..direct },

@@ -42,14 +42,15 @@ pub(super) fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-/// The separation of a segment or capsule, the first of a pair, from a solid of a given reach, by what `ask`
-/// says of the core, which is also told what a gap of the core must exceed to be too large; else by
-/// `otherwise`.
+/// The separation of a segment or capsule, the first of a pair, from a solid of a given bounding radius, by the
+/// verdict of `solve` on the core, which is also given what a gap of the core must exceed to be too large; where
+/// that is undecided, by `fall_back`.
 pub(super) fn settled<N: Real>(
     pair: &Pair<'_, N, 3>,
-    (reach, limit): (N, N),
-    ask: impl FnOnce(&Rod<'_, N>, N) -> Verdict<N>,
-    otherwise: impl FnOnce() -> Option<Separation<N, 3>>,
+    bounding_radius: N,
+    limit: N,
+    solve: impl FnOnce(&Rod<'_, N>, N) -> Verdict<N>,
+    fall_back: impl FnOnce() -> Option<Separation<N, 3>>,
 ) -> Option<Separation<N, 3>> {
     let (ends, radius) = match pair.first {
         Kind::Segment(segment) => ([segment.a(), segment.b()], N::ZERO),
@@ -58,15 +59,15 @@ pub(super) fn settled<N: Real>(
         }
         _ => wrong_kinds(pair),
     };
-    let Some(rod) = Rod::new(ends, &pair.pose12, reach) else { return otherwise() };
+    let Some(rod) = Rod::new(ends, &pair.pose12, bounding_radius) else { return fall_back() };
     let most = (limit + radius) * rod.shrink;
-    match ask(&rod, most + N::lit(16.0) * noise() * (N::ONE + most.abs())) {
+    match solve(&rod, most + N::lit(16.0) * noise() * (N::ONE + most.abs())) {
         Verdict::Beyond => None,
         Verdict::Parted(parting) => {
             let found = rod.restored(&parting).rounded(radius, N::ZERO);
             (found.distance <= limit).then_some(found)
         }
-        Verdict::Undecided => otherwise(),
+        Verdict::Undecided => fall_back(),
     }
 }
 

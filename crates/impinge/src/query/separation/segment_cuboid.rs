@@ -21,7 +21,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         let half = cuboid.half_extents() * rod.shrink;
         Crate { rod, half }.verdict(most)
     };
-    settled(pair, (cuboid.reach(), limit), ask, || general::of_flat_cores(pair, limit))
+    settled(pair, cuboid.reach(), limit, ask, || general::of_flat_cores(pair, limit))
 }
 
 /// A box and the segment.

@@ -23,7 +23,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         Some(sheet) => sheet.verdict(most),
         None => Verdict::Undecided,
     };
-    settled(pair, (triangle.reach(), limit), ask, || general::of_flat_cores(pair, limit))
+    settled(pair, triangle.reach(), limit, ask, || general::of_flat_cores(pair, limit))
 }
 
 /// A triangle and the segment.

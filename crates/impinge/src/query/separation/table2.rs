@@ -9,9 +9,9 @@ use crate::math::Real;
 use crate::query::{Pair, composite};
 
 /// The table of the plane, for one scalar.
-struct Plane<N>(core::marker::PhantomData<N>);
+struct Table2<N>(core::marker::PhantomData<N>);
 
-impl<N: Real> Plane<N> {
+impl<N: Real> Table2<N> {
     const TABLE: Table<N, 2> = {
         let bb: Algorithm<N, 2> = ball_ball::separation;
         let bs: Algorithm<N, 2> = ball_segment::separation;
@@ -51,7 +51,7 @@ impl<N: Real> Plane<N> {
 
 /// The separation of any pair in the plane.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
-    look_up(&Plane::<N>::TABLE, pair)(pair, limit)
+    look_up(&Table2::<N>::TABLE, pair)(pair, limit)
 }
 
 /// Whether two convex solids of the plane are farther apart than a limit of less than zero.

@@ -12,9 +12,9 @@ use crate::query::{Pair, composite};
 use crate::shape::Kind;
 
 /// The table of space, for one scalar.
-struct Space<N>(core::marker::PhantomData<N>);
+struct Table3<N>(core::marker::PhantomData<N>);
 
-impl<N: Real> Space<N> {
+impl<N: Real> Table3<N> {
     const TABLE: Table<N, 3> = {
         let bb: Algorithm<N, 3> = ball_ball::separation;
         let bs: Algorithm<N, 3> = ball_segment::separation;
@@ -65,7 +65,7 @@ impl<N: Real> Space<N> {
 
 /// The separation of any pair in space.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    look_up(&Space::<N>::TABLE, pair)(pair, limit)
+    look_up(&Table3::<N>::TABLE, pair)(pair, limit)
 }
 
 /// Whether two convex solids of space are farther apart than a limit of less than zero.

@@ -70,12 +70,13 @@ pub(super) enum Best<N: Real> {
 }
 
 impl<N: Real> Best<N> {
-    /// The separation within a limit, that of the general algorithm where the directions do not tell.
+    /// The separation within a limit, by `fall_back` where the directions do not decide.
     pub(super) fn settled(
         &self,
-        (fin, solid): (&Fin<'_, N>, &impl Faces<N>),
+        fin: &Fin<'_, N>,
+        solid: &impl Faces<N>,
         limit: N,
-        in_general: impl FnOnce() -> Option<Separation<N, 3>>,
+        fall_back: impl FnOnce() -> Option<Separation<N, 3>>,
     ) -> Option<Separation<N, 3>> {
         let found = match self {
             Self::Beyond => return None,
@@ -84,7 +85,7 @@ impl<N: Real> Best<N> {
         };
         match found {
             Some(found) => (found.distance <= limit).then_some(found),
-            None => in_general(),
+            None => fall_back(),
         }
     }
 }
@@ -117,7 +118,8 @@ impl<'a, N: Real> Fin<'a, N> {
         triangle: &'a Triangle<N, 3>,
         pose12: &'a Pose<N, 3>,
         corners: [Vector<N, 3>; 3],
-        (scale, shrink): (N, N),
+        scale: N,
+        shrink: N,
     ) -> Self {
         Self { triangle, pose12, corners, scale, shrink }
     }
@@ -161,10 +163,10 @@ impl<'a, N: Real> Fin<'a, N> {
 
     /// How low and how high the corners lie along a direction.
     #[inline]
-    pub(super) fn range(&self, along: &Vector<N, 3>) -> (N, N) {
+    pub(super) fn range(&self, along: &Vector<N, 3>) -> [N; 2] {
         let [a, b, c] = &self.corners;
         let (a, b, c) = (a.dot(along), b.dot(along), c.dot(along));
-        (min(min(a, b), c), max(max(a, b), c))
+        [min(min(a, b), c), max(max(a, b), c)]
     }
 
     /// The signed distance that an axis says, in the units of the pair.
@@ -302,8 +304,8 @@ impl<N: Real> Faces<N> for Polytope<N, 3> {
 /// The gap that a direction or its opposite leaves between a triangle and a solid that lie between
 /// two heights along it each, and whether the triangle is the upper one.
 #[inline]
-pub(super) fn parted<N: Real>((low, high): (N, N), solid: (N, N)) -> (N, bool) {
-    let (above, below) = (low - solid.1, solid.0 - high);
+pub(super) fn parted<N: Real>([low, high]: [N; 2], [bottom, top]: [N; 2]) -> (N, bool) {
+    let (above, below) = (low - top, bottom - high);
     if above > below { (above, true) } else { (below, false) }
 }
 

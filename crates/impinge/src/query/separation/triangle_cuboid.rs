@@ -75,8 +75,8 @@ fn best_of_box<N: Real>(fin: &Fin<'_, N>, half: &Vector<N, 3>) -> Axis<N> {
     let (mut best, mut face, mut toward) = (-N::INFINITY, 0, N::ONE);
     let [a, b, c] = &fin.corners;
     for axis in 0..3 {
-        let range = (min(min(a[axis], b[axis]), c[axis]), max(max(a[axis], b[axis]), c[axis]));
-        let (gap, is_above) = parted(range, (-half[axis], half[axis]));
+        let range = [min(min(a[axis], b[axis]), c[axis]), max(max(a[axis], b[axis]), c[axis])];
+        let (gap, is_above) = parted(range, [-half[axis], half[axis]]);
         if gap > best {
             // The positive side comes first; see `Cuboid`.
             (best, face) = (gap, [0, 2, 4][axis] + u32::from(!is_above));
@@ -98,7 +98,7 @@ fn best_face<N: Real>(
 ) -> Axis<N> {
     let Some(front) = front else { return of_box };
     let reach = front.x.abs() * half.x + front.y.abs() * half.y + front.z.abs() * half.z;
-    let (gap, is_above) = parted(fin.range(front), (-reach, reach));
+    let (gap, is_above) = parted(fin.range(front), [-reach, reach]);
     let normal = if is_above { -front } else { *front };
     let is_less = of_box.gap > gap + noise();
     if is_less { of_box } else { Axis { kind: AxisKind::Triangle, normal, gap } }
@@ -123,7 +123,7 @@ fn best_edges<N: Real>(
             let (x, y) = (-side[i2], side[i1]);
             let (p, q) = (x * on[i1] + y * on[i2], x * off[i1] + y * off[i2]);
             let reach = x.abs() * half[i1] + y.abs() * half[i2];
-            let (slack, is_above) = parted((min(p, q), max(p, q)), (-reach, reach));
+            let (slack, is_above) = parted([min(p, q), max(p, q)], [-reach, reach]);
             if slack <= min(bound, N::ZERO) {
                 continue;
             }

@@ -54,8 +54,8 @@ fn settled<N: Real>(
     best: &Best<N>,
     limit: N,
 ) -> Option<Separation<N, 3>> {
-    let in_general = || general::of_flat_cores(&fin.pair(Kind::Polytope(hull)), limit);
-    best.settled((fin, hull), limit, in_general)
+    let fall_back = || general::of_flat_cores(&fin.pair(Kind::Polytope(hull)), limit);
+    best.settled(fin, hull, limit, fall_back)
 }
 
 /// Whether a triangle and a hull are farther apart than a limit of less than zero; `None` where this
@@ -101,7 +101,7 @@ fn best_axis<N: Real>(
     if is_beyond(face.gap) {
         return Best::Beyond;
     }
-    match best_edges(fin, (hull, &climbs), &edging, face.gap + noise()) {
+    match best_edges(fin, hull, &climbs, &edging, face.gap + noise()) {
         None => Best::Axis(face),
         Some(edges) if !is_sound(fin, hull, &edges) => Best::Unclear,
         Some(edges) if is_beyond(edges.gap) => Best::Beyond,
@@ -140,7 +140,7 @@ fn best_face<N: Real>(
 ) -> Axis<N> {
     let Some(front) = front else { return of_hull };
     let height = |toward: &Vector<N, 3>| front.dot(&hull.core_support(toward).coords) * fin.shrink;
-    let (gap, is_above) = parted(fin.range(front), (height(&-front), height(front)));
+    let (gap, is_above) = parted(fin.range(front), [height(&-front), height(front)]);
     let normal = if is_above { -front } else { *front };
     let is_less = of_hull.gap > gap + noise();
     if is_less { of_hull } else { Axis { kind: AxisKind::Triangle, normal, gap } }
@@ -149,7 +149,8 @@ fn best_face<N: Real>(
 /// An edge of the hull and a side of the triangle that leave a larger gap than `least`.
 fn best_edges<N: Real>(
     fin: &Fin<'_, N>,
-    (hull, climbs): (&Polytope<N, 3>, &Climbs),
+    hull: &Polytope<N, 3>,
+    climbs: &Climbs,
     edging: &Edging<N>,
     least: N,
 ) -> Option<Axis<N>> {
@@ -192,6 +193,6 @@ fn best_edges<N: Real>(
 /// The gap along an axis is there, held against the farthest points of both.
 pub(super) fn is_sound<N: Real>(fin: &Fin<'_, N>, hull: &Polytope<N, 3>, axis: &Axis<N>) -> bool {
     let top = -axis.normal.dot(&hull.core_support(&-axis.normal).coords) * fin.shrink;
-    let (_, high) = fin.range(&axis.normal);
+    let [_, high] = fin.range(&axis.normal);
     -high - top >= axis.gap - N::lit(4.0) * noise::<N>()
 }

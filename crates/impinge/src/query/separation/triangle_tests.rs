@@ -203,7 +203,7 @@ fn together<N: Real>(rounds: usize) {
         }
         for limit in [N::ZERO, N::lit(0.3), N::MAX] {
             for solid in [Kind::Cuboid(&cuboid), hull.geometry().0] {
-                touching += check_together((&triangles, solid, &pose12), limit, round);
+                touching += check_together(&triangles, solid, &pose12, limit, round);
             }
         }
     }
@@ -212,7 +212,9 @@ fn together<N: Real>(rounds: usize) {
 
 /// Answers how many are within the limit.
 fn check_together<N: Real>(
-    (triangles, solid, pose12): (&[Triangle<N, 3>], Kind<'_, N, 3>, &Pose<N, 3>),
+    triangles: &[Triangle<N, 3>],
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
     limit: N,
     round: usize,
 ) -> usize {
@@ -225,7 +227,7 @@ fn check_together<N: Real>(
     *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
     let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
     let mut found = Separations::new();
-    assert!(separations3(&parts, (solid, pose12), limit, &mut found), "round {round}");
+    assert!(separations3(&parts, solid, pose12, limit, &mut found), "round {round}");
     assert_eq!(found.len(), count);
     for (found, triangle) in found.iter().zip(triangles) {
         let (first, pose12) = (Kind::Triangle(triangle), *pose12);
@@ -242,7 +244,7 @@ fn check_together<N: Real>(
         for (block, tiles) in tiles.iter().enumerate() {
             let some = |at: usize| at.min(count);
             let range = some(block * LANES)..some((block + 1) * LANES);
-            check_told(&question, tiles, (&triangles[range.clone()], &found[range]), round);
+            check_told(&question, tiles, &triangles[range.clone()], &found[range], round);
         }
     }
     found.iter().filter(|found| found.is_some()).count()
@@ -252,7 +254,8 @@ fn check_together<N: Real>(
 fn check_told<N: Real>(
     question: &FlatQuestion<'_, N>,
     tiles: &Tiles<N, 3>,
-    (triangles, found): (&[Triangle<N, 3>], &[Option<Separation<N, 3>>]),
+    triangles: &[Triangle<N, 3>],
+    found: &[Option<Separation<N, 3>>],
     round: usize,
 ) {
     let sifted = question.sifted(tiles);

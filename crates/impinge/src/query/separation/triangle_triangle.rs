@@ -16,10 +16,10 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let (Kind::Triangle(triangle), Kind::Triangle(other)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
     };
-    let in_general = || general::of_flat_cores(pair, limit);
-    let Some(fin) = Fin::new(triangle, &pair.pose12, other.reach()) else { return in_general() };
+    let fall_back = || general::of_flat_cores(pair, limit);
+    let Some(fin) = Fin::new(triangle, &pair.pose12, other.reach()) else { return fall_back() };
     let best = best_axis(&fin, other, |gap| fin.is_beyond(gap, limit));
-    best.settled((&fin, *other), limit, in_general)
+    best.settled(&fin, *other, limit, fall_back)
 }
 
 /// The direction that leaves the largest gap: the first triangle's own normal unless another one leaves more
@@ -43,20 +43,21 @@ fn best_axis<N: Real>(
     if is_beyond(best.gap) {
         return Best::Beyond;
     }
-    let best = best_edges(fin, (&own, &lain), &corners, best.gap + noise()).unwrap_or(best);
+    let best = best_edges(fin, &own, &lain, &corners, best.gap + noise()).unwrap_or(best);
     if is_beyond(best.gap) { Best::Beyond } else { Best::Axis(best) }
 }
 
 /// How low and how high the corners lie along a direction.
-fn range<N: Real>(corners: &[Vector<N, 3>; 3], along: &Vector<N, 3>) -> (N, N) {
+fn range<N: Real>(corners: &[Vector<N, 3>; 3], along: &Vector<N, 3>) -> [N; 2] {
     let [a, b, c] = corners.each_ref().map(|corner| corner.dot(along));
-    (min(min(a, b), c), max(max(a, b), c))
+    [min(min(a, b), c), max(max(a, b), c)]
 }
 
 /// A side of each that leave a larger gap than `least`.
 fn best_edges<N: Real>(
     fin: &Fin<'_, N>,
-    (own, lain): (&Edging<N>, &Edging<N>),
+    own: &Edging<N>,
+    lain: &Edging<N>,
     corners: &[Vector<N, 3>; 3],
     least: N,
 ) -> Option<Axis<N>> {
@@ -70,7 +71,7 @@ fn best_edges<N: Real>(
             let is_steep = squared > least_sine::<N>() * least_sine();
             let [a, b] = [from.dot(&across), off.dot(&across)];
             let [c, d] = [start, &corners[(edge as usize + 2) % 3]].map(|end| end.dot(&across));
-            let (slack, is_above) = parted((min(a, b), max(a, b)), (min(c, d), max(c, d)));
+            let (slack, is_above) = parted([min(a, b), max(a, b)], [min(c, d), max(c, d)]);
             if !is_steep || slack <= min(bound, N::ZERO) {
                 continue;
             }

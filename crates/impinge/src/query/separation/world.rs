@@ -144,8 +144,10 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     /// `limit`.
     #[inline]
     pub(crate) fn within<R: AbstractRotation<N, D>>(
-        (isometry1, shape1): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
-        (isometry2, shape2): (&Isometry<N, R, D>, &'a dyn Shape<N, D>),
+        isometry1: &Isometry<N, R, D>,
+        shape1: &'a dyn Shape<N, D>,
+        isometry2: &Isometry<N, R, D>,
+        shape2: &'a dyn Shape<N, D>,
         limit: N,
     ) -> Option<[Self; 2]> {
         let shapes = [shape1.geometry(), shape2.geometry()];

@@ -174,10 +174,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             return None;
         }
         let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
-        let (placed, mut found) =
-            ((self.between.pair.first, &usual.lying.pose12), Separations::new());
-        let parts = TiledParts { tiles, near, origin };
-        (N::tables().separations)(&parts, placed, limit, &mut found).then_some(found)
+        let (solid, pose12) = (self.between.pair.first, &usual.lying.pose12);
+        let (parts, mut found) = (TiledParts { tiles, near, origin }, Separations::new());
+        (N::tables().separations)(&parts, solid, pose12, limit, &mut found).then_some(found)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is

@@ -118,8 +118,8 @@ impl<N: Real> Part<N> {
     fn beside(meeting: &Meeting<N>, which: usize, (names, tolerance): (Names, N)) -> Self {
         let corner = meeting.corners[which & 1];
         let (next, before) = (meeting.next(which, corner), meeting.previous(which, corner));
-        let (rise1, squared1) = meeting.lean(which, (corner, next));
-        let (rise2, squared2) = meeting.lean(which, (corner, before));
+        let (rise1, squared1) = meeting.tilt(which, corner, next);
+        let (rise2, squared2) = meeting.tilt(which, corner, before);
         let (lean1, lean2) = (rise1 * squared2, rise2 * squared1);
         // Of equal sides that of the lower number counts.
         let is_next = if corner > 0 { lean1 < lean2 } else { lean1 <= lean2 };

@@ -32,11 +32,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     links: &mut Links<N>,
 ) -> Option<()> {
     let solid = Outline::<N, V>::of(simd, polygon)?;
-    let solid = Facing::new(simd, solid.placed(simd, &question.solid_pose()));
+    let solid = PolygonExtents::new(simd, solid.placed(simd, &question.solid_pose()));
     for (block, tiles) in question.tiles.iter().enumerate() {
         let eight = Eight::<V>::of(simd, tiles, question)?;
         links.from_middle = min(links.from_middle, eight.least());
-        let axes = Axes::of(simd, &eight, &solid, question.limit);
+        let axes = SegmentAxes::of(simd, &eight, &solid, question.limit);
         let mut within = !axes.beyond & question.lanes_of(block);
         while within != 0 {
             let lane = (within.trailing_zeros() as usize).min(LANES - 1);
@@ -70,7 +70,7 @@ fn from_segment<N: Real>(
 }
 
 /// A polygon in the frame of the segments, and how far it reaches along its own directions.
-struct Facing<N: Real, V> {
+struct PolygonExtents<N: Real, V> {
     outline: Outline<N, V>,
     size: N,
     normals: [Row<N>; 2],
@@ -81,7 +81,7 @@ struct Facing<N: Real, V> {
     are_tips: u64,
 }
 
-impl<N: Real, V> Facing<N, V> {
+impl<N: Real, V> PolygonExtents<N, V> {
     #[inline(always)]
     fn new<S: Simd>(simd: S, outline: Outline<N, V>) -> Self
     where
@@ -105,7 +105,7 @@ impl<N: Real, V> Facing<N, V> {
 }
 
 /// The best directions from segments to a polygon.
-struct Axes<N> {
+struct SegmentAxes<N> {
     gaps: Row<N>,
     normals: [Row<N>; 2],
     noise: Row<N>,
@@ -114,12 +114,12 @@ struct Axes<N> {
 }
 
 /// The direction that leaves the largest gap so far.
-struct Best<V> {
+struct BestDirection<V> {
     gap: V,
     normal: [V; 2],
 }
 
-impl<V> Best<V> {
+impl<V> BestDirection<V> {
     /// Tries another direction; of equals the first counts.
     #[inline(always)]
     fn attempt<S: Simd>(&mut self, gap: V, normal: &[V; 2])
@@ -132,16 +132,16 @@ impl<V> Best<V> {
     }
 }
 
-impl<N: Real> Axes<N> {
+impl<N: Real> SegmentAxes<N> {
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         eight: &Eight<V>,
-        solid: &Facing<N, V>,
+        solid: &PolygonExtents<N, V>,
         limit: N,
     ) -> Self {
         let [a, b] = &eight.ends;
-        let mut best = of_segments(simd, [a, b], (&eight.side, eight.squared), &solid.outline);
+        let mut best = of_segments(simd, [a, b], &eight.side, eight.squared, &solid.outline);
         add_polygon(simd, [a, b], solid, &mut best);
         let rounding = solid.outline.rounding;
         let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
@@ -171,9 +171,10 @@ impl<N: Real> Axes<N> {
 fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     [a, b]: [&[V; 2]; 2],
-    (side, squared): (&[V; 2], V),
+    side: &[V; 2],
+    squared: V,
     solid: &Outline<N, V>,
-) -> Best<V> {
+) -> BestDirection<V> {
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
     let back = negated(&front);
@@ -182,7 +183,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let tip = over(&tip, dot(&tip, &tip).sqrt());
     let (low, high) = heights(simd, &front, solid);
     let (first, second) = (dot(&front, a), dot(&front, b));
-    let mut best = Best { gap: low - first.larger(second), normal: front };
+    let mut best = BestDirection { gap: low - first.larger(second), normal: front };
     let (tip_low, tip_high) = heights(simd, &tip, solid);
     let (tip_first, tip_second) = (dot(&tip, a), dot(&tip, b));
     best.attempt(tip_low - tip_first.larger(tip_second), &tip);
@@ -212,28 +213,29 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     [a, b]: [&[V; 2]; 2],
-    solid: &Facing<N, V>,
-    best: &mut Best<V>,
+    solid: &PolygonExtents<N, V>,
+    best: &mut BestDirection<V>,
 ) {
     for vertex in 0..solid.outline.count.min(LANES) {
-        let way = [solid.normals[0][vertex], solid.normals[1][vertex]];
-        add(simd, [a, b], (way, solid.reaches[vertex]), best);
+        let direction = [solid.normals[0][vertex], solid.normals[1][vertex]];
+        add(simd, [a, b], direction, solid.reaches[vertex], best);
         if solid.are_tips >> vertex & 1 == 1 {
-            let way = [solid.tips[0][vertex], solid.tips[1][vertex]];
-            add(simd, [a, b], (way, solid.tip_reaches[vertex]), best);
+            let direction = [solid.tips[0][vertex], solid.tips[1][vertex]];
+            add(simd, [a, b], direction, solid.tip_reaches[vertex], best);
         }
     }
 }
 
-/// A direction out of the polygon and how far it reaches along it.
+/// A direction out of the polygon, and the polygon's extent along it.
 #[inline(always)]
 fn add<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     [a, b]: [&[V; 2]; 2],
-    (way, reach): ([N; 2], N),
-    best: &mut Best<V>,
+    direction: [N; 2],
+    extent: N,
+    best: &mut BestDirection<V>,
 ) {
-    let way = [V::all(simd, way[0]), V::all(simd, way[1])];
-    let low = dot(&way, a).smaller(dot(&way, b));
-    best.attempt(low - V::all(simd, reach), &negated(&way));
+    let direction = [V::all(simd, direction[0]), V::all(simd, direction[1])];
+    let low = dot(&direction, a).smaller(dot(&direction, b));
+    best.attempt(low - V::all(simd, extent), &negated(&direction));
 }

@@ -31,7 +31,7 @@ pub(in crate::query::separation) fn separation<N: Real>(
             Verdict::Undecided
         }
     };
-    settled(pair, (hull.reach(), limit), ask, || general::of_flat_cores(pair, limit))
+    settled(pair, hull.reach(), limit, ask, || general::of_flat_cores(pair, limit))
 }
 
 /// A solid with few parts.

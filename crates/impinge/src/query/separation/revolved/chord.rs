@@ -11,7 +11,7 @@ const STEPS: usize = 16;
 const HALVINGS: usize = 4;
 
 /// A search along a chord: the shares of the way between which the slope changes its sign.
-struct Search<N: Real> {
+struct ChordSearch<N: Real> {
     ends: [Vector<N, 3>; 2],
     along: Vector<N, 3>,
     length: N,
@@ -21,7 +21,7 @@ struct Search<N: Real> {
     halvings: usize,
 }
 
-impl<N: Real> Search<N> {
+impl<N: Real> ChordSearch<N> {
     /// `None` of a chord without length.
     fn new(ends: [Vector<N, 3>; 2], falls: bool) -> Option<Self> {
         let along = ends[1] - ends[0];
@@ -77,7 +77,7 @@ impl<N: Real> Profile<N> {
         ends: [Vector<N, 3>; 2],
         falls: bool,
     ) -> Option<(Hull<N>, Place<N>)> {
-        let mut search = Search::new(ends, falls)?;
+        let mut search = ChordSearch::new(ends, falls)?;
         let mut share = search.start();
         for _ in 0..STEPS {
             let seen = self.seen_from(search.at(share));

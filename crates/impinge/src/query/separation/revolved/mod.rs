@@ -79,7 +79,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
         }
         None => {
             let first = Profile::new(Round::new(&pair.first, units.shrink)?);
-            rounds::resolve([first, profile], (pose12, shift), beyond)
+            rounds::resolve([first, profile], pose12, shift, beyond)
         }
     };
     let found = verdict.answer(&units, pose12)?;

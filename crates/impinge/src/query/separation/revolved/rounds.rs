@@ -18,14 +18,15 @@ const STEPS: usize = 12;
 /// What is known of two solids, the second at a pose whose translation is `shift` in units of the pair.
 pub(super) fn resolve<N: Real>(
     [first, second]: [Profile<N>; 2],
-    (pose12, shift): (&Pose<N, 3>, Vector<N, 3>),
+    pose12: &Pose<N, 3>,
+    shift: Vector<N, 3>,
     beyond: N,
 ) -> Verdict<N> {
     let rotation = pose12.rotation.transpose();
     let (from_first, from_second) = (shift, -(rotation * shift));
     let views = [
-        View::new([second, first], from_second, rotation),
-        View::new([first, second], from_first, pose12.rotation),
+        RoundView::new([second, first], from_second, rotation),
+        RoundView::new([first, second], from_first, pose12.rotation),
     ];
     for (view, is_second) in views.iter().zip([true, false]) {
         match view.corners(beyond) {
@@ -38,7 +39,7 @@ pub(super) fn resolve<N: Real>(
 }
 
 /// A solid in the frame of another.
-struct View<N: Real> {
+struct RoundView<N: Real> {
     own: Profile<N>,
     other: Profile<N>,
     center: Vector<N, 3>,
@@ -47,7 +48,7 @@ struct View<N: Real> {
     axis: Vector<N, 3>,
 }
 
-impl<N: Real> View<N> {
+impl<N: Real> RoundView<N> {
     fn new([own, other]: [Profile<N>; 2], center: Vector<N, 3>, rotation: Matrix<N, 3>) -> Self {
         Self { own, other, center, rotation, axis: rotation.column(1).into_owned() }
     }

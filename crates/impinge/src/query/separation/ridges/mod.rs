@@ -40,7 +40,7 @@ use crate::shape::{Geometry, SupportMap};
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
-    let found = convex::separation_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    let found = convex::separation_by(&flat, round, &pair.pose12, loosened, &OverlapPeaks { pair });
     found.filter(|found| found.distance <= limit)
 }
 
@@ -48,7 +48,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
-    let found = convex::distance_by((&flat, round), &pair.pose12, loosened, &Overlap { pair });
+    let found = convex::distance_by(&flat, round, &pair.pose12, loosened, &OverlapPeaks { pair });
     found.filter(|distance| *distance <= limit)
 }
 
@@ -61,19 +61,19 @@ fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn Sup
 }
 
 /// Two solids whose cores overlap.
-struct Overlap<'a, 'b, N: Real> {
+struct OverlapPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
 
-impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
+impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, 3>> {
         let round = Round::new(&self.pair.second, shrink)?;
         let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
-        let mut meeting = Meeting {
+        let mut meeting = DepthSearch {
             flat: &flat,
             round: &round,
             least: N::INFINITY,
-            at: Place::Face(0),
+            at: DepthFeature::Face(0),
             normal: Vector::<N, 3>::y(),
         };
         meeting.search(gap)?;
@@ -86,7 +86,7 @@ impl<N: Real> Peaks<N, 3> for Overlap<'_, '_, N> {
 
 /// Where on the sphere of directions the least depth is.
 #[derive(Clone, Copy)]
-enum Place {
+enum DepthFeature {
     /// A normal of the flat solid, by its number.
     Face(usize),
     /// The normal of a cap.
@@ -99,29 +99,29 @@ enum Place {
 
 /// What is known of two solids, in the frame of the round one and units of the pair. Directions lead from
 /// the round solid to the flat one.
-struct Meeting<'a, N: Real> {
+struct DepthSearch<'a, N: Real> {
     flat: &'a Flat<N>,
     round: &'a Round<N>,
     /// The least depth so far, and where it is.
     least: N,
-    at: Place,
+    at: DepthFeature,
     normal: Vector<N, 3>,
 }
 
-impl<N: Real> Meeting<'_, N> {
+impl<N: Real> DepthSearch<'_, N> {
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
             let end = self.round.support(normal);
             let depth = normal.dot(&(end - self.flat.vertices[*vertex as usize]));
-            self.note(depth, Place::Face(index), *normal);
+            self.note(depth, DepthFeature::Face(index), *normal);
             ends.push(end);
         }
         for &up in self.round.caps() {
             let normal = Vector::<N, 3>::y() * N::lit(up);
             let low = self.flat.lowest(&normal);
             let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
-            self.note(depth, Place::Cap, normal);
+            self.note(depth, DepthFeature::Cap, normal);
         }
         if self.search_edges(&ends, gap).is_some() {
             return self.search_side(gap);
@@ -136,7 +136,7 @@ impl<N: Real> Meeting<'_, N> {
         (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, ends, gap))
     }
 
-    fn note(&mut self, depth: N, at: Place, normal: Vector<N, 3>) {
+    fn note(&mut self, depth: N, at: DepthFeature, normal: Vector<N, 3>) {
         if depth < self.least {
             (self.least, self.at, self.normal) = (depth, at, normal);
         }
@@ -181,7 +181,7 @@ impl<N: Real> Meeting<'_, N> {
         let mut search = Search::new(self.least, gap);
         search.run(arc, |u| line(&round.support(&lift(u))))?;
         if let Some(u) = search.best {
-            self.note(search.least, Place::Edge(edge), lift(&u));
+            self.note(search.least, DepthFeature::Edge(edge), lift(&u));
         }
         Some(())
     }
@@ -209,7 +209,7 @@ impl<N: Real> Meeting<'_, N> {
             search.run(arc, line)?;
         }
         if let Some(u) = search.best {
-            self.note(search.least, Place::Side, lift(&u));
+            self.note(search.least, DepthFeature::Side, lift(&u));
         }
         Some(())
     }
@@ -218,8 +218,8 @@ impl<N: Real> Meeting<'_, N> {
     fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
         let turned = -(pose12.rotation * self.normal);
         let (is_exact, normal) = match self.at {
-            Place::Face(index) => (true, self.flat.own_normals[index]),
-            Place::Cap => (true, turned),
+            DepthFeature::Face(index) => (true, self.flat.own_normals[index]),
+            DepthFeature::Cap => (true, turned),
             _ => (false, unit(&turned).map_or(turned, |(normal, _)| normal)),
         };
         let low = self.touched();
@@ -236,7 +236,7 @@ impl<N: Real> Meeting<'_, N> {
 
     /// The vertices of the flat solid that may touch.
     fn touched(&self) -> SmallVec<[usize; 8]> {
-        if let Place::Edge(edge) = self.at {
+        if let DepthFeature::Edge(edge) = self.at {
             return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();
         }
         let height = |vertex: &Vector<N, 3>| self.normal.dot(vertex);

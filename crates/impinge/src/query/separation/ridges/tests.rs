@@ -63,12 +63,12 @@ pub(in super::super) fn cone<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
 
 /// Compares the separations of pairs of solids with those of the general algorithm.
 macro_rules! compare_each {
-    ($separation:path, $asked:expr, $($first:ident $second:ident),*) => {
+    ($separation:path, ($seed:expr, $rounds:expr, $accuracy:expr), $($first:ident $second:ident),*) => {
         $({
             fn solids<N: Real>([size1, size2]: [Vector<N, 3>; 2]) -> Solids<N> {
                 [$first(size1), $second(size2)]
             }
-            compare::<N>($asked, solids, $separation);
+            compare::<N>($seed, $rounds, $accuracy, solids, $separation);
         })*
     };
 }
@@ -125,7 +125,7 @@ fn none_is_better<N: Real>(accuracy: f64) {
         }
         deep += 1;
         let gap = N::lit(accuracy);
-        let peak = Overlap { pair: &pair }.best(N::ONE, gap);
+        let peak = OverlapPeaks { pair: &pair }.best(N::ONE, gap);
         assert!(peak.is_some(), "round {round}: {shapes:?} {:?}", pair.pose12);
         let error = (depth(&pair, &found.normal) + found.distance).abs();
         assert!(error < gap * N::TWO, "round {round}: its own depth, {error}");
@@ -200,7 +200,7 @@ fn a_column_on_a_roof<N: Real>() {
     let up = depth(&pair, &Vector::<N, 3>::y());
     assert!(-found.distance <= up + N::lit(4.0) * N::EPSILON, "{found:?}, not {up}");
     let gap = max(N::lit(8.0) * N::EPSILON, N::lit(1e-12));
-    let peak = Overlap { pair: &pair }.best(N::ONE, gap).expect("it is found");
+    let peak = OverlapPeaks { pair: &pair }.best(N::ONE, gap).expect("it is found");
     let named = depth(&pair, &peak.normal);
     assert!(named <= up + gap * N::TWO, "{named}, not {up}");
 }
@@ -220,7 +220,7 @@ fn a_sliver_on_the_axis_of_a_cone() {
     let triangle = Triangle::new(first, second, corner(3.7959e-5, -0.056211, 4.3429e-3));
     let shapes: Solids<f64> = [Box::new(triangle), Box::new(Cone::new(0.85171, 0.56287))];
     let pair = pair_of(&shapes, Pose::identity());
-    let peak = Overlap { pair: &pair }.best(1.0, 1e-12).expect("it is found");
+    let peak = OverlapPeaks { pair: &pair }.best(1.0, 1e-12).expect("it is found");
     let found = separation(&pair, f64::INFINITY).expect("no limit");
     assert!((found.distance + depth(&pair, &peak.normal)).abs() < 2e-12, "{found:?}");
     let slope = Round::new(&pair.second, 1.0).expect("it has a size").slope();

@@ -69,7 +69,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
 ) -> Sighted<N> {
-    let mut places: SmallVec<[Places<N>; 8]> = SmallVec::new();
+    let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
     let mut seen =
         Sighted { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
@@ -78,8 +78,8 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         if within == 0 {
             continue;
         }
-        let eight = Eight::<V>::of(simd, question, tiles);
-        let (mut own, least) = eight.places(simd, question, (block, within), has_seams);
+        let eight = TrianglePacket::<V>::of(simd, question, tiles);
+        let (mut own, least) = eight.places(simd, question, block, within, has_seams);
         seen.from_middle = min(seen.from_middle, least);
         if own.near != 0 {
             own.sides &= own.near;
@@ -94,7 +94,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             asked &= asked - 1;
             let around =
                 &places[at.saturating_sub(MAX_APART)..places.len().min(at + 1 + MAX_APART)];
-            if is_hidden::<S, N, V>(simd, question, around, (own, lane)) {
+            if is_hidden::<S, N, V>(simd, question, around, own, lane) {
                 seen.near[at].1[1] |= 1 << lane;
                 seen.hidden_from = min(seen.hidden_from, own.least[lane]);
             }
@@ -124,7 +124,7 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 /// Where on eight triangles the nearest points lie.
-struct Places<N> {
+struct NearestFeatures<N> {
     /// Which eight.
     block: usize,
     /// A bit for each that may be within reach.
@@ -139,7 +139,7 @@ struct Places<N> {
 }
 
 /// Eight triangles as the middle of the ball sees them.
-struct Eight<V> {
+struct TrianglePacket<V> {
     corners: [[V; 3]; 3],
     /// The squares of the lengths of the sides, from each corner to the next.
     squares: [V; 3],
@@ -154,7 +154,7 @@ struct Eight<V> {
     farthest: V,
 }
 
-impl<V> Eight<V> {
+impl<V> TrianglePacket<V> {
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, question: &BallQuestion<'_, N>, tiles: &Tiles<N, 3>) -> Self
     where
@@ -199,9 +199,10 @@ impl<V> Eight<V> {
         &self,
         simd: S,
         question: &BallQuestion<'_, N>,
-        (block, within): (usize, u8),
+        block: usize,
+        within: u8,
         has_seams: bool,
-    ) -> (Places<N>, N)
+    ) -> (NearestFeatures<N>, N)
     where
         V: Wide<S, Scalar = N>,
     {
@@ -215,10 +216,11 @@ impl<V> Eight<V> {
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
         let near = within & low_byte((!is_beyond).to_bitmask());
-        let mut places = Places { block, near, sides: 0, kinds: blank, least: blank, most };
+        let mut places =
+            NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
         if near != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
-            let is_tall = self.is_tall(simd, (size, clear), max_component(&question.center));
+            let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
             let (kind, room) = self.beside(simd);
             let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
             places.sides = low_byte(is_beside.to_bitmask());
@@ -250,7 +252,7 @@ impl<V> Eight<V> {
 
     /// The triangles are neither thin, nor small for where they are.
     #[inline(always)]
-    fn is_tall<S: Simd, N: Real>(&self, simd: S, (size, clear): (V, V), away: N) -> V::Mask
+    fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
     where
         V: Wide<S, Scalar = N>,
     {
@@ -300,8 +302,9 @@ impl<V> Eight<V> {
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
-    places: &[Places<N>],
-    (own, lane): (&Places<N>, usize),
+    places: &[NearestFeatures<N>],
+    own: &NearestFeatures<N>,
+    lane: usize,
 ) -> bool {
     let (kind, least) = (own.kinds[lane], own.least[lane]);
     let is_corner = kind >= N::lit(CORNER);

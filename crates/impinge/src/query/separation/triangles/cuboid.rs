@@ -30,9 +30,9 @@ impl<N: Real> Faceted<N> for Cuboid<N, 3> {
         }
         let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
         let reach = front[0].abs() * half[0] + front[1].abs() * half[1] + front[2].abs() * half[2];
-        let best = best_face(simd, &eight.corners, (&front, has_front), (-reach, reach), &best);
+        let best = best_face(simd, &eight.corners, &front, has_front, [-reach, reach], &best);
         let beyond = beyond | eight.is_beyond(best.gap);
-        let best = best_edges(simd, &eight, (&half, &sides), best);
+        let best = best_edges(simd, &eight, &half, &sides, best);
         eight.stored(&best, (beyond | eight.is_beyond(best.gap)).to_bitmask())
     }
 
@@ -57,7 +57,7 @@ fn best_of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let mut best = Best { gap: -V::all(simd, N::INFINITY), normal: [zero; 3], kind, index: zero };
     for axis in 0..3 {
         let [a, b, c] = &eight.corners;
-        let heights = (-half[axis], half[axis]);
+        let heights = [-half[axis], half[axis]];
         let (gap, is_above) = parted([a[axis], b[axis], c[axis]], heights);
         let is_more = gap.simd_gt(best.gap);
         let mut normal = [zero; 3];
@@ -76,7 +76,8 @@ fn best_of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     eight: &Eight<N, V>,
-    (half, sides): (&[V; 3], &[[V; 3]; 3]),
+    half: &[V; 3],
+    sides: &[[V; 3]; 3],
     face: Best<V>,
 ) -> Best<V> {
     let (zero, kind) = (V::all(simd, N::ZERO), V::all(simd, N::lit(EDGES)));
@@ -88,7 +89,7 @@ fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let (x, y) = (-side[i2], side[i1]);
             let (p, q) = (x * on[i1] + y * on[i2], x * off[i1] + y * off[i2]);
             let reach = x.abs() * half[i1] + y.abs() * half[i2];
-            let (slack, is_above) = parted([p, q, q], (-reach, reach));
+            let (slack, is_above) = parted([p, q, q], [-reach, reach]);
             let sine = (x * x + y * y).sqrt();
             let is_more = slack.simd_gt(bound.smaller(zero))
                 & sine.simd_gt(least)

@@ -62,7 +62,7 @@ pub(crate) enum Touched<N: Real> {
 }
 
 /// The axes of eight triangles and what they are asked of.
-pub(crate) struct Eight<'q, 'a, N: Real> {
+pub(crate) struct PacketAxes<'q, 'a, N: Real> {
     question: &'q FlatQuestion<'a, N>,
     axes: Axes<N>,
 }
@@ -96,7 +96,7 @@ impl<'a, N: Real> Flat<'a, N> {
 
 impl<'a, N: Real> FlatQuestion<'a, N> {
     /// The axes of eight triangles.
-    pub(crate) fn eight<'q>(&'q self, tiles: &Tiles<N, 3>) -> Eight<'q, 'a, N> {
+    pub(crate) fn eight<'q>(&'q self, tiles: &Tiles<N, 3>) -> PacketAxes<'q, 'a, N> {
         let reach = self.solid.reach();
         let Self { pose12, limit, origin, .. } = self;
         let question = Question { pose12, reach, limit: *limit, origin };
@@ -104,11 +104,11 @@ impl<'a, N: Real> FlatQuestion<'a, N> {
             Flat::Cuboid(cuboid) => at(Level::new(), cuboid, &question, tiles),
             Flat::Polytope(hull) => at(Level::new(), hull, &question, tiles),
         };
-        Eight { question: self, axes }
+        PacketAxes { question: self, axes }
     }
 }
 
-impl<N: Real> Eight<'_, '_, N> {
+impl<N: Real> PacketAxes<'_, '_, N> {
     /// The triangle is certainly beyond the limit.
     pub(crate) const fn is_beyond(&self, lane: usize) -> bool {
         self.axes.beyond >> lane & 1 == 1
@@ -147,8 +147,8 @@ impl<N: Real> Eight<'_, '_, N> {
 
     fn fin<'t>(&'t self, lane: usize, triangle: &'t Triangle<N, 3>) -> Fin<'t, N> {
         let corners = self.axes.corners_of(lane);
-        let units = (self.axes.scale[lane], self.axes.shrink[lane]);
-        Fin::placed(triangle, &self.question.pose12, corners, units)
+        let (scale, shrink) = (self.axes.scale[lane], self.axes.shrink[lane]);
+        Fin::placed(triangle, &self.question.pose12, corners, scale, shrink)
     }
 
     fn separation_of(
@@ -172,13 +172,13 @@ impl<N: Real> Eight<'_, '_, N> {
         let touched = match axis.kind {
             AxisKind::Triangle => Some(Touched::Face),
             AxisKind::Edges(edge, side) => {
-                let is_plain = is_crossing(&fin, solid, (edge, side, &axis), tolerance)
+                let is_plain = is_crossing(&fin, solid, edge, side, &axis, tolerance)
                     && solid.is_sound(&fin, &axis);
                 let side = u32::try_from(side).expect("there are three sides");
                 is_plain.then_some(Touched::Seam(FeatureId::Edge(side)))
             }
             AxisKind::Face(face) => {
-                let corner = corner_over(&fin, solid, (face, &axis));
+                let corner = corner_over(&fin, solid, face, &axis);
                 corner.map(|corner| Touched::Seam(FeatureId::Vertex(corner)))
             }
         };
@@ -217,7 +217,9 @@ impl<N: Real> Meets<N> for Polytope<N, 3> {
 fn is_crossing<N: Real>(
     fin: &Fin<'_, N>,
     solid: &impl Faces<N>,
-    (edge, side, axis): (u32, usize, &Axis<N>),
+    edge: u32,
+    side: usize,
+    axis: &Axis<N>,
     tolerance: N,
 ) -> bool {
     let [from, to] = solid.edge(FeatureId::Edge(edge)).map(|(_, end)| end.coords * fin.shrink);
@@ -250,7 +252,8 @@ fn is_crossing<N: Real>(
 fn corner_over<N: Real>(
     fin: &Fin<'_, N>,
     solid: &impl Faces<N>,
-    (face, axis): (u32, &Axis<N>),
+    face: u32,
+    axis: &Axis<N>,
 ) -> Option<u32> {
     let outward = -axis.normal;
     let heights = fin.corners.each_ref().map(|corner| outward.dot(corner));

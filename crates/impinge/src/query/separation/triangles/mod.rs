@@ -31,14 +31,15 @@ pub(crate) type Separations<N, const D: usize> = SmallVec<[Option<Separation<N, 
 /// as seen from their origin, if there is an algorithm for many of them; answers whether there is.
 pub(crate) fn separations3<N: Real>(
     parts: &TiledParts<'_, N, 3>,
-    (solid, pose12): (Kind<'_, N, 3>, &Pose<N, 3>),
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
     limit: N,
     out: &mut Separations<N, 3>,
 ) -> bool {
     match solid {
-        Kind::Cuboid(cuboid) => of_solid(parts, (cuboid, pose12), limit, out),
+        Kind::Cuboid(cuboid) => of_solid(parts, cuboid, pose12, limit, out),
         Kind::Polytope(hull) if polytope::is_small(hull) => {
-            of_solid(parts, (hull, pose12), limit, out)
+            of_solid(parts, hull, pose12, limit, out)
         }
         _ => false,
     }
@@ -47,7 +48,8 @@ pub(crate) fn separations3<N: Real>(
 /// In the plane triangles are filled.
 pub(crate) fn separations2<N: Real>(
     _: &TiledParts<'_, N, 2>,
-    _: (Kind<'_, N, 2>, &Pose<N, 2>),
+    _: Kind<'_, N, 2>,
+    _: &Pose<N, 2>,
     _: N,
     _: &mut Separations<N, 2>,
 ) -> bool {
@@ -74,7 +76,8 @@ trait Faceted<N: Real>: SupportMap<N, 3> {
 /// [`separations3`] of a solid; answers false where the numbers end.
 fn of_solid<N: Real>(
     parts: &TiledParts<'_, N, 3>,
-    (solid, pose12): (&impl Faceted<N>, &Pose<N, 3>),
+    solid: &impl Faceted<N>,
+    pose12: &Pose<N, 3>,
     limit: N,
     out: &mut Separations<N, 3>,
 ) -> bool {
@@ -85,7 +88,7 @@ fn of_solid<N: Real>(
     for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
         let axes = at(Level::new(), solid, &question, tiles);
         for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-            let found = axes.answer(lane, (solid, &question), tiles);
+            let found = axes.answer(lane, solid, &question, tiles);
             let Some(found) = found else { return false };
             out.push(found);
         }
@@ -140,18 +143,19 @@ impl<N: Real> Axes<N> {
     fn answer(
         &self,
         lane: usize,
-        (solid, question): (&impl Faceted<N>, &Question<'_, N>),
+        solid: &impl Faceted<N>,
+        question: &Question<'_, N>,
         tiles: &Tiles<N, 3>,
     ) -> Option<Option<Separation<N, 3>>> {
-        let units = (self.scale[lane], self.shrink[lane]);
-        if !(units.0.is_finite_number() && units.1.is_finite_number()) {
+        let (scale, shrink) = (self.scale[lane], self.shrink[lane]);
+        if !(scale.is_finite_number() && shrink.is_finite_number()) {
             return None;
         }
         if self.beyond >> lane & 1 == 1 {
             return Some(None);
         }
         let triangle = Triangle::of_finite(tiles.corners(lane).map(|at| at - question.origin));
-        let fin = Fin::placed(&triangle, question.pose12, self.corners_of(lane), units);
+        let fin = Fin::placed(&triangle, question.pose12, self.corners_of(lane), scale, shrink);
         Some(solid.answer(&fin, self.axis(lane, solid), question.limit))
     }
 
@@ -316,7 +320,7 @@ fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn parted<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     [a, b, c]: [V; 3],
-    (bottom, top): (V, V),
+    [bottom, top]: [V; 2],
 ) -> (V, V::Mask) {
     let (low, high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
     let (above, below) = (low - top, bottom - high);
@@ -378,8 +382,9 @@ fn edging<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn best_face<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     corners: &[[V; 3]; 3],
-    (front, has_front): (&[V; 3], V::Mask),
-    heights: (V, V),
+    front: &[V; 3],
+    has_front: V::Mask,
+    heights: [V; 2],
     of_solid: &Best<V>,
 ) -> Best<V> {
     let [a, b, c] = corners;

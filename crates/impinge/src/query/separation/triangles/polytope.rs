@@ -43,10 +43,10 @@ impl<N: Real> Faceted<N> for Polytope<N, 3> {
         }
         let (sides, front, has_front) = edging(simd, &eight, &question.pose12.rotation);
         let heights = heights(simd, self, &front, eight.shrink);
-        let best = best_face(simd, &eight.corners, (&front, has_front), heights, &best);
+        let best = best_face(simd, &eight.corners, &front, has_front, heights, &best);
         let beyond = beyond | eight.is_beyond(best.gap);
-        let edging = Edging { sides, front, has_front, asked: !beyond };
-        let best = best_edges(simd, &eight, (self, &climbs), &edging, best);
+        let edging = PacketDirections { sides, front, has_front, asked: !beyond };
+        let best = best_edges(simd, &eight, self, &climbs, &edging, best);
         eight.stored(&best, beyond.to_bitmask())
     }
 
@@ -91,18 +91,18 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     hull: &Polytope<N, 3>,
     along: &[V; 3],
     shrink: V,
-) -> (V, V) {
+) -> [V; 2] {
     let mut high = -V::all(simd, N::INFINITY);
     let mut low = -high;
     for vertex in hull.vertices() {
         let height = dot(along, &spread(simd, &vertex.coords));
         (low, high) = (height.smaller(low), height.larger(high));
     }
-    (low * shrink, high * shrink)
+    [low * shrink, high * shrink]
 }
 
 /// The directions of eight triangles.
-struct Edging<V, M> {
+struct PacketDirections<V, M> {
     sides: [[V; 3]; 3],
     front: [V; 3],
     has_front: M,
@@ -116,8 +116,9 @@ struct Edging<V, M> {
 fn best_edges<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     eight: &Eight<N, V>,
-    (hull, climbs): (&Polytope<N, 3>, &Climbs<V::Mask>),
-    edging: &Edging<V, V::Mask>,
+    hull: &Polytope<N, 3>,
+    climbs: &Climbs<V::Mask>,
+    edging: &PacketDirections<V, V::Mask>,
     face: Best<V>,
 ) -> Best<V> {
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));

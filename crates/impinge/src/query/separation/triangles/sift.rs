@@ -21,7 +21,7 @@ pub(crate) struct Sifted<N> {
 }
 
 /// What the planes of all faces say of eight triangles.
-struct Gaps<V> {
+struct PlaneGaps<V> {
     /// How far the triangles are beyond the plane that they are farthest beyond.
     gap: V,
     /// The same for planes through the middle of the solid.
@@ -56,7 +56,7 @@ fn sift<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         farthest = given[0].abs().larger(given[1].abs()).larger(given[2].abs()).larger(farthest);
         *corner = turned(simd, &pose12.rotation, &minus(&given, &center));
     }
-    let Gaps { gap, from_middle } = match question.solid {
+    let PlaneGaps { gap, from_middle } = match question.solid {
         Flat::Cuboid(cuboid) => of_box(simd, cuboid, &corners),
         Flat::Polytope(hull) => of_hull(simd, hull, &corners),
     };
@@ -82,7 +82,7 @@ fn of_box<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     cuboid: &Cuboid<N, 3>,
     [a, b, c]: &[[V; 3]; 3],
-) -> Gaps<V> {
+) -> PlaneGaps<V> {
     let mut gaps = no_gaps(simd);
     for axis in 0..3 {
         let low = a[axis].smaller(b[axis]).smaller(c[axis]);
@@ -99,7 +99,7 @@ fn of_hull<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     hull: &Polytope<N, 3>,
     [a, b, c]: &[[V; 3]; 3],
-) -> Gaps<V> {
+) -> PlaneGaps<V> {
     let (mut gaps, middle) = (no_gaps(simd), hull.center());
     for face in hull.faces() {
         let outward: [V; 3] = spread(simd, &face.normal);
@@ -112,7 +112,7 @@ fn of_hull<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 }
 
 #[inline(always)]
-fn no_gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> Gaps<V> {
+fn no_gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> PlaneGaps<V> {
     let least = -V::all(simd, N::INFINITY);
-    Gaps { gap: least, from_middle: least }
+    PlaneGaps { gap: least, from_middle: least }
 }
