@@ -156,7 +156,7 @@ fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
     angle: f64,
 ) -> usize {
     // The edge at the left end of the bottom is on the floor.
-    let (sine, cosine) = tilt.sin_cos();
+    let (sine, cosine) = Real::sine_cosine(tilt);
     let at = [cosine - sine, cosine + sine, 0.0].map(N::lit);
     let pose = Isometry3::new(Vector::from(at), Vector::<N, 3>::z() * N::lit(tilt));
     let upon = (pose, solid.clone());
@@ -213,7 +213,7 @@ fn corners_of_boxes_in_batches() {
     let mut expected = Vec::new();
     for index in 0..43_u32 {
         let (tilt, angle) = (0.05_f64, [0.0, 0.2, 0.004][index as usize % 3]);
-        let (sine, cosine) = tilt.sin_cos();
+        let (sine, cosine) = Real::sine_cosine(tilt);
         let away = V::new(0.0, 0.0, 20.0 * f64::from(index));
         let at = away + V::new(cosine - sine, cosine + sine + 1.0, 0.0);
         let pose = Isometry3::new(at, V::z() * tilt);

@@ -149,7 +149,6 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the proximity of `a` placed at `ma` and `b` placed at `mb`: `margin` apart at most is within the margin.
     ///
     /// Answers whether this algorithm can treat the two solids; if not, they are disjoint.
-    #[expect(clippy::too_many_arguments, reason = "the two posed solids and what is asked")]
     fn update(
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,

@@ -1,6 +1,6 @@
 //! Two boxes in the plane, side to side or corner on side, in one go.
 //!
-//! As [`super::box_faces`] in space: the side that the separating axis test names is a stretch along
+//! The side that the separating axis test names is a stretch along
 //! an axis of its own box, the most aligned side of the other box a slanted stretch above it, and the
 //! contact points are the ends of what they share. Of a side that leans too far the lower end alone
 //! counts, the corner that faces the other box. The general builder is the definition, and takes over

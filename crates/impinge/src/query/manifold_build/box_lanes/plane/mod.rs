@@ -1,4 +1,4 @@
-//! Boxes in the plane: `box_sides.rs` and the separating axis test in lanes.
+//! Boxes in 2D: the separating axis test, and the ends of what the two sides share.
 
 mod axis;
 mod names;

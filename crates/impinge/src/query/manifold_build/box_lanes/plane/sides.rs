@@ -1,5 +1,5 @@
-//! The two sides that meet, of eight pairs, and the ends of what they share: those of `box_sides.rs`,
-//! side by side.
+//! The two sides that meet, of eight pairs, and the ends of what they share: side by side. A lone pair of
+//! boxes in the plane takes `box_sides.rs`.
 
 use super::super::admit::{Admission, Slots};
 use super::super::gather::{Boxes, other, tolerance};

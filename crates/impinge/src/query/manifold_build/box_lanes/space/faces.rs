@@ -1,4 +1,5 @@
-//! The two faces that meet, of eight pairs: those of `box_faces.rs`, side by side.
+//! The two faces that meet, of eight pairs side by side: a rectangle of one box, and a face of the other seen along
+//! the normal as a parallelogram.
 
 use super::super::gather::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};

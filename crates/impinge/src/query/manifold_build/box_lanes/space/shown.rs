@@ -1,4 +1,5 @@
-//! What faces show of themselves, of eight pairs: `manifold_build/shown.rs` in lanes.
+//! What the most aligned face of a box shows of itself, of eight pairs, by the rule of `SupportMap::core_feature`: all
+//! of it, the side that comes nearest, or the corner.
 
 use super::clip::SIGNS;
 use crate::math::lanes::lit;
