@@ -11,7 +11,7 @@ use super::overlap::{Candidates, Overlap};
 use super::triangle_face::OnFace;
 use super::{build, choose, face};
 use crate::convex::Separation;
-use crate::math::{Real, Space, Vector, min};
+use crate::math::{Real, Space, Vector, max, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
 use crate::shape::Geometry;
 
@@ -23,8 +23,8 @@ where
 {
     /// Unit, from the first solid to the second.
     pub(in crate::query) normal: Vector<N, D>,
-    /// No two points of the solids are nearer than this: what seems to be is below the surface of
-    /// the face and beside it.
+    /// No two points of the solids are nearer than this: what seems to be by more than rounding is
+    /// below the surface of the face and beside it.
     pub(in crate::query) least: N,
     /// Lengths below this are rounding errors of the pair.
     pub(in crate::query) tolerance: N,
@@ -57,6 +57,9 @@ pub(super) fn build_in_general<N: Space<D>, const D: usize>(
     let mut candidates = Candidates::new();
     let tolerance = fill(pair, along, request, &mut candidates);
     candidates.retain(|candidate| candidate.distance >= along.least - tolerance);
+    for candidate in &mut candidates {
+        candidate.distance = max(candidate.distance, along.least);
+    }
     let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
     if candidates.is_empty() {
         return out.points.clear();

@@ -10,7 +10,7 @@ use super::overlap::Candidates;
 use super::stretch::{Shared, Stretch};
 use super::{Along, Pair, add_witness, ball, deepest, tangents2};
 use crate::convex::Separation;
-use crate::math::{Real, Space};
+use crate::math::{Real, Space, max};
 use crate::query::RawPoint;
 use crate::shape::{FeatureId, Kind};
 
@@ -104,7 +104,10 @@ impl<N: Real> SegmentPair<'_, N> {
             }
         }
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
-        kept.for_each(|candidate| visit(candidate.named(0)));
+        for candidate in kept {
+            let point = candidate.named(0);
+            visit(RawPoint { distance: max(point.distance, along.least), ..point });
+        }
         Some(())
     }
 

@@ -21,7 +21,7 @@ const LEAST_HEIGHT: f64 = 1.0 / 32.0;
 pub(crate) struct OnFace<N: Real, const D: usize> {
     /// That of the face, unit, from the triangle to the solid.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are left out.
+    /// Points nearer than this by more than rounding are left out, others are as near as this.
     pub(crate) least: N,
     /// How near the nearest is, if that is known.
     pub(crate) nearest: Option<N>,
@@ -343,7 +343,7 @@ impl<'a, N: Real> Kept<'a, N> {
         if !is_near || out.points.iter().any(is_old) {
             return;
         }
-        let distance = min(distance, self.asked.prediction);
+        let distance = min(max(distance, self.asked.least), self.asked.prediction);
         self.lowest = min(distance, self.lowest);
         let id = out.ids.next();
         out.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
