@@ -24,8 +24,9 @@ use std::ops::Range;
 pub use motion::{Motion, Wave};
 pub use placement::Placement;
 pub use scenes::{
-    Area, Room, few_moving, mixed_shapes, mixed_sizes, pile, room, sparse_drift, spawn_and_despawn,
-    terrain_field, terrain_mesh, tower,
+    Area, Room, asteroids, crowd, few_moving, mixed_shapes, mixed_sizes, pile, rain, room, sensors,
+    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, tower, trembling_vehicles_field,
+    trembling_vehicles_mesh, vehicles_field, vehicles_mesh,
 };
 pub use shape::SceneShape;
 

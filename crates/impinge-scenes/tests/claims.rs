@@ -1,8 +1,10 @@
 //! What the scenes say of themselves, counted.
 
 use impinge_scenes::{
-    Placement, Scene, SceneQuery, SceneShape, few_moving, mixed_shapes, mixed_sizes, pile, room,
-    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, tower,
+    Placement, Scene, SceneQuery, SceneShape, asteroids, crowd, few_moving, mixed_shapes,
+    mixed_sizes, pile, rain, room, sensors, sparse_drift, spawn_and_despawn, terrain_field,
+    terrain_mesh, tower, trembling_vehicles_field, trembling_vehicles_mesh, vehicles_field,
+    vehicles_mesh,
 };
 
 /// The pairs of living objects whose boxes meet, by sweeping along the first axis.
@@ -215,6 +217,60 @@ fn both_grounds_are_one() {
     );
 }
 
+/// The vertices of the ground that the box vehicles hold in their lower third, and those below or above
+/// their boxes, both in the mean over the boxes.
+fn vertices_under_boxes<const D: usize>(scene: &Scene<D>, step: u32) -> [f64; 2] {
+    let (SceneShape::TriMesh { vertices, .. } | SceneShape::Polyline { vertices }) =
+        &scene.objects[0].shape
+    else {
+        panic!("a mesh")
+    };
+    let (mut held, mut covered, mut boxes) = (0, 0, 0);
+    for (n, object) in scene.objects.iter().enumerate() {
+        let SceneShape::Cuboid { half_extents } = &object.shape else { continue };
+        boxes += 1;
+        for vertex in vertices {
+            let at = local(&scene.placement(n, step), vertex);
+            let is_below = (0..D).all(|i| i == 1 || at[i].abs() <= half_extents[i]);
+            covered += usize::from(is_below);
+            held += usize::from(is_below && (-0.75..-0.25).contains(&at[1]));
+        }
+    }
+    [held, covered].map(|count| count as f64 / f64::from(boxes))
+}
+
+#[test]
+fn vehicles_lie_along_the_ground() {
+    for step in [0, 50, 100] {
+        let [held, covered] = vertices_under_boxes(&vehicles_mesh::<3>(60), step);
+        assert!((30.0..35.0).contains(&covered), "32 cells: {covered} vertices at step {step}");
+        assert!((0.4..0.9).contains(&(held / covered)), "{held} of {covered} at step {step}");
+        let [held, covered] = vertices_under_boxes(&vehicles_mesh::<2>(60), step);
+        assert!((0.4..=1.0).contains(&(held / covered)), "{held} of {covered} at step {step}");
+    }
+    let moves = |scene: &Scene<3>| {
+        let [a, b] = [0, 1].map(|step| scene.placement(7, step).translation);
+        (0..3).map(|i| (b[i] - a[i]) * (b[i] - a[i])).sum::<f64>().sqrt()
+    };
+    assert!((0.009..0.035).contains(&moves(&vehicles_field(60))), "slowly");
+    assert!((1e-5..1e-3).contains(&moves(&trembling_vehicles_field(60))), "in place");
+}
+
+#[test]
+fn densities_of_the_scenes_for_comparison() {
+    let step = 20;
+    let rocks = mean_neighbours(&asteroids::<3>(2000), step);
+    assert!((0.1..0.8).contains(&rocks), "{rocks} rocks near a rock");
+    let people = mean_neighbours(&crowd(2000), step);
+    assert!((1.0..3.0).contains(&people), "{people} people near one");
+    let sensed = mean_neighbours(&sensors::<3>(2000), step);
+    assert!((4.0..15.0).contains(&sensed), "{sensed} neighbours with sensors");
+    let scene = rain::<3>(2000);
+    let solids = Scene { objects: scene.objects[1..].to_vec(), ..scene };
+    let drops = mean_neighbours(&solids, step);
+    assert!((0.02..1.0).contains(&drops), "{drops} drops near a drop");
+}
+
 #[test]
 fn the_room_has_walls_and_areas() {
     let (plane, space) = (room::<2>(), room::<3>());
@@ -269,7 +325,15 @@ fn motion_is_pure_and_bounded() {
         check_motion(|| room::<D>().scene);
         check_motion(|| terrain_mesh::<D>(100));
         check_motion(|| terrain_field::<D>(100));
+        check_motion(|| asteroids::<D>(100));
+        check_motion(|| rain::<D>(100));
+        check_motion(|| sensors::<D>(100));
+        check_motion(|| vehicles_mesh::<D>(50));
+        check_motion(|| vehicles_field::<D>(50));
+        check_motion(|| trembling_vehicles_mesh::<D>(50));
+        check_motion(|| trembling_vehicles_field::<D>(50));
     }
     check::<2>();
     check::<3>();
+    check_motion(|| crowd(100));
 }

@@ -3,7 +3,7 @@
 use super::pile::{axis, edge};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
-use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
+use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
 /// Boxes of half extents 0.35 to 0.65, all moving by 0.01 to 0.09 per step and turning slowly, with
 /// about 3 neighbours each: boxes around them that meet the box around it.
@@ -44,6 +44,18 @@ pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
         }
     }
     Scene { name: "1 % moving", ..scene }
+}
+
+/// The sparse drift, in which every tenth object is a ball of radius 1.5 that asks which others are
+/// within it, without points: some twenty at a time.
+#[must_use]
+pub fn sensors<const D: usize>(count: usize) -> Scene<D> {
+    let mut scene = sparse_drift(count);
+    for object in scene.objects.iter_mut().step_by(10) {
+        object.shape = SceneShape::Ball { radius: 1.5 };
+        object.query = SceneQuery::Proximity { margin: 0.0 };
+    }
+    Scene { name: "sensors", ..scene }
 }
 
 /// The sparse drift with births and deaths: at each step a hundredth of the boxes vanish and as many

@@ -1,16 +1,26 @@
 //! The scenes, by idea. Each is made for a number of objects and is the same for the same number.
 
+mod asteroids;
+mod crowd;
 mod drift;
 mod mixed;
 mod pile;
+mod rain;
 mod room;
 mod terrain;
+mod vehicles;
 
-pub use drift::{few_moving, mixed_sizes, sparse_drift, spawn_and_despawn};
+pub use asteroids::asteroids;
+pub use crowd::crowd;
+pub use drift::{few_moving, mixed_sizes, sensors, sparse_drift, spawn_and_despawn};
 pub use mixed::mixed_shapes;
 pub use pile::{pile, tower};
+pub use rain::rain;
 pub use room::{Area, Room, room};
 pub use terrain::{terrain_field, terrain_mesh};
+pub use vehicles::{
+    trembling_vehicles_field, trembling_vehicles_mesh, vehicles_field, vehicles_mesh,
+};
 
 use crate::SceneQuery;
 

@@ -6,7 +6,7 @@ use crate::random::{Random, root};
 use crate::{Motion, Placement, Scene, SceneObject, SceneShape, Wave, rounded};
 
 /// The width of a cell of the ground, half that of most objects.
-const CELL: f64 = 0.5;
+pub(super) const CELL: f64 = 0.5;
 /// How many cells there are between two hills or valleys.
 const HILL: usize = 16;
 
@@ -40,7 +40,7 @@ fn scene<const D: usize>(count: usize, ground: &Ground<D>, shape: SceneShape<D>)
     Scene { name: "terrain", margin: MARGIN, objects, steps: 100 }
 }
 
-fn solid<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
+pub(super) fn solid<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
     let radius = rounded(random.between(0.3, 0.5));
     match kind {
         0 => SceneShape::Ball { radius },
@@ -87,14 +87,14 @@ fn standing<const D: usize>(
 }
 
 /// Heights over a grid that is centred at the origin.
-struct Ground<const D: usize> {
+pub(super) struct Ground<const D: usize> {
     /// Rows and columns of vertices.
-    counts: [usize; 2],
+    pub(super) counts: [usize; 2],
     heights: Vec<f64>,
 }
 
 impl<const D: usize> Ground<D> {
-    fn new(count: usize, random: &mut Random) -> Self {
+    pub(super) fn new(count: usize, random: &mut Random) -> Self {
         let counts = if D < 3 {
             [1, 10 * count.max(1) + 1]
         } else {
@@ -112,7 +112,7 @@ impl<const D: usize> Ground<D> {
     }
 
     /// Rows lie along the third axis.
-    fn extents(&self) -> [f64; D] {
+    pub(super) fn extents(&self) -> [f64; D] {
         std::array::from_fn(|axis| match axis {
             0 => (self.counts[1] - 1) as f64 * CELL,
             1 => 1.0,
@@ -120,7 +120,7 @@ impl<const D: usize> Ground<D> {
         })
     }
 
-    fn vertex(&self, [row, column]: [usize; 2]) -> [f64; D] {
+    pub(super) fn vertex(&self, [row, column]: [usize; 2]) -> [f64; D] {
         let extents = self.extents();
         std::array::from_fn(|axis| match axis {
             0 => column as f64 * CELL - 0.5 * extents[0],
@@ -129,12 +129,12 @@ impl<const D: usize> Ground<D> {
         })
     }
 
-    fn field(&self) -> SceneShape<D> {
+    pub(super) fn field(&self) -> SceneShape<D> {
         let heights = self.heights.clone();
         SceneShape::HeightField { counts: self.counts, heights, extents: self.extents() }
     }
 
-    fn mesh(&self) -> SceneShape<D> {
+    pub(super) fn mesh(&self) -> SceneShape<D> {
         let [rows, columns] = self.counts;
         let points = (0..rows).flat_map(|row| (0..columns).map(move |column| [row, column]));
         let vertices = points.map(|at| self.vertex(at)).collect();
@@ -158,7 +158,7 @@ impl<const D: usize> Ground<D> {
 
     /// A place at most half a cell along the ground from a vertex and as high, no nearer to the border
     /// than an object is wide.
-    fn somewhere(&self, random: &mut Random) -> [f64; D] {
+    pub(super) fn somewhere(&self, random: &mut Random) -> [f64; D] {
         let border = 3;
         let mut vertex = |count: usize| {
             border.min(count / 2) + random.below(count.saturating_sub(2 * border).max(1))

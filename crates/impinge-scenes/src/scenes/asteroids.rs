@@ -1,0 +1,51 @@
+//! Rocks that float far from one another.
+
+use super::pile::{axis, edge};
+use super::{MARGIN, NEAR_CONTACTS};
+use crate::random::Random;
+use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
+
+/// Convex solids of 12 to 19 points and of radii from 0.4 to 2, most of them small, that move by 0.005
+/// to 0.03 per step, turn slowly and are reflected at the walls of their space. About every third has
+/// another near it: a box around it that meets its own.
+#[must_use]
+pub fn asteroids<const D: usize>(count: usize) -> Scene<D> {
+    let random = &mut Random::new(9);
+    let edge = edge::<D>(count, (0..D).fold(1.0, |space, _| space * SPACING));
+    let objects = (0..count).map(|_| floating(edge, random)).collect();
+    Scene { name: "asteroids", margin: MARGIN, objects, steps: 100 }
+}
+
+/// The space per rock is a cube of this edge, six times the radius of a middling one.
+const SPACING: f64 = 6.0;
+
+fn floating<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
+    // The square has small ones more often.
+    let share = random.unit();
+    let radius = 0.4 + 1.6 * share * share;
+    let speed = random.between(0.005, 0.03);
+    let velocity = random.direction::<D>().map(|x| x * speed);
+    let place = velocity.map(|v| Wave::new((0.0, edge), random.between(0.0, edge), v));
+    let tangent = Wave::new((-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.001, 0.01));
+    let motion = Motion { axis: axis::<D>(random), tangent, ..Motion::translation(place) };
+    SceneObject::new(SceneShape::Convex { points: rock(radius, random) }, NEAR_CONTACTS, motion)
+}
+
+/// The tips of a cross along the axes, so that all dimensions are spanned, and points between, each at
+/// 0.7 to 1 times the radius.
+fn rock<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
+    let count = 12 + random.below(8);
+    let points = (0..count).map(|n| {
+        let distance = radius * random.between(0.7, 1.0);
+        let direction = if n < 2 * D { tip(n) } else { random.direction() };
+        direction.map(|x| rounded(x * distance))
+    });
+    points.collect()
+}
+
+/// The directions along the axes, to and fro.
+fn tip<const D: usize>(n: usize) -> [f64; D] {
+    let mut tip = [0.0; D];
+    tip[n / 2] = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
+    tip
+}
