@@ -10,7 +10,7 @@ use super::{Lane, race_worlds};
 use crate::Arguments;
 use crate::build::world::{self, World};
 use crate::table::Table;
-use crate::world::contender::{Contender, Entrant, KINDS, Reading, race};
+use crate::world::contender::{Change, Contender, Entrant, KINDS, Reading, race};
 use crate::world::rapier::{plane, space};
 use crate::world::{asking_for_contacts, ours};
 
@@ -121,8 +121,8 @@ where
 }
 
 impl<W: Contender<D> + Send + Sync, const D: usize> Contender<D> for Pooled<W> {
-    fn prepare(&mut self, moved: &[(usize, impinge_scenes::Placement<D>)]) {
-        self.world.prepare(moved);
+    fn prepare(&mut self, change: &Change<D>) {
+        self.world.prepare(change);
     }
 
     fn step(&mut self) {

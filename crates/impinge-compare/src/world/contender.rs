@@ -8,9 +8,9 @@ use crate::table::Row;
 /// A world that is compared with another.
 pub trait Contender<const D: usize> {
     /// Converts the new placements of some objects; not timed.
-    fn prepare(&mut self, moved: &[(usize, Placement<D>)]);
+    fn prepare(&mut self, change: &Change<D>);
 
-    /// Hands over the new poses and updates; timed.
+    /// Removes and adds objects, hands over the new poses and updates; timed.
     fn step(&mut self);
 
     /// Reads every contact point; timed.
@@ -28,6 +28,35 @@ pub trait Contender<const D: usize> {
 
     /// The pairs with a contact point, smaller index first, sorted; not timed.
     fn touching(&self) -> Vec<(usize, usize)>;
+}
+
+/// What happens to the objects of a scene between a step and the next.
+#[derive(Clone, Debug, Default)]
+pub struct Change<const D: usize> {
+    /// Those that are there no more.
+    pub gone: Vec<usize>,
+    /// Those that are new, and where.
+    pub born: Vec<(usize, Placement<D>)>,
+    /// Those that are elsewhere, and where.
+    pub moved: Vec<(usize, Placement<D>)>,
+}
+
+impl<const D: usize> Change<D> {
+    /// What is not at a step as at the step before; nothing at step 0, where the worlds are made.
+    fn at(scene: &Scene<D>, step: u32) -> Self {
+        let mut change = Self::default();
+        let Some(before) = step.checked_sub(1) else { return change };
+        for n in 0..scene.objects.len() {
+            let now = scene.placement(n, step);
+            match [before, step].map(|step| scene.is_alive(n, step)) {
+                [true, false] => change.gone.push(n),
+                [false, true] => change.born.push((n, now)),
+                [true, true] if now != scene.placement(n, before) => change.moved.push((n, now)),
+                _ => {}
+            }
+        }
+        change
+    }
 }
 
 /// A world and its name in the table.
@@ -82,9 +111,9 @@ pub fn race<const D: usize>(
     let count = entrants.len();
     let mut lanes = vec![Lane::default(); count];
     for step in 0..=steps {
-        let moved = moved(scene, step);
+        let change = Change::at(scene, step);
         for n in (0..count).map(|n| (n + step as usize) % count) {
-            lanes[n].step(&mut *entrants[n].world, &moved, step > 0);
+            lanes[n].step(&mut *entrants[n].world, &change, step > 0);
         }
         if step % 10 == 0 {
             compare(&entrants, &mut lanes);
@@ -101,10 +130,10 @@ impl Lane {
     fn step<const D: usize>(
         &mut self,
         contender: &mut dyn Contender<D>,
-        moved: &[(usize, Placement<D>)],
+        change: &Change<D>,
         is_kept: bool,
     ) {
-        contender.prepare(moved);
+        contender.prepare(change);
         let update = contender.timed_step();
         let (read, reading) = contender.timed_read();
         assert!(reading.depth.is_finite(), "{} points of no depth", reading.points);
@@ -124,13 +153,6 @@ impl Lane {
             times: self.times[kind].clone(),
         }
     }
-}
-
-/// The objects that are elsewhere than at the step before; none at step 0, where the worlds are made.
-fn moved<const D: usize>(scene: &Scene<D>, step: u32) -> Vec<(usize, Placement<D>)> {
-    let Some(before) = step.checked_sub(1) else { return Vec::new() };
-    let now = (0..scene.objects.len()).map(|n| (n, scene.placement(n, step)));
-    now.filter(|(n, placement)| *placement != scene.placement(*n, before)).collect()
 }
 
 /// Notes by how many touching pairs each differs from the first, in the worst of the steps compared.

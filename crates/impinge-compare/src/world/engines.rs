@@ -1,9 +1,9 @@
 //! The engines of `impinge-compare-c` as contenders.
 
-use impinge_scenes::{Placement, Scene};
+use impinge_scenes::{Scene, SceneQuery};
 
 use super::PREDICTION;
-use super::contender::{Contender, Reading};
+use super::contender::{Change, Contender, Reading};
 
 /// A world of Box2D, if it has all shapes of the scene.
 #[cfg(feature = "box2d")]
@@ -11,6 +11,9 @@ pub fn box2d(
     scene: &Scene<2>,
     recycling: impinge_compare_c::Recycling,
 ) -> Option<Box<dyn Contender<2>>> {
+    if !is_played(scene) {
+        return None;
+    }
     Some(Box::new(impinge_compare_c::Box2d::new(scene, recycling)?))
 }
 
@@ -20,13 +23,26 @@ pub fn box3d(
     scene: &Scene<3>,
     recycling: impinge_compare_c::Recycling,
 ) -> Option<Box<dyn Contender<3>>> {
+    if !is_played(scene) {
+        return None;
+    }
     Some(Box::new(impinge_compare_c::Box3d::new(scene, recycling)?))
 }
 
 /// A world of Jolt, whose edges are rounded by a radius, if it has all shapes of the scene.
 #[cfg(feature = "jolt")]
 pub fn jolt(scene: &Scene<3>, convex_radius: f32) -> Option<Box<dyn Contender<3>>> {
+    if !is_played(scene) {
+        return None;
+    }
     Some(Box::new(impinge_compare_c::Jolt::new(scene, PREDICTION, convex_radius)?))
+}
+
+/// Whether the engines are driven through such a scene: no object comes or goes, and all ask for contacts.
+fn is_played<const D: usize>(scene: &Scene<D>) -> bool {
+    scene.objects.iter().all(|object| {
+        object.alive == (0..u32::MAX) && matches!(object.query, SceneQuery::Contacts { .. })
+    })
 }
 
 /// All engines have the same methods.
@@ -34,8 +50,8 @@ macro_rules! contender {
     ($engine:ident, $feature:literal, $dimension:literal) => {
         #[cfg(feature = $feature)]
         impl Contender<$dimension> for impinge_compare_c::$engine {
-            fn prepare(&mut self, moved: &[(usize, Placement<$dimension>)]) {
-                self.prepare(moved);
+            fn prepare(&mut self, change: &Change<$dimension>) {
+                self.prepare(&change.moved);
             }
 
             fn step(&mut self) {

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
-use impinge::query::ManifoldView;
+use impinge::query::{ManifoldView, Proximity};
 use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, HeightField, Plane, Polyline,
     Segment, ShapeHandle, TriMesh, Triangle,
@@ -14,7 +14,7 @@ use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
 use super::PREDICTION;
-use super::contender::{Contender, Reading};
+use super::contender::{Change, Contender, Reading};
 
 type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
@@ -25,8 +25,18 @@ where
 {
     world: CollisionWorld<f32, D, usize>,
     isometry: fn(&Placement<D>) -> Isometry<D>,
-    handles: Vec<CollisionObjectHandle>,
+    parts: Vec<Part<D>>,
+    /// By number; none of objects that are not there.
+    handles: Vec<Option<CollisionObjectHandle>>,
+    gone: Vec<CollisionObjectHandle>,
+    born: Vec<(usize, Isometry<D>)>,
     moved: Vec<(CollisionObjectHandle, Isometry<D>)>,
+}
+
+/// What an object is wherever it is.
+struct Part<const D: usize> {
+    shape: ShapeHandle<f32, D>,
+    query: GeometricQueryType<f32>,
 }
 
 /// A world in the plane with the objects of a scene as they are at step 0.
@@ -88,20 +98,36 @@ where
         particular: fn(&SceneShape<D>) -> ShapeHandle<f32, D>,
         isometry: fn(&Placement<D>) -> Isometry<D>,
     ) -> Self {
-        let mut world = CollisionWorld::new(scene.margin as f32);
-        let handles = scene.objects.iter().enumerate().map(|(n, object)| {
+        let parts = scene.objects.iter().map(|object| {
             let query = match object.query {
                 SceneQuery::Contacts { linear, angular } => {
                     GeometricQueryType::Contacts(linear as f32, angular as f32)
                 }
                 SceneQuery::Proximity { margin } => GeometricQueryType::Proximity(margin as f32),
             };
-            let position = isometry(&scene.placement(n, 0));
             let shape = common(&object.shape).unwrap_or_else(|| particular(&object.shape));
-            world.add(position, shape, CollisionGroups::new(), query, n)
+            Part { shape, query }
         });
-        let handles = handles.collect();
-        Self { world, isometry, handles, moved: Vec::new() }
+        let mut made = Self {
+            world: CollisionWorld::new(scene.margin as f32),
+            isometry,
+            parts: parts.collect(),
+            handles: vec![None; scene.objects.len()],
+            gone: Vec::new(),
+            born: Vec::new(),
+            moved: Vec::new(),
+        };
+        for n in (0..scene.objects.len()).filter(|n| scene.is_alive(*n, 0)) {
+            made.add(n, isometry(&scene.placement(n, 0)));
+        }
+        made
+    }
+
+    fn add(&mut self, number: usize, position: Isometry<D>) {
+        let Part { shape, query } = &self.parts[number];
+        let groups = CollisionGroups::new();
+        let handle = self.world.add(position, shape.clone(), groups, *query, number);
+        self.handles[number] = Some(handle);
     }
 
     /// The same, where pairs keep their contacts until they have moved by half of the prediction.
@@ -184,13 +210,25 @@ impl<const D: usize> Contender<D> for Impinge<D>
 where
     f32: Space<D>,
 {
-    fn prepare(&mut self, moved: &[(usize, Placement<D>)]) {
-        self.moved.clear();
-        let poses = moved.iter().map(|(n, at)| (self.handles[*n], (self.isometry)(at)));
-        self.moved.extend(poses);
+    fn prepare(&mut self, change: &Change<D>) {
+        let Self { isometry, handles, gone, born, moved, .. } = self;
+        gone.clear();
+        born.clear();
+        moved.clear();
+        gone.extend(change.gone.iter().filter_map(|n| handles[*n].take()));
+        born.extend(change.born.iter().map(|(n, at)| (*n, isometry(at))));
+        let poses = change.moved.iter().filter_map(|(n, at)| Some((handles[*n]?, isometry(at))));
+        moved.extend(poses);
     }
 
     fn step(&mut self) {
+        if !self.gone.is_empty() {
+            self.world.remove(&self.gone);
+        }
+        for at in 0..self.born.len() {
+            let (number, isometry) = self.born[at];
+            self.add(number, isometry);
+        }
         for (handle, isometry) in &self.moved {
             self.world.set_position(*handle, *isometry);
         }
@@ -204,6 +242,9 @@ where
     fn touching(&self) -> Vec<(usize, usize)> {
         let touching = self.world.contact_views();
         let mut pairs: Vec<_> = touching.map(|(a, b, _)| (*a.data(), *b.data())).collect();
+        let near = self.world.proximity_pairs();
+        let met = near.filter(|(_, _, pair)| pair.proximity() == Proximity::Intersecting);
+        pairs.extend(met.map(|(a, b, _)| (*a.data(), *b.data())));
         for pair in &mut pairs {
             *pair = (pair.0.min(pair.1), pair.0.max(pair.1));
         }

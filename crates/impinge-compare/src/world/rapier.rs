@@ -6,10 +6,10 @@
 //! fixed, and fixed ones ignore one another otherwise), the workspace kept between steps, no hooks
 //! and no events. Its boxes are loosened by 0.04, as those of the scenes are.
 
-use impinge_scenes::{Placement, Scene, SceneShape};
+use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
 use super::PREDICTION;
-use super::contender::{Contender, Reading};
+use super::contender::{Change, Contender, Reading};
 
 /// rapier in the plane.
 pub mod plane {

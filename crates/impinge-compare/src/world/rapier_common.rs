@@ -28,10 +28,25 @@ impl Colliders {
     /// One more, which may touch every other.
     pub fn add(&mut self, collider: ColliderBuilder) {
         let number = self.handles.len();
-        let collider = collider
-            .active_collision_types(ActiveCollisionTypes::all())
-            .user_data(number as u128);
-        self.handles.push(self.colliders.insert(collider));
+        self.handles.push(ColliderHandle::invalid());
+        self.put(number, numbered(collider, number));
+    }
+
+    /// A number for one that is not there yet.
+    pub fn skip(&mut self) {
+        self.handles.push(ColliderHandle::invalid());
+    }
+
+    /// One that was [`numbered`], under its number.
+    pub fn put(&mut self, number: usize, collider: Collider) {
+        self.handles[number] = self.colliders.insert(collider);
+    }
+
+    /// One of them less.
+    pub fn remove(&mut self, number: usize) {
+        let handle = std::mem::replace(&mut self.handles[number], ColliderHandle::invalid());
+        let Self { islands, bodies, colliders, .. } = self;
+        colliders.remove(handle, islands, bodies, &mut SoftBodySet::new(), false);
     }
 
     /// One of them, to be moved.
@@ -76,6 +91,11 @@ impl Colliders {
         };
         let pairs = self.narrow_phase.contact_pairs().filter(near);
         let mut pairs: Vec<_> = pairs.map(numbers).collect();
+        for (collider1, collider2, _) in self.narrow_phase.intersection_pairs().filter(|met| met.2)
+        {
+            let (a, b) = (self.number(collider1), self.number(collider2));
+            pairs.push((a.min(b), a.max(b)));
+        }
         pairs.sort_unstable();
         pairs
     }
@@ -85,30 +105,56 @@ impl Colliders {
     }
 }
 
+/// A collider that may touch every other and knows its number.
+fn numbered(collider: ColliderBuilder, number: usize) -> Collider {
+    collider.active_collision_types(ActiveCollisionTypes::all()).user_data(number as u128).build()
+}
+
 /// The objects of a scene, and where they go next.
 pub struct Rapier {
     colliders: Colliders,
+    builders: Vec<ColliderBuilder>,
+    gone: Vec<usize>,
+    born: Vec<(usize, Collider)>,
     moved: Vec<(usize, Pose)>,
 }
 
 impl Rapier {
-    /// A world with the objects of a scene as they are at step 0.
+    /// A world with the objects of a scene as they are at step 0. Those that ask for proximity are
+    /// sensors; their margin is not to be had.
     pub fn new(scene: &Scene<DIM>) -> Self {
-        let mut colliders = Colliders::new();
+        let (mut colliders, mut builders) = (Colliders::new(), Vec::new());
         for (n, object) in scene.objects.iter().enumerate() {
-            colliders.add(builder(&object.shape).position(pose(&scene.placement(n, 0))));
+            let is_sensor = matches!(object.query, SceneQuery::Proximity { .. });
+            let builder = builder(&object.shape).sensor(is_sensor);
+            if scene.is_alive(n, 0) {
+                colliders.add(builder.clone().position(pose(&scene.placement(n, 0))));
+            } else {
+                colliders.skip();
+            }
+            builders.push(builder);
         }
-        Self { colliders, moved: Vec::new() }
+        Self { colliders, builders, gone: Vec::new(), born: Vec::new(), moved: Vec::new() }
     }
 }
 
 impl Contender<DIM> for Rapier {
-    fn prepare(&mut self, moved: &[(usize, Placement<DIM>)]) {
+    fn prepare(&mut self, change: &Change<DIM>) {
+        self.gone.clone_from(&change.gone);
+        let born = change
+            .born
+            .iter()
+            .map(|(n, at)| (*n, numbered(self.builders[*n].clone().position(pose(at)), *n)));
+        self.born = born.collect();
         self.moved.clear();
-        self.moved.extend(moved.iter().map(|(n, placement)| (*n, pose(placement))));
+        self.moved.extend(change.moved.iter().map(|(n, placement)| (*n, pose(placement))));
     }
 
     fn step(&mut self) {
+        self.gone.iter().for_each(|n| self.colliders.remove(*n));
+        for (n, collider) in self.born.drain(..) {
+            self.colliders.put(n, collider);
+        }
         for (n, pose) in &self.moved {
             self.colliders.get_mut(*n).set_position(*pose);
         }
