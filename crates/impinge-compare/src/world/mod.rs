@@ -16,7 +16,8 @@
 //! moved by half of the prediction.
 //!
 //! # Rivals
-//! rapier's `CollisionPipeline`, made for the same purpose as our world, runs everywhere.
+//! rapier's `CollisionPipeline`, made for the same purpose as our world, runs everywhere, and so does
+//! parry's tree with a map of pairs and parry's manifolds, as one would write it oneself.
 //!
 //! The rest are engines with dynamics, each behind a feature of its name, all of them behind `c`.
 //! `impinge-compare-c` says how each is driven and what of its dynamics is left: of Box2D and Box3D
@@ -43,6 +44,7 @@ pub mod contender;
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
 mod engines;
 pub mod ours;
+mod parry_tree;
 pub mod rapier;
 
 #[cfg(feature = "jolt")]
@@ -76,6 +78,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
         ("impinge reusing", |scene| Some(Box::new(ours::plane(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::plane::Rapier::new(scene)))),
+        ("parry+tree", |scene| Some(Box::new(parry_tree::plane::ParryTree::new(scene)))),
         #[cfg(feature = "box2d")]
         ("box2d", |scene| engines::box2d(scene, Recycling::Off)),
         #[cfg(feature = "box2d")]
@@ -85,6 +88,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         ("impinge", |scene| Some(Box::new(ours::space(scene)))),
         ("impinge reusing", |scene| Some(Box::new(ours::space(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::space::Rapier::new(scene)))),
+        ("parry+tree", |scene| Some(Box::new(parry_tree::space::ParryTree::new(scene)))),
         #[cfg(feature = "box3d")]
         ("box3d", |scene| engines::box3d(scene, Recycling::Off)),
         #[cfg(feature = "box3d")]

@@ -1,8 +1,10 @@
 // The constructors of the plane; included by `rapier.rs`.
 
-const DIM: usize = 2;
+/// The number of dimensions.
+pub const DIM: usize = 2;
 
-fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
+/// A shape of a scene.
+pub fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
     match shape {
         SceneShape::Ball { radius } => ColliderBuilder::ball(*radius as f32),
         SceneShape::Cuboid { half_extents: [x, y] } => {
@@ -46,7 +48,8 @@ fn vector(v: &[f64; 2]) -> Vector {
     Vector::from(v.map(|x| x as f32))
 }
 
-fn pose(placement: &Placement<2>) -> Pose {
+/// A placement of a scene.
+pub fn pose(placement: &Placement<2>) -> Pose {
     let [x, y] = placement.translation.map(|x| x as f32);
     let [cosine, sine] = placement.complex().map(|x| x as f32);
     Pose::from_parts(Vector::new(x, y), Rotation::from_cos_sin_unchecked(cosine, sine))

@@ -1,8 +1,10 @@
 // The constructors of space; included by `rapier.rs`.
 
-const DIM: usize = 3;
+/// The number of dimensions.
+pub const DIM: usize = 3;
 
-fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
+/// A shape of a scene.
+pub fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
     match shape {
         SceneShape::Ball { radius } => ColliderBuilder::ball(*radius as f32),
         SceneShape::Cuboid { half_extents: [x, y, z] } => {
@@ -55,7 +57,8 @@ fn vector(v: &[f64; 3]) -> Vector {
     Vector::from(v.map(|x| x as f32))
 }
 
-fn pose(placement: &Placement<3>) -> Pose {
+/// A placement of a scene.
+pub fn pose(placement: &Placement<3>) -> Pose {
     let [x, y, z] = placement.translation.map(|x| x as f32);
     let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
     Pose::from_parts(Vector::new(x, y, z), Rotation::from_xyzw(i, j, k, w))
