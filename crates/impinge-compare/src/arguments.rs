@@ -10,6 +10,9 @@ pub struct Arguments {
     pub least: usize,
     /// How many steps or rounds make a run.
     pub steps: u32,
+    /// In the suite `world`, the sum over a pair of the angular predictions in radians; impinge alone
+    /// has one.
+    pub angular: f64,
     /// The folder below `bench/`.
     pub machine: String,
     /// What the words of a case have to contain.
@@ -27,11 +30,11 @@ impl Arguments {
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || words.next().unwrap_or_else(|| usage(&word, known));
-            let number = |text: String| text.parse().unwrap_or_else(|_| usage(&text, known));
             match word.as_str() {
-                "--objects" => arguments.objects = number(value()) as usize,
-                "--from" => arguments.least = number(value()) as usize,
-                "--steps" => arguments.steps = number(value()),
+                "--objects" => arguments.objects = parsed(&value(), known),
+                "--from" => arguments.least = parsed(&value(), known),
+                "--steps" => arguments.steps = parsed(&value(), known),
+                "--angular" => arguments.angular = parsed(&value(), known),
                 "--machine" => arguments.machine = value(),
                 "--case" => arguments.case = value(),
                 "--only" => arguments.only = value(),
@@ -70,9 +73,9 @@ impl Arguments {
         self.only == "impinge"
     }
 
-    /// Whether all contenders run in all cases.
-    pub const fn is_whole(&self) -> bool {
-        self.only.is_empty() && self.case.is_empty() && self.least == 0
+    /// Whether all contenders run in all cases, with the usual prediction.
+    pub fn is_whole(&self) -> bool {
+        self.only.is_empty() && self.case.is_empty() && self.least == 0 && self.angular == 0.0
     }
 }
 
@@ -82,6 +85,7 @@ impl Default for Arguments {
             objects: 10_000,
             least: 0,
             steps: 100,
+            angular: 0.0,
             machine: "local".to_owned(),
             case: String::new(),
             only: String::new(),
@@ -90,11 +94,17 @@ impl Default for Arguments {
     }
 }
 
+/// What a word says; ends the program if it is not understood.
+fn parsed<T: std::str::FromStr>(word: &str, known: &[&str]) -> T {
+    word.parse().unwrap_or_else(|_| usage(word, known))
+}
+
 /// Says what is understood, and ends the program.
 pub fn usage(word: &str, suites: &[&str]) -> ! {
     eprintln!("{word} is not understood");
     eprintln!("usage: impinge-compare SUITE... [--objects N] [--from N] [--steps N]");
     eprintln!("                       [--machine NAME] [--only NAME] [--case TEXT]");
+    eprintln!("                       [--angular RADIANS]");
     eprintln!("       impinge-compare accuracy [samples]");
     eprintln!("suites: {}", suites.join(" "));
     std::process::exit(2)

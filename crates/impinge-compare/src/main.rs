@@ -7,8 +7,9 @@
 //! are those of the thread's processor, median, minimum and the ninetieth percentile.
 //!
 //! `--only` leaves the contenders whose name contains a text, so that one can be profiled alone,
-//! `--case` the cases whose words do, `--from` those of so many objects at least. Such tables are not
-//! whole and are not written.
+//! `--case` the cases whose words do, `--from` those of so many objects at least. `--angular` has the
+//! scenes of the suite `world` ask for contacts with an angular prediction, in radians. Such tables are not
+//! whole, or not the usual ones, and are not written.
 //!
 //! To be run twice, for the processor that Rust assumes and for the one that is there:
 //!

@@ -34,7 +34,7 @@ impl Table {
     pub fn new(suite: &'static str, unit: &'static str) -> Self {
         println!("\n{suite}, {unit}; the ratio is to impinge");
         println!(
-            "{:<44} {:<18} {:>9} {:>7} {:>11} {:>11} {:>11} {:>7}",
+            "{:<56} {:<18} {:>9} {:>7} {:>11} {:>11} {:>11} {:>7}",
             "case", "contender", "answers", "differ", "median", "minimum", "p90", "ratio"
         );
         Self { suite, unit, rows: Vec::new() }
@@ -47,7 +47,7 @@ impl Table {
             let base = first.map_or(f64::NAN, |first| first.times.median());
             let [median, minimum, p90] = [50, 0, 90].map(|percent| row.times.quantile(percent));
             println!(
-                "{:<44} {:<18} {:>9} {:>7} {median:>11.4} {minimum:>11.4} {p90:>11.4} {:>7.2}",
+                "{:<56} {:<18} {:>9} {:>7} {median:>11.4} {minimum:>11.4} {p90:>11.4} {:>7.2}",
                 row.case,
                 row.contender,
                 row.answers,

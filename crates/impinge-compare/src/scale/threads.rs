@@ -58,7 +58,7 @@ fn run_scene<const D: usize>(
     if !cases.iter().any(|case| arguments.wants_case(case)) {
         return;
     }
-    let scene = asking_for_contacts(make(count));
+    let scene = asking_for_contacts(make(count), 0.0);
     let [ours1, theirs1] = contenders(&scene, 1);
     let [ours2, theirs2] = contenders(&scene, 2);
     let all = [

@@ -12,6 +12,14 @@
 //! height field. Their size follows `--objects`. The pile and the mesh come a second time, trembling: all
 //! move, by a hundredth of that.
 //!
+//! Then boxes, hulls and capsules as large as vehicles, a twentieth of `--objects`, each on dozens of the
+//! triangles of a mesh or a height field, driving slowly or trembling in place by 0.001; a rain of solids;
+//! rocks that float far apart; sensors, which ask for proximity, among boxes that drift; churn, where a
+//! hundredth of the boxes is removed and as many are added at each step; and, in the plane, a crowd.
+//!
+//! `--angular` has all ask for contacts with an angular prediction. The rivals have none: they answer
+//! what they always do.
+//!
 //! Everything is computed anew in "impinge". In "impinge reusing" pairs keep their contacts until they have
 //! moved by half of the prediction.
 //!
@@ -22,7 +30,8 @@
 //! The rest are engines with dynamics, each behind a feature of its name, all of them behind `c`.
 //! `impinge-compare-c` says how each is driven and what of its dynamics is left: of Box2D and Box3D
 //! nothing but their lists of islands and constraints, of Jolt two passes over the bodies. They lack
-//! planes, single triangles or segments and are absent from the mixed shapes.
+//! planes, single triangles or segments and are absent from the mixed shapes, and they are not driven
+//! through sensors and churn.
 //!
 //! - Box2D and Box3D (through `boxdd-sys`, `boxddd-sys`): compiled with `-O3 -DNDEBUG`. They run twice:
 //!   computing each contact anew, as we do, and, called recycling, as by default, where the points of a
@@ -54,8 +63,9 @@ use impinge_compare_c::Recycling;
 
 use contender::{Contender, Entrant, KINDS, race};
 use impinge_scenes::{
-    Motion, Scene, SceneQuery, few_moving, mixed_shapes, pile, sparse_drift, terrain_field,
-    terrain_mesh,
+    Motion, Scene, SceneQuery, asteroids, crowd, few_moving, mixed_shapes, pile, rain, sensors,
+    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, trembling_vehicles_field,
+    trembling_vehicles_mesh, vehicles_field, vehicles_mesh,
 };
 
 use crate::Arguments;
@@ -68,8 +78,28 @@ pub const PREDICTION: f32 = 0.002;
 /// Makes a world with the objects of a scene as they are at step 0; none where it lacks a shape.
 type Maker<const D: usize> = fn(&Scene<D>) -> Option<Box<dyn Contender<D>>>;
 
-/// A scene by name: how it is made, and how many times the objects asked for it has.
-type Stage<const D: usize> = (&'static str, fn(usize) -> Scene<D>, usize);
+/// A scene of the suite.
+struct Stage<const D: usize> {
+    name: &'static str,
+    /// Makes it, of so many objects.
+    make: fn(usize) -> Scene<D>,
+    /// How many objects it has where so many are asked for.
+    count: fn(usize) -> usize,
+    /// Whether those of its objects that ask for proximity still do; elsewhere all ask for contacts.
+    has_sensors: bool,
+}
+
+impl<const D: usize> Stage<D> {
+    /// As many objects as are asked for, all of which ask for contacts.
+    const fn new(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { name, make, count: |objects| objects, has_sensors: false }
+    }
+
+    /// A twentieth of the objects that are asked for, at least one.
+    const fn large(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { count: |objects| objects.div_ceil(20), ..Self::new(name, make) }
+    }
+}
 
 /// Runs all scenes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
@@ -98,22 +128,31 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         #[cfg(feature = "jolt")]
         ("jolt rounded", |scene| engines::jolt(scene, Jolt::CONVEX_RADIUS)),
     ];
-    run_stages(plane, arguments, &mut table);
-    run_stages(space, arguments, &mut table);
+    run_stages(plane, &stages(), arguments, &mut table);
+    run_stages(plane, &[Stage::new("crowd", crowd)], arguments, &mut table);
+    run_stages(space, &stages(), arguments, &mut table);
     vec![table]
 }
 
 /// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
-fn stages<const D: usize>() -> [Stage<D>; 8] {
+fn stages<const D: usize>() -> [Stage<D>; 16] {
     [
-        ("pile", pile, 1),
-        ("sparse drift", sparse_drift, 10),
-        ("1 % moving", few_moving, 1),
-        ("mixed shapes", mixed_shapes, 1),
-        ("terrain mesh", terrain_mesh, 1),
-        ("terrain field", terrain_field, 1),
-        ("trembling pile", |count| trembling(pile(count)), 1),
-        ("trembling terrain", |count| trembling(terrain_mesh(count)), 1),
+        Stage::new("pile", pile),
+        Stage { count: |objects| 10 * objects, ..Stage::new("sparse drift", sparse_drift) },
+        Stage::new("1 % moving", few_moving),
+        Stage::new("mixed shapes", mixed_shapes),
+        Stage::new("terrain mesh", terrain_mesh),
+        Stage::new("terrain field", terrain_field),
+        Stage::new("trembling pile", |count| trembling(pile(count))),
+        Stage::new("trembling terrain", |count| trembling(terrain_mesh(count))),
+        Stage::large("vehicles on mesh", vehicles_mesh),
+        Stage::large("vehicles on field", vehicles_field),
+        Stage::large("trembling vehicles on mesh", trembling_vehicles_mesh),
+        Stage::large("trembling vehicles on field", trembling_vehicles_field),
+        Stage::new("rain", rain),
+        Stage::new("asteroids", asteroids),
+        Stage { has_sensors: true, ..Stage::new("sensors", sensors) },
+        Stage::new("churn", spawn_and_despawn),
     ]
 }
 
@@ -127,16 +166,24 @@ fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
 
 fn run_stages<const D: usize>(
     makers: &[(&'static str, Maker<D>)],
+    stages: &[Stage<D>],
     arguments: &Arguments,
     table: &mut Table,
 ) {
-    for (name, make, factor) in stages() {
-        let count = factor * arguments.objects;
-        let cases = KINDS.map(|kind| format!("{name} {D}D, {count}: {kind}"));
+    let angular = arguments.angular;
+    let angle = if angular == 0.0 { String::new() } else { format!(", {angular} rad") };
+    for Stage { name, make, count, has_sensors } in stages {
+        let count = count(arguments.objects);
+        let cases = KINDS.map(|kind| format!("{name} {D}D, {count}{angle}: {kind}"));
         if !cases.iter().any(|case| arguments.wants_case(case)) {
             continue;
         }
-        let scene = asking_for_contacts(make(count));
+        let scene = make(count);
+        let scene = if *has_sensors {
+            predicting(scene, angular)
+        } else {
+            asking_for_contacts(scene, angular)
+        };
         let wanted = makers.iter().filter(|(name, _)| arguments.wants_contender(name));
         let made = wanted.filter_map(|(name, make)| Some(Entrant { name, world: make(&scene)? }));
         let mut rows = race(&scene, made.collect(), arguments.steps, &cases);
@@ -145,12 +192,22 @@ fn run_stages<const D: usize>(
     }
 }
 
-/// The same scene, in which the sum over a pair of what is asked for is the prediction.
-/// The same scene, all of whose objects ask for contacts.
-pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
+/// The same scene, all of whose objects ask for contacts, with these predictions.
+pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
+    for object in &mut scene.objects {
+        object.query = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
+    }
+    predicting(scene, angular)
+}
+
+/// The same scene, in which the sums over a pair of what is asked for are the prediction and an angle in
+/// radians, where contacts are asked for.
+fn predicting<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
     let linear = f64::from(PREDICTION) / 2.0;
     for object in &mut scene.objects {
-        object.query = SceneQuery::Contacts { linear, angular: 0.0 };
+        if matches!(object.query, SceneQuery::Contacts { .. }) {
+            object.query = SceneQuery::Contacts { linear, angular: angular / 2.0 };
+        }
     }
     scene
 }
