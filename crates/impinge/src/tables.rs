@@ -25,11 +25,11 @@ use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, Projection, Separations, distance_in_plane, distance_in_space,
-    distance_in_world, in_world, parted_in_plane, parted_in_space, seen_in_plane, seen_in_space,
-    separation_in_plane, separation_in_space, separations2, separations3, touching_in_world,
+    Algorithm, PartedFn, Projection, distance_in_plane, distance_in_space, distance_in_world,
+    gaps2, gaps3, in_world, parted_in_plane, parted_in_space, seen_in_plane, seen_in_space,
+    separation_in_plane, separation_in_space, touching_in_world,
 };
-use crate::query::tiles::TiledParts;
+use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
     Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
@@ -45,7 +45,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The one fact about a pair of solids; see [`crate::query`].
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
-    pub(crate) separations: SeparationsFn<N, D>,
+    pub(crate) gaps: GapsFn<N, D>,
     /// Brings the contacts of a convex solid and a chain of segments, or of a ball and a surface, up to date;
     /// answers false where that is left to the general way.
     pub(crate) update_quickly: QuickFn<N, D>,
@@ -117,8 +117,8 @@ type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
-type SeparationsFn<N, const D: usize> =
-    fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, &mut Separations<N, D>) -> bool;
+type GapsFn<N, const D: usize> =
+    fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, GapVisitor<'_, N, D>) -> bool;
 type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
@@ -241,7 +241,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 /// What differs by dimension.
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
-    separations: SeparationsFn<N, D>,
+    gaps: GapsFn<N, D>,
     update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
     seen: SeenFn<N, D>,
@@ -263,7 +263,7 @@ struct Particular<N: Space<D>, const D: usize> {
 impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
-        separations: separations2,
+        gaps: gaps2,
         update_quickly: update_chain,
         distance: distance_in_plane,
         seen: seen_in_plane,
@@ -286,7 +286,7 @@ impl<N: Real> Particular<N, 2> {
 impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
-        separations: separations3,
+        gaps: gaps3,
         update_quickly: update_on_surface,
         distance: distance_in_space,
         seen: seen_in_space,
@@ -311,7 +311,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
     const fn around(particular: &Particular<N, D>) -> Self {
         Self {
             separation: particular.separation,
-            separations: particular.separations,
+            gaps: particular.gaps,
             update_quickly: particular.update_quickly,
             distance: particular.distance,
             seen: particular.seen,

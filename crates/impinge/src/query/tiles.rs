@@ -1,6 +1,8 @@
 //! Parts of a surface side by side, for computing with eight at a time.
 
+use crate::convex::Separation;
 use crate::math::{Point, Real, Vector};
+use crate::shape::FeatureId;
 
 /// How many parts lie side by side.
 pub(crate) const LANES: usize = 8;
@@ -22,9 +24,63 @@ pub(crate) struct TiledParts<'a, N: Real, const D: usize> {
     pub(crate) origin: Vector<N, D>,
 }
 
+/// How far a solid and a part are apart, in the frame of the first of the pair. The points cost more than
+/// this, and few contacts need them.
+#[derive(Clone, Copy)]
+pub(crate) struct PartGap<'k, N: Real, const D: usize> {
+    pub(crate) distance: N,
+    /// Unit, from the first of the pair to the second.
+    pub(crate) normal: Vector<N, D>,
+    /// What of the part is nearest, where that is plain.
+    pub(crate) touched: Option<FeatureId>,
+    /// The separation; where it differs, it holds.
+    pub(crate) exact: &'k dyn Fn() -> Option<Separation<N, D>>,
+}
+
+/// Is called with the number of a part, counted among those that are meant, and what is known of it.
+pub(crate) type GapVisitor<'v, N, const D: usize> =
+    &'v mut dyn FnMut(usize, Option<&PartGap<'_, N, D>>);
+
+impl<'k, N: Real, const D: usize> PartGap<'k, N, D> {
+    /// Of a separation that is known and what gives it.
+    pub(crate) fn of(
+        found: &Separation<N, D>,
+        exact: &'k dyn Fn() -> Option<Separation<N, D>>,
+    ) -> Self {
+        Self { distance: found.distance, normal: found.normal, touched: None, exact }
+    }
+
+    /// The separation, if it is what the gap says.
+    pub(crate) fn witness(&self) -> Option<Separation<N, D>> {
+        let is_same = |found: &Separation<N, D>| {
+            found.distance == self.distance && found.normal == self.normal
+        };
+        (self.exact)().filter(is_same)
+    }
+}
+
+impl<N: Real, const D: usize> TiledParts<'_, N, D> {
+    /// The tile and the lane of each part that is meant.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (&Tiles<N, D>, usize)> {
+        let lanes = |near: u8| (0..LANES).filter(move |lane| near >> lane & 1 == 1);
+        let all = self.tiles.iter().zip(self.near);
+        all.flat_map(move |(tiles, near)| lanes(*near).map(move |lane| (tiles, lane)))
+    }
+}
+
 impl<N: Real, const D: usize> Tiles<N, D> {
     pub(crate) fn blank() -> Self {
         Self { corners: [[[N::ZERO; LANES]; D]; 3] }
+    }
+
+    /// Copies a part from other tiles.
+    #[inline]
+    pub(crate) fn copy(&mut self, at: usize, given: &Self, lane: usize) {
+        for (rows, given) in self.corners.iter_mut().zip(&given.corners) {
+            for (row, given) in rows.iter_mut().zip(given) {
+                row[at] = given[lane];
+            }
+        }
     }
 
     pub(crate) fn put(&mut self, lane: usize, corners: &[Point<N, D>; 3]) {

@@ -98,21 +98,20 @@ pub(super) fn extremes<N: Real, const D: usize>(
     Some(Separation { distance, normal: *normal, point1, point2: point1 + normal * distance })
 }
 
-/// The manifold of a pair whose separation is known along the normal of a face of a surface that is the
-/// first solid, or nearly so, and what counts as rounding; as [`build_between`].
+/// Builds the manifold of a pair that is a distance apart along the normal of a face of a surface that is the
+/// first solid, or nearly so; answers false where that is left to [`build_between`].
 pub(in crate::query) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    (separation, tolerance): (&Separation<N, D>, N),
+    normal: &Vector<N, D>,
+    distance: N,
+    tolerance: N,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
-) {
-    let (normal, prediction) = (separation.normal, request.prediction);
-    let (least, nearest) = (-N::INFINITY, Some(separation.distance));
-    let on_face = OnFace { normal, least, nearest, prediction, tolerance };
-    let is_asked = request.sine <= N::ZERO && separation.distance <= prediction;
-    if !(is_asked && (N::tables().on_face)(pair, &on_face, out)) {
-        build_between(pair, separation, request, out);
-    }
+) -> bool {
+    let (normal, nearest, prediction) = (*normal, Some(distance), request.prediction);
+    let on_face = OnFace { normal, least: -N::INFINITY, nearest, prediction, tolerance };
+    let is_asked = request.sine <= N::ZERO && distance <= prediction;
+    is_asked && (N::tables().on_face)(pair, &on_face, out)
 }
 
 /// The manifold of a pair whose separation is known, with as many points as are asked for.

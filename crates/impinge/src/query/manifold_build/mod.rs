@@ -51,7 +51,7 @@ use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
 pub(super) use self::patch_line::merge_in_plane;
-pub(crate) use self::triangle_face::{OnFace, on_face2, on_face3, on_shown_face};
+pub(crate) use self::triangle_face::{OnFace, on_face2, on_face3};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,

@@ -47,23 +47,13 @@ pub(crate) fn on_face3<N: Real>(
     asked: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
-    on_shown_face(pair, asked, &mut None, out)
-}
-
-/// [`on_face3`] of one of many triangles: the face that the solid shows is kept, since it is that of most.
-pub(crate) fn on_shown_face<N: Real>(
-    pair: &Pair<'_, N, 3>,
-    asked: &OnFace<N, 3>,
-    kept: &mut Option<FaceRing<N>>,
-    out: &mut RawManifold<N, 3>,
-) -> bool {
     let Pair { first, second, pose12: pose } = pair;
     let (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) = (first, second) else {
         return capsule_face::on_triangle(pair, asked, out);
     };
     let normal = asked.normal;
     let Some(ground) = Ground::new(triangle, pose, (normal, asked.tolerance)) else { return false };
-    let Some(face) = shown(second, &pose.inverse_vector(&-normal), kept) else { return false };
+    let Some(face) = &shown(second, &pose.inverse_vector(&-normal)) else { return false };
     let Some(fences) = &Fences::new(&ground.base, face) else { return false };
     let lean = pose.vector(&face.normal);
     let all = u8::MAX >> (FaceRing::<N>::MOST - face.count);
@@ -77,25 +67,13 @@ pub(crate) fn on_shown_face<N: Real>(
     meeting.kept.settle(out)
 }
 
-/// The face of few corners that a box or hull shows to a direction, from what is kept of it if it is the same.
-fn shown<'k, N: Real>(
-    solid: &Kind<'_, N, 3>,
-    toward: &Vector<N, 3>,
-    kept: &'k mut Option<FaceRing<N>>,
-) -> Option<&'k FaceRing<N>> {
-    let face = match solid {
-        Kind::Cuboid(_) => Cuboid::facing_face(toward)?,
-        Kind::Polytope(hull) => hull.facing_face(toward)?,
-        _ => return None,
-    };
-    if kept.as_ref().is_none_or(|ring| ring.id != FeatureId::Face(face)) {
-        *kept = match solid {
-            Kind::Cuboid(cuboid) => cuboid.face_ring_at(face),
-            Kind::Polytope(hull) => hull.face_ring_at(face),
-            _ => None,
-        };
+/// The face of few corners that a box or hull shows to a direction.
+fn shown<N: Real>(solid: &Kind<'_, N, 3>, toward: &Vector<N, 3>) -> Option<FaceRing<N>> {
+    match solid {
+        Kind::Cuboid(cuboid) => cuboid.face_ring_at(Cuboid::facing_face(toward)?),
+        Kind::Polytope(hull) => hull.face_ring_at(hull.facing_face(toward)?),
+        _ => None,
     }
-    kept.as_ref()
 }
 
 /// A triangle in the plane of contact, counter-clockwise as seen from where the normal points.

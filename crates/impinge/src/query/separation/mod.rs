@@ -71,10 +71,7 @@ pub(super) use rounded::bare;
 pub(crate) use seen::{seen_in_plane, seen_in_space};
 pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
 pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
-pub(crate) use triangles::{
-    BallQuestion, Flat, FlatQuestion, Separations, Sighted, Told, Touched, separations2,
-    separations3, sighted,
-};
+pub(crate) use triangles::{BallQuestion, Sighted, gaps2, gaps3, sighted};
 pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.

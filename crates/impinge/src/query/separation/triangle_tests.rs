@@ -2,17 +2,14 @@
 //! in either: a plane that parts two solids bounds their distance from below, and two of their points
 //! from above.
 
-use super::{
-    Flat, FlatQuestion, Separations, Touched, general, separation, separations3, triangle_cuboid,
-    triangle_polytope,
-};
+use super::{gaps3, general, separation, triangle_cuboid, triangle_polytope};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::noise::Noise;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::query::Pair;
-use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{Ball, ConvexHull, Cuboid, Kind, Shape, SupportMap, Triangle};
+use crate::query::tiles::{LANES, PartGap, TiledParts, Tiles};
+use crate::shape::{ConvexHull, Cuboid, Geometry, Kind, Shape, SupportMap, Triangle};
 
 impl Noise {
     fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
@@ -226,76 +223,43 @@ fn check_together<N: Real>(
     let mut near = vec![u8::MAX; tiles.len()];
     *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
     let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
-    let mut found = Separations::new();
-    assert!(separations3(&parts, solid, pose12, limit, &mut found), "round {round}");
-    assert_eq!(found.len(), count);
-    for (found, triangle) in found.iter().zip(triangles) {
+    let mut found = vec![None; count];
+    let mut is_left = vec![false; count];
+    let is_known = gaps3(&parts, solid, pose12, limit, &mut |at, gap| match gap {
+        None => is_left[at] = true,
+        Some(gap) => {
+            found[at] = (gap.exact)();
+            check_gap(gap, &triangles[at], solid, pose12, round);
+        }
+    });
+    assert!(is_known, "round {round}");
+    for (at, triangle) in triangles.iter().enumerate().filter(|(at, _)| !is_left[*at]) {
         let (first, pose12) = (Kind::Triangle(triangle), *pose12);
         let pair = Pair { first, second: solid, pose12 };
         let alone = match solid {
             Kind::Cuboid(_) => triangle_cuboid::separation(&pair, limit),
             _ => triangle_polytope::separation(&pair, limit),
         };
-        assert_eq!(*found, alone, "round {round}");
-    }
-    if let Some(flat) = Flat::new(solid) {
-        let origin = Vector::<N, 3>::zeros();
-        let question = FlatQuestion { solid: flat, pose12: *pose12, limit, origin };
-        for (block, tiles) in tiles.iter().enumerate() {
-            let some = |at: usize| at.min(count);
-            let range = some(block * LANES)..some((block + 1) * LANES);
-            check_told(&question, tiles, &triangles[range.clone()], &found[range], round);
-        }
+        assert_eq!(found[at], alone, "round {round}");
     }
     found.iter().filter(|found| found.is_some()).count()
 }
 
-/// What a box or hull is told of eight triangles is true of the separation of each.
-fn check_told<N: Real>(
-    question: &FlatQuestion<'_, N>,
-    tiles: &Tiles<N, 3>,
-    triangles: &[Triangle<N, 3>],
-    found: &[Option<Separation<N, 3>>],
+/// What is plain of a triangle among others is true of its separation.
+fn check_gap<N: Real>(
+    gap: &PartGap<'_, N, 3>,
+    triangle: &Triangle<N, 3>,
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
     round: usize,
 ) {
-    let sifted = question.sifted(tiles);
-    let eight = question.eight(tiles);
-    let (pose12, reach) = (question.pose12, question.solid.reach());
-    let center = match question.solid {
-        Flat::Cuboid(cuboid) => cuboid.center(),
-        Flat::Polytope(hull) => hull.center(),
-    };
-    let middle = (Ball::new(N::ZERO), Pose::from_translation(pose12.point(&center).coords));
-    for (lane, (triangle, found)) in triangles.iter().zip(found).enumerate() {
-        assert!(found.is_none() || sifted.near >> lane & 1 == 1, "round {round}: sifted out");
-        let pose = middle.1.inverse();
-        let pair =
-            Pair { first: Kind::Ball(&middle.0), second: Kind::Triangle(triangle), pose12: pose };
-        // Of what is so large that squares have no end nothing is known.
-        let away = separation(&pair, N::INFINITY).map_or(N::INFINITY, |found| found.distance);
-        assert!(sifted.from_middle <= away, "round {round}: {} {away}", sifted.from_middle);
-        if !eight.is_sound() || eight.is_beyond(lane) {
-            continue;
-        }
-        let sizes = triangle.reach() + reach + pose12.translation.norm();
-        let tolerance = N::lit(16.0) * N::EPSILON * sizes;
-        let Some(told) = eight.told(lane, triangle, tolerance) else {
-            assert_eq!(*found, None, "round {round}");
-            continue;
-        };
-        match told.touched {
-            // Where the points lie is not known then.
-            Touched::Face => {}
-            Touched::Unclear(separation) => assert_eq!(*found, Some(separation), "round {round}"),
-            Touched::Seam(feature) => {
-                let found = found.expect("it is told of");
-                assert_eq!((found.distance, found.normal), (told.distance, told.normal));
-                let part = triangle.part_at(&found.point1, &found.normal, tolerance);
-                assert_eq!(part, Some(feature), "round {round}");
-            }
-        }
-        assert_eq!(eight.separation(lane, triangle), *found, "round {round}");
-    }
+    let Some(feature) = gap.touched else { return };
+    let found = gap.witness().expect("what is plain is the separation");
+    let reach = Geometry(solid).as_support_map().expect("it is convex").reach();
+    let sizes = triangle.reach() + reach + pose12.translation.norm();
+    let tolerance = N::lit(16.0) * N::EPSILON * sizes;
+    let part = triangle.part_at(&found.point1, &found.normal, tolerance);
+    assert_eq!(part, Some(feature), "round {round}");
 }
 
 #[test]

@@ -51,8 +51,7 @@ pub(crate) fn update_chain<N: Real>(
     if !is_settled(&findings) {
         query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
     }
-    let findings = (findings.as_slice(), N::ZERO);
-    contacts.conclude((request, merge_in_plane), [reference, center], findings, &notes);
+    contacts.conclude(request, merge_in_plane, reference, center, &findings, &notes);
     true
 }
 

@@ -1,5 +1,8 @@
 //! What is to be said of each pair of parts.
 
+use core::cell::Cell;
+
+use super::Query;
 use super::judge::{Case, Verdict, faces, judge};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
@@ -7,6 +10,7 @@ use crate::math::{Point, Real, Space, Vector, min};
 use crate::query::manifold_build::{
     Along, Piece, Points, build_along, build_between, build_on_face,
 };
+use crate::query::tiles::PartGap;
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{FeatureId, Kind};
 
@@ -48,20 +52,12 @@ pub(super) struct Finding<N: Real, const D: usize> {
 pub(super) struct Notes<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: Points<N, D>,
+    /// What counts as rounding of parts that were passed over.
+    pub(super) rounding: N,
     raw: RawManifold<N, D>,
 }
 
 impl<N: Real, const D: usize> Notes<N, D> {
-    /// The points of all pieces, and the manifold that is made.
-    pub(super) const fn parted(&mut self) -> (&mut Points<N, D>, &RawManifold<N, D>) {
-        (&mut self.points, &self.raw)
-    }
-
-    /// The manifold that is made.
-    pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
-        &mut self.raw
-    }
-
     /// An empty manifold to be made.
     pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
@@ -80,7 +76,7 @@ impl<N: Real, const D: usize> Finding<N, D> {
     }
 
     /// What two parts say in the end.
-    pub(super) fn note(&mut self, (piece, lowest): (Piece<N, D>, N)) {
+    pub(super) fn note(&mut self, piece: Piece<N, D>, lowest: N) {
         (self.piece, self.lowest) = (piece, lowest);
     }
 }
@@ -98,30 +94,35 @@ fn noted<N: Space<D>, const D: usize>(
 /// Where the solid that meets a surface comes from, where it is not just its middle.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// What is to be said of two parts, whose separation may be known; `None` if they are beyond reach or
-/// cannot touch.
+/// What is to be said of two parts, of which it may be known how near they are; `None` if they are beyond
+/// reach or cannot touch.
 pub(super) fn finding<N: Space<D>, const D: usize>(
-    (scene, placed): (&Scene<'_, N, D>, &PartPair<'_, N, D>),
+    scene: &Scene<'_, N, D>,
+    placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
-    (reference, request): (&Reference<N, D>, &ManifoldRequest<N>),
-    known: Option<Separation<N, D>>,
+    query: &Query<'_, N, D>,
+    known: Option<&PartGap<'_, N, D>>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
+    let (reference, request) = (query.reference, query.request);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
         return plain(placed, parts, request, notes);
     }
-    let found = match known {
-        Some(found) => found,
-        None => (N::tables().separation)(&placed.pair(), request.prediction)?,
-    };
     let centers = match scene.surfaces[0] {
         // Of a convex first shape nothing is asked.
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
-    of_surfaces(scene, &Meeting { placed, parts, centers, reference, found }, request, notes)
+    let meeting = Meeting { placed, parts, centers, reference };
+    match known {
+        Some(gap) => of_surfaces(scene, &meeting, gap, request, notes),
+        None => {
+            let found = (N::tables().separation)(&placed.pair(), request.prediction)?;
+            of_separation(scene, &meeting, &found, request, notes)
+        }
+    }
 }
 
 /// Solids side by side: their contacts are those of the whole.
@@ -149,19 +150,19 @@ struct Meeting<'a, N: Real, const D: usize> {
     centers: [[Point<N, D>; 2]; 2],
     /// Of the first shape, as seen by the second.
     reference: &'a Reference<N, D>,
-    /// How far apart the two are.
-    found: Separation<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
-    /// What the two surfaces say of a separation of the two parts. `over` is the feature of the
-    /// second part that a ball is over, if that is known.
+    /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
+    /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is another
+    /// one.
     fn verdicts(
         &self,
         scene: &Scene<'_, N, D>,
-        (found, tolerance): (&Separation<N, D>, N),
+        gap: &PartGap<'_, N, D>,
+        tolerance: N,
         over: Option<FeatureId>,
-    ) -> [Verdict<N, D>; 2] {
+    ) -> Option<[Verdict<N, D>; 2]> {
         // Where the other solid comes from, and the part itself, as the shape of the part sees it.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
@@ -169,22 +170,31 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         let can_touch =
             faces(surface1, self.parts[0], &other1) && faces(surface2, self.parts[1], &other2);
         if !can_touch {
-            return [Verdict::Nothing; 2];
+            return Some([Verdict::Nothing; 2]);
         }
         let [is_second1, is_second2] = self.placed.turned([false, true]);
-        let feature = |is_second| {
-            let pair = self.placed.pair();
-            (N::tables().witness_feature)(&pair, (found, tolerance), is_second)
+        let is_other = Cell::new(false);
+        let feature = |is_second| match gap.witness() {
+            Some(found) => {
+                let pair = self.placed.pair();
+                (N::tables().witness_feature)(&pair, (&found, tolerance), is_second)
+            }
+            None => {
+                is_other.set(true);
+                FeatureId::Face(0)
+            }
         };
+        let known2 = over.or(gap.touched);
         let (feature1, feature2) =
-            (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
-        let normal = self.placed.outward(&found.normal);
+            (|| feature(is_second1), || known2.unwrap_or_else(|| feature(is_second2)));
+        let normal = self.placed.outward(&gap.normal);
         let (part, toward) = (self.parts[0], other1 - own1);
         let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
         let (part, toward) = (self.parts[1], other2 - own2);
         let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
-        [judge(surface1, &case1), judge(surface2, &case2)]
+        let verdicts = [judge(surface1, &case1), judge(surface2, &case2)];
+        (!is_other.get()).then_some(verdicts)
     }
 }
 
@@ -193,52 +203,99 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-fn of_surfaces<N: Space<D>, const D: usize>(
+/// What is to be said of two parts whose separation is known.
+fn of_separation<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
+    found: &Separation<N, D>,
     request: &ManifoldRequest<N>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    let (placed, parts) = (meeting.placed, meeting.parts);
-    let (pair, found) = (placed.pair(), meeting.found);
-    if !found.distance.is_finite_number() {
+    let exact = || Some(*found);
+    let gap = PartGap::of(found, &exact);
+    of_surfaces(scene, meeting, &gap, request, notes)
+}
+
+/// What is to be said of two parts, of which one at least belongs to a surface.
+fn of_surfaces<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    meeting: &Meeting<'_, N, D>,
+    gap: &PartGap<'_, N, D>,
+    request: &ManifoldRequest<N>,
+    notes: &mut Notes<N, D>,
+) -> Option<Finding<N, D>> {
+    let (placed, parts, distance) = (meeting.placed, meeting.parts, gap.distance);
+    if !distance.is_finite_number() {
         return None;
     }
-    let tolerance = placed.tolerance();
+    let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
-    let verdicts = meeting.verdicts(scene, (&found, tolerance), over);
-    let normal = placed.outward(&found.normal);
+    let Some(verdicts) = meeting.verdicts(scene, gap, tolerance, over) else {
+        return of_separation(scene, meeting, &(gap.exact)()?, request, notes);
+    };
+    let normal = placed.outward(&gap.normal);
     let raw = notes.blank();
     let mut standing = match settled(placed, &verdicts, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => Standing::Left,
         Settled::Forced(..) if is_beside(over) => Standing::Left,
         Settled::Found(normal) => {
-            let witness = Separation { normal: placed.inward(&normal), ..found };
-            match over.filter(|over| is_certain(*over, &verdicts[1])) {
-                Some(over) => {
-                    raw.normal = witness.normal;
-                    raw.points.push(of_ball(&witness, over));
-                }
-                None => build_on_face(&pair, (&witness, tolerance), request, raw),
+            let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
+            let over = over.filter(|over| is_certain(*over, &verdicts[1]));
+            if !touch.build(&pair, over, request, raw) {
+                return of_separation(scene, meeting, &(gap.exact)()?, request, notes);
             }
             Standing::Own
         }
         Settled::Forced(normal, standing) => {
-            let least = if found.distance > N::ZERO { found.distance } else { -N::INFINITY };
+            let least = if distance > N::ZERO { distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&normal), least, tolerance };
             build_along(&pair, &along, request, raw);
             standing
         }
     };
-    if overlooks(raw, found.distance, tolerance) {
+    if overlooks(raw, distance, tolerance) {
         standing = Standing::Left;
         raw.points.clear();
     }
     let (piece, lowest) = noted(placed, parts, notes);
     let face = verdicts[1].face().filter(|_| standing != Standing::Left);
-    let distance = found.distance;
     Some(Finding { distance, normal, piece, lowest, standing, face, tolerance })
+}
+
+/// Two parts that touch at their nearest points, with a normal that the surface has there, in the frame of the
+/// first of the pair.
+struct Touch<'a, N: Real, const D: usize> {
+    gap: &'a PartGap<'a, N, D>,
+    normal: Vector<N, D>,
+    tolerance: N,
+}
+
+impl<N: Space<D>, const D: usize> Touch<'_, N, D> {
+    /// Builds the manifold of the two, `over` being the feature that a ball is over if that is certain;
+    /// answers false if it needs the nearest points, and the separation is another one.
+    fn build(
+        &self,
+        pair: &Pair<'_, N, D>,
+        over: Option<FeatureId>,
+        request: &ManifoldRequest<N>,
+        raw: &mut RawManifold<N, D>,
+    ) -> bool {
+        let Self { gap, normal, tolerance } = *self;
+        if over.is_none() && build_on_face(pair, &normal, gap.distance, tolerance, request, raw) {
+            return true;
+        }
+        let Some(found) = gap.witness() else { return false };
+        let witness = Separation { normal, ..found };
+        match over {
+            Some(over) => {
+                raw.normal = normal;
+                raw.points.push(of_ball(&witness, over));
+            }
+            None => build_between(pair, &witness, request, raw),
+        }
+        true
+    }
 }
 
 /// The feature of a triangle that a ball is over, where that is certain.

@@ -24,7 +24,6 @@ mod resolve;
 mod scene;
 mod sight;
 mod surface_ball;
-mod surface_flat;
 #[cfg(test)]
 mod surface_tests;
 mod view;
@@ -48,6 +47,7 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::query::manifold_build::{Merging, Patch, Piece, merge};
 use crate::query::pair::{Ordered, Placed};
 use crate::query::separation::{of_ordered, placed};
+use crate::query::tiles::PartGap;
 use crate::query::{ManifoldRequest, Pair, PairIds, RawPoint};
 use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 
@@ -154,22 +154,24 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
         let findings = query.findings(&nearby, &mut notes);
-        self.conclude((request, merge), [reference, center], (&findings, N::ZERO), &notes);
+        self.conclude(request, merge, reference, center, &findings, &notes);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
-    /// shapes overlap, else where it is. What counts as rounding is given with what is found: of that the
-    /// most counts.
+    /// shapes overlap, else where it is.
     fn conclude(
         &mut self,
-        (request, merge): (&ManifoldRequest<N>, MergeFn<N, D>),
-        [reference, center]: [Reference<N, D>; 2],
-        (findings, rounding): (&[Finding<N, D>], N),
+        request: &ManifoldRequest<N>,
+        merge: MergeFn<N, D>,
+        reference: Reference<N, D>,
+        center: Reference<N, D>,
+        findings: &[Finding<N, D>],
         notes: &Notes<N, D>,
     ) {
         let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
-        let tolerance = findings.iter().fold(rounding, |most, found| max(most, found.tolerance));
+        let tolerances = findings.iter().map(|found| found.tolerance);
+        let tolerance = tolerances.fold(notes.rounding, max);
         let mut pieces: SmallVec<[Piece<N, D>; 8]> = SmallVec::new();
         for found in findings.iter().filter(|found| found.standing != Standing::Left) {
             pieces.push(found.piece.clone());
@@ -265,18 +267,13 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         if let Some(surface) = scene.surfaces[1] {
             nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
         }
-        let all = scene.separations(nearby, self.request.prediction);
-        for (index, &parts) in nearby.parts.iter().enumerate() {
-            let known = all.as_ref().map(|all| all[index]);
-            if known.is_some_and(|known| known.is_none()) {
-                continue;
-            }
+        let mut find = |index: usize, gap: Option<&PartGap<'_, N, D>>| {
+            let parts = nearby.parts[index];
             let placed = scene.pair_in(&mut slot, parts);
-            let asked = (self.reference, self.request);
-            let found = facts::finding((&scene, placed), parts, asked, known.flatten(), notes);
-            if let Some(found) = found {
-                findings.push(found);
-            }
+            findings.extend(facts::finding(&scene, placed, parts, self, gap, notes));
+        };
+        if !scene.each_gap(nearby, self.request.prediction, &mut find) {
+            (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
         self.settle(&scene, &mut findings, notes);
         findings
@@ -291,7 +288,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     ) {
         resolve::resolve(scene, found, notes);
         for finding in found.iter_mut().filter(|finding| finding.is_owing()) {
-            finding.note(facts::nearest_points(scene, finding.parts(), self.request, notes));
+            let (piece, lowest) =
+                facts::nearest_points(scene, finding.parts(), self.request, notes);
+            finding.note(piece, lowest);
         }
     }
 }

@@ -7,8 +7,7 @@ use super::around::Around;
 use super::candidates::Nearby;
 use crate::math::{Point, Pose, Real, Space, Vector, min};
 use crate::query::manifold_build::{Piece, Points};
-use crate::query::separation::Separations;
-use crate::query::tiles::TiledParts;
+use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{Pair, RawManifold};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
 
@@ -162,21 +161,24 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         }
     }
 
-    /// The separations of a convex solid from triangles of a surface that are kept side by side, if there
-    /// is an algorithm for many of them; `None` for those that are beyond the limit.
-    pub(super) fn separations(&self, nearby: &Nearby<N>, limit: N) -> Option<Separations<N, D>> {
-        let (around, first, _) = (self.around?, nearby.parts.first()?, self.surfaces[1]?);
-        let part @ Part { solid: PartSolid::Triangle(_), .. } = around.part(first[1])? else {
-            return None;
-        };
+    /// Calls with what is known of how near a convex solid and each of some parts of a surface are that are kept
+    /// side by side; answers false if there is no algorithm for many of them.
+    pub(super) fn each_gap(
+        &self,
+        nearby: &Nearby<N>,
+        limit: N,
+        visit: GapVisitor<'_, N, D>,
+    ) -> bool {
+        let (Some(around), Some(_)) = (self.around, self.surfaces[1]) else { return false };
+        let first = nearby.parts.first().and_then(|first| around.part(first[1]));
+        let Some(part @ Part { solid: PartSolid::Triangle(_), .. }) = first else { return false };
         let usual = self.usual.get_or_init(|| self.usual(&part));
         if !usual.lying.is_turned || nearby.near.len() != around.tiles().len() {
-            return None;
+            return false;
         }
         let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
-        let (solid, pose12) = (self.between.pair.first, &usual.lying.pose12);
-        let (parts, mut found) = (TiledParts { tiles, near, origin }, Separations::new());
-        (N::tables().separations)(&parts, solid, pose12, limit, &mut found).then_some(found)
+        let parts = TiledParts { tiles, near, origin };
+        (N::tables().gaps)(&parts, self.between.pair.first, &usual.lying.pose12, limit, visit)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is
@@ -279,15 +281,6 @@ impl<N: Space<D>, const D: usize> Lying<N, D> {
         let (frame, pose12) = if is_turned { (frame2, pose12.inverse()) } else { (frame1, pose12) };
         Self { pose12, is_turned, frame, turn }
     }
-}
-
-/// How a convex first shape and a triangle of a surface lie, which comes first by its kind: the frame of
-/// the triangle in that of the shape put through its origin, and the pose of the shape in it; given the
-/// rotation of the surface's frame in that of the shape.
-pub(super) fn lying_of<N: Space<D>, const D: usize>(turn: Pose<N, D>) -> (Pose<N, D>, Pose<N, D>) {
-    let own = Pose::identity();
-    let Lying { frame, pose12, .. } = Lying::new([&own, &own], turn, true);
-    (frame, pose12)
 }
 
 impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {

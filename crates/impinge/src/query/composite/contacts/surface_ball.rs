@@ -8,7 +8,6 @@ use super::facts::{self, Finding, Notes, Standing, is_beside, is_certain, of_bal
 use super::judge::{Case, Verdict, faces, judge};
 use super::over::over3;
 use super::scene::Scene;
-use super::surface_flat::update_flat;
 use super::{
     CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
@@ -17,7 +16,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::query::manifold_build::{Piece, merge};
 use crate::query::separation::{BallQuestion, Sighted, ball_triangle, sighted};
-use crate::query::tiles::LANES;
+use crate::query::tiles::{LANES, PartGap};
 use crate::query::{ManifoldRequest, Pair};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
 
@@ -26,26 +25,24 @@ const ROUNDING: f64 = 16.0;
 /// Most of these cost no more than a look at whether their box meets the ball's.
 const MOST_ROOMY: usize = 5 * LANES;
 
-/// Brings the contacts of a ball and a surface up to date, or of a box or hull; answers false where that is left
-/// to the general way, as of all other solids.
+/// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general way,
+/// as of all other solids.
 pub(crate) fn update_on_surface<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
     between: &Between<'_, N, 3>,
     request: &ManifoldRequest<N>,
 ) -> bool {
-    let Some(mut rolling) = Rolling::new(between, request) else {
-        return update_flat(contacts, between, request);
-    };
+    let Some(mut rolling) = Rolling::new(between, request) else { return false };
     let (mut findings, mut notes) = (Findings::new(), Notes::default());
     let Some(rounding) = rolling.find(contacts, &mut findings, &mut notes) else { return false };
+    notes.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
     if !is_settled(&findings) {
         let around = Some(&contacts.around);
         let query = Query { between, around, reference: &reference, request: &rolling.request };
         query.settle(&Scene::new(between, around), &mut findings, &mut notes);
     }
-    let findings = (findings.as_slice(), rounding);
-    contacts.conclude((request, merge), [reference, center], findings, &notes);
+    contacts.conclude(request, merge, reference, center, &findings, &notes);
     true
 }
 
@@ -183,8 +180,15 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         let found = self.plainly(seen, &found, notes).unwrap_or_else(|| {
             let scene = Scene::new(self.between, Some(around));
             let parts = [0, seen.part];
-            let asked = (&Some(self.from), &self.request);
-            facts::finding((&scene, &scene.pair(parts)), parts, asked, Some(found), notes)
+            let query = Query {
+                between: self.between,
+                around: Some(around),
+                reference: &Some(self.from),
+                request: &self.request,
+            };
+            let exact = || Some(found);
+            let gap = PartGap::of(&found, &exact);
+            facts::finding(&scene, &scene.pair(parts), parts, &query, Some(&gap), notes)
         });
         findings.extend(found);
     }

@@ -7,12 +7,11 @@
 
 use super::super::triangle_axes::{Axis, AxisKind, Faces, Fin, noise};
 use super::super::triangle_polytope;
-use super::{Axes, Faceted, Question, at, polytope};
-use crate::convex::Separation;
+use super::{Faceted, Question, at, polytope};
 use crate::math::simd::Level;
-use crate::math::{Point, Pose, Real, Vector, cross, max};
-use crate::query::tiles::{LANES, Tiles};
-use crate::shape::{Cuboid, FeatureId, Kind, Polytope, SupportMap, Triangle};
+use crate::math::{Point, Pose, Real, cross, max};
+use crate::query::tiles::{GapVisitor, LANES, PartGap, TiledParts, Tiles};
+use crate::shape::{Cuboid, FeatureId, Kind, Polytope, Triangle};
 
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
 const INSIDE: f64 = 1.0 / 32.0;
@@ -25,171 +24,106 @@ const TALL: f64 = 1.0 / 32.0;
 const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
-/// A box or hull among triangles.
-pub(crate) struct FlatQuestion<'a, N: Real> {
-    pub(crate) solid: Flat<'a, N>,
-    /// Its pose in the frame of the triangles as seen from their origin.
-    pub(crate) pose12: Pose<N, 3>,
-    pub(crate) limit: N,
-    /// Where the triangles are seen from.
-    pub(crate) origin: Vector<N, 3>,
+/// Calls with what is known of how near each of some triangles and a solid are that are not beyond a limit;
+/// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
+/// that are not treated here.
+pub(crate) fn gaps3<N: Real>(
+    parts: &TiledParts<'_, N, 3>,
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
+    limit: N,
+    visit: GapVisitor<'_, N, 3>,
+) -> bool {
+    match solid {
+        Kind::Cuboid(cuboid) => Packets { parts, solid: cuboid, pose12, limit }.each(visit),
+        Kind::Polytope(hull) if polytope::is_small(hull) => {
+            Packets { parts, solid: hull, pose12, limit }.each(visit)
+        }
+        _ => return false,
+    }
+    true
 }
 
-/// A solid with flat faces.
-#[derive(Clone, Copy)]
-pub(crate) enum Flat<'a, N: Real> {
-    Cuboid(&'a Cuboid<N, 3>),
-    Polytope(&'a Polytope<N, 3>),
+/// In the plane triangles are filled.
+pub(crate) fn gaps2<N: Real>(
+    _: &TiledParts<'_, N, 2>,
+    _: Kind<'_, N, 2>,
+    _: &Pose<N, 2>,
+    _: N,
+    _: GapVisitor<'_, N, 2>,
+) -> bool {
+    false
 }
 
-/// How a triangle and a solid meet.
-pub(crate) struct Told<N: Real> {
-    pub(crate) distance: N,
-    /// From the triangle to the solid, in the frame of the triangle.
-    pub(crate) normal: Vector<N, 3>,
-    pub(crate) touched: Touched<N>,
+/// Triangles against one solid, eight at a time.
+struct Packets<'a, N: Real, T> {
+    parts: &'a TiledParts<'a, N, 3>,
+    solid: &'a T,
+    pose12: &'a Pose<N, 3>,
+    limit: N,
 }
 
-/// What of the triangle is touched.
-pub(crate) enum Touched<N: Real> {
-    /// The normal is that of the triangle; where the points lie is not known, nor that they lie across from
-    /// each other.
-    Face,
-    /// A side or corner, plainly.
-    Seam(FeatureId),
-    /// What is not plain: the separation.
-    Unclear(Separation<N, 3>),
-}
-
-/// The axes of eight triangles and what they are asked of.
-pub(crate) struct PacketAxes<'q, 'a, N: Real> {
-    question: &'q FlatQuestion<'a, N>,
-    axes: Axes<N>,
-}
-
-impl<'a, N: Real> Flat<'a, N> {
-    /// `None` of what is not treated here.
-    pub(crate) fn new(solid: Kind<'a, N, 3>) -> Option<Self> {
-        match solid {
-            Kind::Cuboid(cuboid) => Some(Self::Cuboid(cuboid)),
-            Kind::Polytope(hull) if polytope::is_small(hull) => Some(Self::Polytope(hull)),
-            _ => None,
+impl<N: Real, T: Meets<N>> Packets<'_, N, T> {
+    fn each(&self, visit: GapVisitor<'_, N, 3>) {
+        let (mut places, mut first) = (self.parts.places(), 0);
+        loop {
+            let (mut packet, mut count) = (Tiles::blank(), 0);
+            for (tiles, lane) in places.by_ref().take(LANES) {
+                packet.copy(count, tiles, lane);
+                count += 1;
+            }
+            if count == 0 {
+                return;
+            }
+            self.each_of_eight(&packet, count, &mut |lane, gap| visit(first + lane, gap));
+            first += count;
         }
     }
 
-    /// The same.
-    pub(crate) const fn kind(&self) -> Kind<'a, N, 3> {
-        match self {
-            Self::Cuboid(cuboid) => Kind::Cuboid(cuboid),
-            Self::Polytope(hull) => Kind::Polytope(hull),
+    fn each_of_eight(&self, packet: &Tiles<N, 3>, count: usize, visit: GapVisitor<'_, N, 3>) {
+        let (reach, origin) = (self.solid.reach(), &self.parts.origin);
+        let question = Question { pose12: self.pose12, reach, limit: self.limit, origin };
+        let axes = at(Level::new(), self.solid, &question, packet);
+        for lane in 0..count {
+            let (scale, shrink) = (axes.scale[lane], axes.shrink[lane]);
+            if !(scale.is_finite_number() && shrink.is_finite_number()) {
+                visit(lane, None);
+            } else if axes.beyond >> lane & 1 == 0 {
+                let corners = packet.corners(lane).map(|corner| corner - origin);
+                let triangle = Triangle::of_finite(corners);
+                let corners = axes.corners_of(lane);
+                let fin = Fin::placed(&triangle, self.pose12, corners, scale, shrink);
+                self.one(&fin, axes.axis(lane, self.solid), &mut |gap| visit(lane, Some(gap)));
+            }
         }
     }
 
-    /// No point of the solid is farther from its origin.
-    pub(crate) fn reach(&self) -> N {
-        match self {
-            Self::Cuboid(cuboid) => cuboid.reach(),
-            Self::Polytope(hull) => hull.reach(),
-        }
-    }
-}
-
-impl<'a, N: Real> FlatQuestion<'a, N> {
-    /// The axes of eight triangles.
-    pub(crate) fn eight<'q>(&'q self, tiles: &Tiles<N, 3>) -> PacketAxes<'q, 'a, N> {
-        let reach = self.solid.reach();
-        let Self { pose12, limit, origin, .. } = self;
-        let question = Question { pose12, reach, limit: *limit, origin };
-        let axes = match self.solid {
-            Flat::Cuboid(cuboid) => at(Level::new(), cuboid, &question, tiles),
-            Flat::Polytope(hull) => at(Level::new(), hull, &question, tiles),
-        };
-        PacketAxes { question: self, axes }
-    }
-}
-
-impl<N: Real> PacketAxes<'_, '_, N> {
-    /// The triangle is certainly beyond the limit.
-    pub(crate) const fn is_beyond(&self, lane: usize) -> bool {
-        self.axes.beyond >> lane & 1 == 1
-    }
-
-    /// The numbers of all triangles have an end.
-    pub(crate) fn is_sound(&self) -> bool {
-        let Axes { scale, shrink, .. } = &self.axes;
-        (0..LANES).all(|lane| scale[lane].is_finite_number() && shrink[lane].is_finite_number())
-    }
-
-    /// How one of the triangles, seen from the origin, and the solid meet; `None` beyond the limit.
-    pub(crate) fn told(
-        &self,
-        lane: usize,
-        triangle: &Triangle<N, 3>,
-        tolerance: N,
-    ) -> Option<Told<N>> {
-        match self.question.solid {
-            Flat::Cuboid(cuboid) => self.told_of(cuboid, lane, triangle, tolerance),
-            Flat::Polytope(hull) => self.told_of(hull, lane, triangle, tolerance),
-        }
-    }
-
-    /// The separation of one of the triangles.
-    pub(crate) fn separation(
-        &self,
-        lane: usize,
-        triangle: &Triangle<N, 3>,
-    ) -> Option<Separation<N, 3>> {
-        match self.question.solid {
-            Flat::Cuboid(cuboid) => self.separation_of(cuboid, lane, triangle),
-            Flat::Polytope(hull) => self.separation_of(hull, lane, triangle),
-        }
-    }
-
-    fn fin<'t>(&'t self, lane: usize, triangle: &'t Triangle<N, 3>) -> Fin<'t, N> {
-        let corners = self.axes.corners_of(lane);
-        let (scale, shrink) = (self.axes.scale[lane], self.axes.shrink[lane]);
-        Fin::placed(triangle, &self.question.pose12, corners, scale, shrink)
-    }
-
-    fn separation_of(
-        &self,
-        solid: &impl Faceted<N>,
-        lane: usize,
-        triangle: &Triangle<N, 3>,
-    ) -> Option<Separation<N, 3>> {
-        let axis = self.axes.axis(lane, solid);
-        solid.answer(&self.fin(lane, triangle), axis, self.question.limit)
-    }
-
-    fn told_of<T: Meets<N>>(
-        &self,
-        solid: &T,
-        lane: usize,
-        triangle: &Triangle<N, 3>,
-        tolerance: N,
-    ) -> Option<Told<N>> {
-        let (axis, fin) = (self.axes.axis(lane, solid), self.fin(lane, triangle));
+    /// Calls with what the axis of a triangle says, unless that is beyond the limit.
+    fn one(&self, fin: &Fin<'_, N>, axis: Axis<N>, visit: &mut dyn FnMut(&PartGap<'_, N, 3>)) {
+        let (solid, limit) = (self.solid, self.limit);
+        let exact = || solid.answer(fin, axis, limit);
         let touched = match axis.kind {
-            AxisKind::Triangle => Some(Touched::Face),
+            AxisKind::Triangle => Some(None),
             AxisKind::Edges(edge, side) => {
-                let is_plain = is_crossing(&fin, solid, edge, side, &axis, tolerance)
-                    && solid.is_sound(&fin, &axis);
+                let is_plain =
+                    is_crossing(fin, solid, edge, side, &axis) && solid.is_sound(fin, &axis);
                 let side = u32::try_from(side).expect("there are three sides");
-                is_plain.then_some(Touched::Seam(FeatureId::Edge(side)))
+                is_plain.then_some(Some(FeatureId::Edge(side)))
             }
             AxisKind::Face(face) => {
-                let corner = corner_over(&fin, solid, face, &axis);
-                corner.map(|corner| Touched::Seam(FeatureId::Vertex(corner)))
+                let corner = corner_over(fin, solid, face, &axis);
+                corner.map(|corner| Some(FeatureId::Vertex(corner)))
             }
         };
         if let Some(touched) = touched {
             let distance = fin.grown(axis.gap);
-            let normal = self.question.pose12.vector(&axis.normal);
-            return (distance <= self.question.limit).then_some(Told { distance, normal, touched });
+            let normal = self.pose12.vector(&axis.normal);
+            if distance <= limit {
+                visit(&PartGap { distance, normal, touched, exact: &exact });
+            }
+        } else if let Some(found) = exact() {
+            visit(&PartGap::of(&found, &|| Some(found)));
         }
-        let found = solid.answer(&fin, axis, self.question.limit)?;
-        let Separation { distance, normal, .. } = found;
-        Some(Told { distance, normal, touched: Touched::Unclear(found) })
     }
 }
 
@@ -220,7 +154,6 @@ fn is_crossing<N: Real>(
     edge: u32,
     side: usize,
     axis: &Axis<N>,
-    tolerance: N,
 ) -> bool {
     let [from, to] = solid.edge(FeatureId::Edge(edge)).map(|(_, end)| end.coords * fin.shrink);
     let start = &fin.corners[side];
@@ -242,7 +175,7 @@ fn is_crossing<N: Real>(
     is_inside && det > N::lit(LEAST_SINE) * own * other && {
         let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
         let tall = N::lit(TALL) * longest;
-        let long = N::lit(LONG) * tolerance * fin.shrink;
+        let long = N::lit(LONG) * noise::<N>();
         own > long * long && cross(&way, &third).norm_squared() > tall * tall
     }
 }

@@ -8,11 +8,9 @@ mod ball;
 mod cuboid;
 mod meeting;
 mod polytope;
-mod sift;
 
 pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
-pub(crate) use self::meeting::{Flat, FlatQuestion, Told, Touched};
-use smallvec::SmallVec;
+pub(crate) use self::meeting::{gaps2, gaps3};
 
 use super::triangle_axes::{Axis, AxisKind, Fin, THIN, noise};
 use crate::convex::Separation;
@@ -21,40 +19,8 @@ use crate::math::lanes::{
 };
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Pose, Real, Vector, Wide, max, max_component};
-use crate::query::tiles::{LANES, TiledParts, Tiles};
-use crate::shape::{Kind, SupportMap, Triangle};
-
-/// What is found of each of some parts; `None` beyond the limit.
-pub(crate) type Separations<N, const D: usize> = SmallVec<[Option<Separation<N, D>>; 16]>;
-
-/// The separations of triangles from a solid, all of which lie at `pose12` in the frame of the triangles
-/// as seen from their origin, if there is an algorithm for many of them; answers whether there is.
-pub(crate) fn separations3<N: Real>(
-    parts: &TiledParts<'_, N, 3>,
-    solid: Kind<'_, N, 3>,
-    pose12: &Pose<N, 3>,
-    limit: N,
-    out: &mut Separations<N, 3>,
-) -> bool {
-    match solid {
-        Kind::Cuboid(cuboid) => of_solid(parts, cuboid, pose12, limit, out),
-        Kind::Polytope(hull) if polytope::is_small(hull) => {
-            of_solid(parts, hull, pose12, limit, out)
-        }
-        _ => false,
-    }
-}
-
-/// In the plane triangles are filled.
-pub(crate) fn separations2<N: Real>(
-    _: &TiledParts<'_, N, 2>,
-    _: Kind<'_, N, 2>,
-    _: &Pose<N, 2>,
-    _: N,
-    _: &mut Separations<N, 2>,
-) -> bool {
-    false
-}
+use crate::query::tiles::{LANES, Tiles};
+use crate::shape::SupportMap;
 
 /// A solid with flat faces.
 trait Faceted<N: Real>: SupportMap<N, 3> {
@@ -71,29 +37,6 @@ trait Faceted<N: Real>: SupportMap<N, 3> {
 
     /// What an axis says of a triangle, if it is within the limit.
     fn answer(&self, fin: &Fin<'_, N>, axis: Axis<N>, limit: N) -> Option<Separation<N, 3>>;
-}
-
-/// [`separations3`] of a solid; answers false where the numbers end.
-fn of_solid<N: Real>(
-    parts: &TiledParts<'_, N, 3>,
-    solid: &impl Faceted<N>,
-    pose12: &Pose<N, 3>,
-    limit: N,
-    out: &mut Separations<N, 3>,
-) -> bool {
-    let question = Question { pose12, reach: solid.reach(), limit, origin: &parts.origin };
-    if !pose12.is_finite() {
-        return false;
-    }
-    for (tiles, near) in parts.tiles.iter().zip(parts.near).filter(|(_, near)| **near != 0) {
-        let axes = at(Level::new(), solid, &question, tiles);
-        for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
-            let found = axes.answer(lane, solid, &question, tiles);
-            let Some(found) = found else { return false };
-            out.push(found);
-        }
-    }
-    true
 }
 
 /// The axes by the vectors of an instruction set, on which they do not depend.
@@ -138,27 +81,6 @@ const FACE: f64 = 1.0;
 const EDGES: f64 = 2.0;
 
 impl<N: Real> Axes<N> {
-    /// What the axis of one of the triangles says; `None` where the numbers end.
-    #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
-    fn answer(
-        &self,
-        lane: usize,
-        solid: &impl Faceted<N>,
-        question: &Question<'_, N>,
-        tiles: &Tiles<N, 3>,
-    ) -> Option<Option<Separation<N, 3>>> {
-        let (scale, shrink) = (self.scale[lane], self.shrink[lane]);
-        if !(scale.is_finite_number() && shrink.is_finite_number()) {
-            return None;
-        }
-        if self.beyond >> lane & 1 == 1 {
-            return Some(None);
-        }
-        let triangle = Triangle::of_finite(tiles.corners(lane).map(|at| at - question.origin));
-        let fin = Fin::placed(&triangle, question.pose12, self.corners_of(lane), scale, shrink);
-        Some(solid.answer(&fin, self.axis(lane, solid), question.limit))
-    }
-
     /// The corners of one of the triangles in the frame of the solid, in units of the pair.
     fn corners_of(&self, lane: usize) -> [Vector<N, 3>; 3] {
         let [a, b, c] = &self.corners;
