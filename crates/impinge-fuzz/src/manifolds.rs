@@ -123,7 +123,7 @@ fn check_order<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// There is a manifold if there is a contact, and the deepest of a convex pair is that contact.
+/// There is a manifold if there is a contact, and the deepest of a convex pair is as deep but for rounding.
 fn check_deepest<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],
@@ -140,6 +140,7 @@ fn check_deepest<N: Space<D>, R, const D: usize>(
     if parts_of(&*pair.g1).is_none() && parts_of(&*pair.g2).is_none() {
         let depths = contacts.iter().map(|contact| contact.contact.depth);
         let deepest = depths.reduce(impinge::math::max).expect("there is one");
-        assert_eq!(deepest, expected.depth, "{expected:?} {contacts:?} of\n{pair:?}");
+        let off = (deepest - expected.depth).abs();
+        assert!(off <= pair.tolerance(), "{expected:?} {contacts:?} of\n{pair:?}");
     }
 }
