@@ -234,7 +234,7 @@ impl Layout {
                 let normals = [&pieces[group.lead].normal, &piece.normal];
                 are_level(normals, leads, merging.tolerance)
             };
-            let known = shelves.near(&piece.normal).iter().find(is_level).copied();
+            let known = shelves.near(*index).iter().find(is_level).copied();
             *found = known.unwrap_or(groups.len());
             if let Some(known) = known {
                 groups[known].first = groups[known].first.min(piece.parts);

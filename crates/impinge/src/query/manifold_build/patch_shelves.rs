@@ -7,72 +7,85 @@ use crate::math::{Real, Vector};
 
 /// How long the sides of cells are.
 const CELL: f64 = 4.0 * SAME;
-/// A patch lies on the shelves of all normals that differ by no more than this along each axis, by rounding more
-/// than those of one patch may.
+/// A patch lies on the shelves of all normals that differ by no more than this along each of [`WAYS`], by rounding
+/// more than those of one patch may.
 const REACH: f64 = SAME * (1.0 + 1.0 / 16.0);
 /// Of the patches on a shelf, which lie in different planes, so many are looked at: the deepest.
 const MAX_PLANES: usize = 32;
+/// The axes of the grid, unit vectors: two tell nearly all normals apart. They are askew to the axes of space,
+/// along which most faces of what people build lie.
+const WAYS: [[f64; 3]; 2] = [[0.36, 0.48, 0.8], [0.48, 0.64, -0.6]];
 
-/// A cell of the grid; whole numbers.
-type Cell<const D: usize> = [f64; D];
+/// A cell of the grid: its two whole numbers, one after the other.
+type Cell = i64;
 
 /// The patches of many pieces by their normals.
-pub(super) struct Shelves<const D: usize> {
+pub(super) struct Shelves {
     /// Those of the normals of all pieces, in order; none of few pieces, which share one shelf.
-    cells: Vec<Cell<D>>,
+    cells: Vec<Cell>,
+    /// For each piece its shelf; none of few pieces.
+    of_pieces: Vec<usize>,
     /// By cell: patches in the order in which they were put there.
-    shelves: SmallVec<[SmallVec<[usize; 8]>; 1]>,
+    shelves: SmallVec<[SmallVec<[usize; 4]>; 1]>,
 }
 
-impl<const D: usize> Shelves<D> {
+impl Shelves {
     /// Empty shelves for the normals of some pieces.
     ///
     /// Cost: O(n log n) in the number of pieces.
-    pub(super) fn of<N: Real>(pieces: &[Piece<N, D>]) -> Self {
-        let mut cells = Vec::new();
+    pub(super) fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
+        let (mut cells, mut of_pieces) = (Vec::new(), Vec::new());
         if pieces.len() > FEW_PIECES {
-            cells.extend(pieces.iter().map(|piece| cell(&piece.normal, [0.0; D])));
-            cells.sort_unstable_by(order);
-            cells.dedup();
+            let cell_of = |piece: &Piece<N, D>| cell(heights(&piece.normal));
+            let mut order: Vec<(Cell, usize)> = pieces.iter().map(cell_of).zip(0..).collect();
+            order.sort_unstable();
+            of_pieces.resize(pieces.len(), 0);
+            for (cell, piece) in order {
+                if cells.last() != Some(&cell) {
+                    cells.push(cell);
+                }
+                of_pieces[piece] = cells.len() - 1;
+            }
         }
         let shelves = SmallVec::from_elem(SmallVec::new(), cells.len().max(1));
-        Self { cells, shelves }
+        Self { cells, of_pieces, shelves }
     }
 
     /// Patches among which are all whose normals may be the same as that of a piece.
-    pub(super) fn near<N: Real>(&self, normal: &Vector<N, D>) -> &[usize] {
-        let shelf = self.at(&cell(normal, [0.0; D])).map_or(&[][..], |at| &self.shelves[at]);
+    pub(super) fn near(&self, piece: usize) -> &[usize] {
+        let shelf = &self.shelves[self.of_pieces.get(piece).copied().unwrap_or(0)];
         &shelf[..shelf.len().min(MAX_PLANES)]
     }
 
     /// Puts a patch on the shelves of all normals that may be the same.
-    pub(super) fn put<N: Real>(&mut self, patch: usize, normal: &Vector<N, D>) {
-        for corner in 0..1_u32 << D {
-            let aside = |axis| if corner >> axis & 1 == 0 { -REACH } else { REACH };
-            let at = self.at(&cell(normal, core::array::from_fn(aside)));
-            if let Some(at) = at.filter(|&at| self.shelves[at].last() != Some(&patch)) {
-                self.shelves[at].push(patch);
+    pub(super) fn put<N: Real, const D: usize>(&mut self, patch: usize, normal: &Vector<N, D>) {
+        let [first, second] = heights(normal);
+        for (aside1, aside2) in [(-REACH, -REACH), (-REACH, REACH), (REACH, -REACH), (REACH, REACH)]
+        {
+            let shelf = self.shelf(cell([first + aside1, second + aside2]));
+            if let Some(shelf) = shelf.map(|shelf| &mut self.shelves[shelf])
+                && shelf.last() != Some(&patch)
+            {
+                shelf.push(patch);
             }
         }
     }
 
-    fn at(&self, cell: &Cell<D>) -> Option<usize> {
-        if self.cells.is_empty() {
-            return Some(0);
-        }
-        self.cells.binary_search_by(|other| order(other, cell)).ok()
+    fn shelf(&self, cell: Cell) -> Option<usize> {
+        if self.cells.is_empty() { Some(0) } else { self.cells.binary_search(&cell).ok() }
     }
 }
 
-/// The cell of a vector moved aside.
-fn cell<N: Real, const D: usize>(normal: &Vector<N, D>, aside: [f64; D]) -> Cell<D> {
-    // Adding zero makes zeros of both signs one.
-    core::array::from_fn(|axis| ((normal[axis].as_f64() + aside[axis]) / CELL).floor() + 0.0)
+/// How far a normal points along the axes of the grid.
+fn heights<N: Real, const D: usize>(normal: &Vector<N, D>) -> [f64; 2] {
+    let along = |sum: f64, (own, way): (&N, f64)| sum + own.as_f64() * way;
+    WAYS.map(|way| normal.iter().zip(way).fold(0.0, along))
 }
 
-fn order<const D: usize>(a: &Cell<D>, b: &Cell<D>) -> core::cmp::Ordering {
-    let axes = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
-    axes.fold(core::cmp::Ordering::Equal, core::cmp::Ordering::then)
+#[expect(clippy::cast_possible_truncation, reason = "a unit vector is in some hundreds of cells")]
+fn cell(heights: [f64; 2]) -> Cell {
+    let [first, second] = heights.map(|height| (height / CELL).floor() as i32);
+    Cell::from(first) << 32 | Cell::from(second) & 0xffff_ffff
 }
 
 #[cfg(test)]
@@ -99,7 +112,7 @@ mod tests {
         let pieces = pieces::<D>(count);
         let (mut shelves, mut looked, mut same) = (Shelves::of(&pieces), 0, 0);
         for (at, piece) in pieces.iter().enumerate() {
-            let near = shelves.near(&piece.normal);
+            let near = shelves.near(at);
             looked += near.len();
             if near.len() < MAX_PLANES {
                 for (other, before) in pieces[..at].iter().enumerate() {
