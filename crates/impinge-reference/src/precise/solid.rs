@@ -59,14 +59,20 @@ impl<const D: usize> Solid<D> {
         Self::round_polytope(vertices, 0.0)
     }
 
-    /// All points within `radius` of the convex hull of some points.
+    /// All points within `radius` of the convex hull of some points; those that coincide count once.
     ///
     /// # Panics
     /// For no points.
     #[must_use]
     pub fn round_polytope(vertices: Vec<[f64; D]>, radius: f64) -> Self {
         assert!(!vertices.is_empty(), "a solid has at least one vertex");
-        Self { kind: Kind::Points(vertices), radius }
+        let mut apart: Vec<[f64; D]> = Vec::new();
+        for vertex in vertices {
+            if !apart.contains(&vertex) {
+                apart.push(vertex);
+            }
+        }
+        Self { kind: Kind::Points(apart), radius }
     }
 
     /// All points behind the plane through the local origin with this normal, of any length.
@@ -75,10 +81,11 @@ impl<const D: usize> Solid<D> {
         Self { kind: Kind::HalfSpace(normal), radius: 0.0 }
     }
 
-    /// The ellipsoid with these half axes along the axes of the local frame.
+    /// The ellipsoid with these half axes along the axes of the local frame; it is flat where one is zero.
     #[must_use]
     pub fn ellipsoid(half_axes: [f64; D]) -> Self {
-        let columns = (0..D).map(|i| along(i, half_axes[i])).collect();
+        let axes = (0..D).filter(|&i| half_axes[i] > 0.0);
+        let columns = axes.map(|i| along(i, half_axes[i])).collect();
         Self { kind: Kind::Parts(vec![Part { center: [0.0; D], columns }]), radius: 0.0 }
     }
 
@@ -91,6 +98,13 @@ impl<const D: usize> Solid<D> {
         };
         let parts = vec![ball(a, radius_a), ball(b, radius_b)];
         Self { kind: Kind::Parts(parts), radius: 0.0 }
+    }
+
+    /// The solid and all that lies within `radius` of it.
+    #[must_use]
+    pub fn swollen(mut self, radius: f64) -> Self {
+        self.radius += radius;
+        self
     }
 
     /// The radius of a ball about the local origin that holds the solid; infinite for a half-space.
@@ -161,6 +175,12 @@ pub struct Pose<const D: usize> {
 }
 
 impl<const D: usize> Pose<D> {
+    /// Moved, and not turned.
+    #[must_use]
+    pub fn at(translation: [f64; D]) -> Self {
+        Self { rotation: std::array::from_fn(|row| exact(&axis(row))), translation }
+    }
+
     /// The vector `v`, given in the local frame, in the world frame.
     pub(super) fn rotate(&self, v: &Vector<D>) -> Vector<D> {
         std::array::from_fn(|row| dot(&self.rotation[row], v))

@@ -1,5 +1,6 @@
 //! Random solids of all kinds, each with the distance of a point from its surface, in `f64` and by the
-//! reference or by hand.
+//! reference or by hand; the convex ones also as the reference knows them with all digits.
+#![allow(dead_code, reason = "each test binary uses a part")]
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
 use impinge::shape::{
@@ -9,6 +10,7 @@ use impinge::shape::{
 };
 use impinge_reference::geometry::vector::{add, dot, norm, scale, sub};
 use impinge_reference::geometry::{PointMeter, Solid};
+use impinge_reference::precise;
 use impinge_reference::random::Random;
 
 use super::query_support::solids::RoundHull;
@@ -20,6 +22,8 @@ pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     /// In words.
     pub(crate) text: String,
+    /// The same solid with all digits; `None` for composites.
+    pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
     /// No point is farther from the local origin; zero for a half-space.
     pub(crate) reach: f64,
@@ -33,7 +37,12 @@ const LEANING: f64 = 0.1181;
 
 impl<N: Real, const D: usize> Form<N, D> {
     fn new<S: Shape<N, D>>(shape: S, text: String, reach: f64, offs: Vec<Off<D>>) -> Self {
-        Self { shape: ShapeHandle::new(shape), text, offs, reach, beside: 0.0 }
+        Self { shape: ShapeHandle::new(shape), text, precise: None, offs, reach, beside: 0.0 }
+    }
+
+    /// The solid with all digits.
+    fn with(self, precise: precise::Solid<D>) -> Self {
+        Self { precise: Some(precise), ..self }
     }
 
     /// A solid that the reference knows, swollen by a radius.
@@ -43,6 +52,7 @@ impl<N: Real, const D: usize> Form<N, D> {
         let text = format!("{solid:?} swollen by {swelling}");
         Self {
             beside: LEANING * swelling,
+            precise: with_all_digits(solid).map(|solid| solid.swollen(swelling)),
             ..Self::new(shape, text, reach, vec![metered(solid, swelling)])
         }
     }
@@ -60,21 +70,48 @@ impl<N: Real, const D: usize> Form<N, D> {
     }
 }
 
+/// `None` for solids of revolution, which only space has.
+fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>> {
+    match solid {
+        Solid::Rounded { vertices, radius } => {
+            Some(precise::Solid::round_polytope(vertices.clone(), *radius))
+        }
+        Solid::HalfSpace { normal } => Some(precise::Solid::half_space(*normal)),
+        Solid::Cylinder { .. } | Solid::Cone { .. } => None,
+    }
+}
+
 fn metered<const D: usize>(solid: &Solid<D>, swelling: f64) -> Off<D> {
     let meter = PointMeter::new(solid);
     Box::new(move |point| meter.measure(point).0 - swelling)
 }
 
+/// Which sizes solids have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sizes {
+    /// Lengths are between this and 16 times as much.
+    pub(crate) least: f64,
+    /// Half of the lengths are zero, and corners lie on a line or coincide; those of polygons and hulls do not.
+    pub(crate) zeros: bool,
+}
+
 /// Draws sizes and points that the scalar holds.
 struct Draw<'a> {
     random: &'a mut Random,
-    /// Lengths are between this and 16 times as much.
-    least: f64,
+    sizes: Sizes,
 }
 
 impl Draw<'_> {
     fn size<N: Real>(&mut self) -> f64 {
-        N::lit(self.random.magnitude(self.least, 4)).as_f64()
+        if self.sizes.zeros && self.random.chance(0.5) {
+            return 0.0;
+        }
+        self.length::<N>()
+    }
+
+    /// Not zero.
+    fn length<N: Real>(&mut self) -> f64 {
+        N::lit(self.random.magnitude(self.sizes.least, 4)).as_f64()
     }
 
     fn sizes<N: Real, const D: usize>(&mut self) -> [f64; D] {
@@ -83,8 +120,11 @@ impl Draw<'_> {
 
     /// Corners of a wide triangle or a thick tetrahedron.
     fn corners<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
+        if self.sizes.zeros {
+            return self.corners_of_line::<N, D, K>();
+        }
         loop {
-            let limit = self.size::<N>();
+            let limit = self.length::<N>();
             let corners: [[f64; D]; K] =
                 std::array::from_fn(|_| self.random.vector::<D>(limit).map(|x| N::lit(x).as_f64()));
             let side = |corner: usize| sub(&corners[corner], &corners[0]);
@@ -97,6 +137,15 @@ impl Draw<'_> {
                 return corners;
             }
         }
+    }
+}
+
+impl Draw<'_> {
+    /// Corners on a line through the origin, some of which may coincide.
+    fn corners_of_line<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
+        let limit = self.length::<N>();
+        let end = self.random.vector::<D>(limit).map(|x| N::lit(x).as_f64());
+        std::array::from_fn(|_| scale(&end, *self.random.pick(&[0.0, 1.0, -1.0, 0.5])))
     }
 }
 
@@ -134,12 +183,13 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
             Form::known(triangle, &Solid::triangle(a, b, c), 0.0)
         }
         4 => Form::known(cuboid(), &Solid::cuboid(sizes), 0.0),
-        5 => Form::new(
-            Ellipsoid::new(vector::<N, D>(&sizes)),
-            format!("ellipsoid of {sizes:?}"),
-            sizes.iter().copied().fold(0.0, f64::max),
-            vec![off_ellipsoid(sizes)],
-        ),
+        5 => {
+            let (shape, text) =
+                (Ellipsoid::new(vector::<N, D>(&sizes)), format!("ellipsoid of {sizes:?}"));
+            let most = sizes.iter().copied().fold(0.0, f64::max);
+            let form = Form::new(shape, text, most, vec![off_ellipsoid(sizes)]);
+            form.with(precise::Solid::ellipsoid(sizes))
+        }
         6 => tapered(half, [radius, draw.size::<N>()]),
         7 => Form::known(Rounded::new(cuboid(), N::lit(radius)), &Solid::cuboid(sizes), radius),
         8 => {
@@ -168,6 +218,11 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
 
 /// To first order, which is enough near the surface.
 fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
+    if half_axes.contains(&0.0) {
+        // Flat: its surface is all of it.
+        let solid = precise::Solid::ellipsoid(half_axes);
+        return Box::new(move |point| off_precise(&solid, point));
+    }
     Box::new(move |point| {
         let once: [f64; D] = std::array::from_fn(|axis| point[axis] / half_axes[axis]);
         let twice: [f64; D] = std::array::from_fn(|axis| once[axis] / half_axes[axis]);
@@ -176,6 +231,13 @@ fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
         }
         norm(&once) * (norm(&once) - 1.0) / norm(&twice)
     })
+}
+
+/// How far a local point is from the surface of a solid, with all digits; slow.
+fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f64 {
+    let (place, origin) = (precise::Pose::at(*point), precise::Pose::at([0.0; D]));
+    let dot = precise::Solid::ball(0.0);
+    precise::signed_distance(&dot, &place, solid, &origin).distance.to_f64()
 }
 
 /// The union of balls along the second axis whose radii change evenly.
@@ -196,7 +258,10 @@ fn tapered<N: Space<D>, const D: usize>(half: f64, radii: [f64; 2]) -> Form<N, D
     };
     let text = format!("tapered capsule of {half} and {radii:?}");
     let most = radii[0].max(radii[1]);
-    Form { beside: LEANING * most, ..Form::new(shape, text, half + most, vec![Box::new(off)]) }
+    let form = Form::new(shape, text, half + most, vec![Box::new(off)]);
+    let [low, high] = radii;
+    let precise = precise::Solid::tapered_capsule(up(-half), low, up(half), high);
+    Form { beside: LEANING * most, ..form.with(precise) }
 }
 
 pub(crate) const PLANE: [&str; COMMON + 4] = [
@@ -218,13 +283,13 @@ pub(crate) const PLANE: [&str; COMMON + 4] = [
     "compound",
 ];
 
-pub(crate) fn plane<N: Real>(kind: usize, least: f64, random: &mut Random) -> Form<N, 2> {
-    let mut draw = Draw { random, least };
+pub(crate) fn plane<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> Form<N, 2> {
+    let mut draw = Draw { random, sizes };
     if kind < COMMON {
         return common(kind, &mut draw);
     }
-    let (half, radius) = (draw.size::<N>(), draw.size::<N>());
-    let sizes = draw.sizes::<N, 2>();
+    let (half, radius) = (draw.length::<N>(), draw.length::<N>());
+    let sizes = [draw.length::<N>(), draw.length::<N>()];
     let corners = [[1.0, 0.0], [0.75, 0.75], [0.0, 1.0], [-1.0, 0.5], [-0.5, -1.0], [0.5, -0.75]]
         .map(|[x, y]| [x * sizes[0], y * sizes[1]].map(|x| N::lit(x).as_f64()));
     let points: Vec<_> = corners.iter().map(point).collect();
@@ -283,8 +348,8 @@ pub(crate) const SPACE: [&str; COMMON + 11] = [
     "compound",
 ];
 
-pub(crate) fn space<N: Real>(kind: usize, least: f64, random: &mut Random) -> Form<N, 3> {
-    let mut draw = Draw { random, least };
+pub(crate) fn space<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> Form<N, 3> {
+    let mut draw = Draw { random, sizes };
     if kind < COMMON {
         return common(kind, &mut draw);
     }
@@ -292,11 +357,15 @@ pub(crate) fn space<N: Real>(kind: usize, least: f64, random: &mut Random) -> Fo
     let [h, r, s] = [half, radius, swelling].map(N::lit);
     let cylinder = Solid::Cylinder { half_height: half, radius };
     let cone = Solid::Cone { half_height: half, radius };
+    let exact = [precise::Solid::cylinder(half, radius), precise::Solid::cone(half, radius)];
+    let [exact_cylinder, exact_cone] = exact;
     match kind - COMMON {
-        0 => Form::known(Cylinder::new(h, r), &cylinder, 0.0),
-        1 => Form::known(Cone::new(h, r), &cone, 0.0),
-        2 => Form::known(Rounded::new(Cylinder::new(h, r), s), &cylinder, swelling),
-        3 => Form::known(Rounded::new(Cone::new(h, r), s), &cone, swelling),
+        0 => Form::known(Cylinder::new(h, r), &cylinder, 0.0).with(exact_cylinder),
+        1 => Form::known(Cone::new(h, r), &cone, 0.0).with(exact_cone),
+        2 => Form::known(Rounded::new(Cylinder::new(h, r), s), &cylinder, swelling)
+            .with(exact_cylinder.swollen(swelling)),
+        3 => Form::known(Rounded::new(Cone::new(h, r), s), &cone, swelling)
+            .with(exact_cone.swollen(swelling)),
         4 => hull(&mut draw, 0.0),
         5 => hull(&mut draw, swelling),
         6 => {
@@ -350,7 +419,7 @@ fn cross([a, b, c, _]: &[[f64; 3]; 4]) -> [f64; 3] {
 
 /// Ten points about the origin.
 fn hull<N: Real>(draw: &mut Draw<'_>, swelling: f64) -> Form<N, 3> {
-    let sizes = draw.sizes::<N, 3>();
+    let sizes: [f64; 3] = std::array::from_fn(|_| draw.length::<N>());
     let corners: Vec<[f64; 3]> = (0..10)
         .map(|_| {
             let direction: [f64; 3] = draw.random.unit_vector();

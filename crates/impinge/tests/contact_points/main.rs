@@ -9,7 +9,7 @@ mod forms;
 
 use std::collections::BTreeMap;
 
-use forms::{Form, PLANE, SPACE, local, plane, space};
+use forms::{Form, PLANE, SPACE, Sizes, local, plane, space};
 use impinge::math::na::{UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry3, Point, Pose, Real, Space, Vector};
 use impinge::narrow_phase::{
@@ -49,7 +49,7 @@ const GAPS: [Option<f64>; 7] =
 /// Ways to turn by a part of a quarter, and solids, of one dimension.
 struct Stage<N: Real, R, const D: usize> {
     names: &'static [&'static str],
-    form: fn(usize, f64, &mut Random) -> Form<N, D>,
+    form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     /// One of the turns that take axes to axes.
     straight: fn(&mut Random) -> R,
     /// By an angle about an axis across the second one.
@@ -83,8 +83,10 @@ where
 {
     fn scene(&self, kinds: [usize; 2], random: &mut Random) -> Scene<N, R, D> {
         let ratio = *random.pick(&[1.0, 1.0, 1.0, 0.03, 30.0]);
-        let forms =
-            [(self.form)(kinds[0], 0.1, random), (self.form)(kinds[1], 0.1 * ratio, random)];
+        let forms = [0, 1].map(|index| {
+            let least = [0.1, 0.1 * ratio][index];
+            (self.form)(kinds[index], Sizes { least, zeros: false }, random)
+        });
         let lean = match random.below(4) {
             0 => 0.0,
             _ => 10.0_f64.powf(-random.range(2.0, 17.0)),

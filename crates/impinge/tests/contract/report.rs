@@ -1,0 +1,58 @@
+//! What was found wrong, by law and pair of kinds.
+
+use std::collections::BTreeMap;
+
+/// How often a law was asked of two kinds, how often it did not hold, and where it was the worst.
+#[derive(Default)]
+struct Tally {
+    asked: usize,
+    broken: usize,
+    worst: f64,
+    what: String,
+}
+
+#[derive(Default)]
+pub(crate) struct Report {
+    tallies: BTreeMap<String, Tally>,
+}
+
+impl Report {
+    /// An error of some size, of which `allowed` are.
+    pub(crate) fn within(
+        &mut self,
+        law: String,
+        error: f64,
+        allowed: f64,
+        what: impl FnOnce() -> String,
+    ) {
+        let is_broken = error > allowed || error.is_nan();
+        let tally = self.tallies.entry(law).or_default();
+        tally.asked += 1;
+        tally.broken += usize::from(is_broken);
+        if is_broken && (error > tally.worst || error.is_nan() || tally.what.is_empty()) {
+            (tally.worst, tally.what) = (error, what());
+        } else {
+            tally.worst = tally.worst.max(error);
+        }
+    }
+
+    /// Something that holds or does not.
+    pub(crate) fn holds(&mut self, law: String, holds: bool, what: impl FnOnce() -> String) {
+        self.within(law, if holds { 0.0 } else { 1.0 }, 0.5, what);
+    }
+
+    /// How many answers were judged.
+    pub(crate) fn asked(&self) -> usize {
+        self.tallies.values().map(|tally| tally.asked).sum()
+    }
+
+    /// A line for each law that does not hold of two kinds, but for those that are known not to.
+    pub(crate) fn broken(&self, is_known: fn(&str) -> bool) -> Vec<String> {
+        let broken = self.tallies.iter().filter(|(law, tally)| tally.broken > 0 && !is_known(law));
+        let line = |(law, tally): (&String, &Tally)| {
+            let Tally { asked, broken, worst, what } = tally;
+            format!("{law}: {broken} of {asked}, at most {worst:.1}: {what}")
+        };
+        broken.map(line).collect()
+    }
+}

@@ -1,0 +1,292 @@
+//! Two solids in their places, in each of the regimes that contacts are judged in.
+
+use impinge::math::{AbstractRotation, Isometry, Real, Space, Vector};
+use impinge::query::contact;
+use impinge::shape::Shape;
+use impinge_reference::geometry::vector::scale;
+use impinge_reference::precise;
+use impinge_reference::random::Random;
+
+use super::forms::{Form, Sizes};
+
+/// How many scenes of each two kinds there are: each gap with each alignment.
+pub(crate) const SCENES: usize = GAPS.len() * 4;
+
+/// Signed distances in parts of the smaller solid; `None` is one all but in the middle of the other.
+const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), None];
+
+/// How one solid is turned against the other.
+#[derive(Clone, Copy, Debug)]
+enum Alignment {
+    Any,
+    /// Axes on axes.
+    Aligned,
+    /// By an angle of 1e-2 to 1e-7 from that.
+    Nearly,
+    /// By an angle that is hardly more than rounding.
+    Hardly,
+}
+
+const ALIGNMENTS: [Alignment; 4] =
+    [Alignment::Any, Alignment::Aligned, Alignment::Nearly, Alignment::Hardly];
+
+/// What else is particular about a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Setup {
+    Plain,
+    /// Half of the lengths are zero.
+    Degenerate,
+    /// As far from the origin as 10⁴.
+    Far,
+    /// Both are turned together, so that nothing is along an axis of the world.
+    Turned,
+    /// The second is a thirtieth of the size, or thirty times as large.
+    Unlike,
+}
+
+const SETUPS: [Setup; 6] =
+    [Setup::Plain, Setup::Plain, Setup::Degenerate, Setup::Far, Setup::Turned, Setup::Unlike];
+
+/// What is particular to a dimension.
+pub(crate) struct Stage<N: Real, R, const D: usize> {
+    pub(crate) names: &'static [&'static str],
+    pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
+    /// One of the turns that take axes to axes.
+    pub(crate) straight: fn(&mut Random) -> R,
+    /// By an angle about an axis across the second one.
+    pub(crate) tilt: fn(f64, &mut Random) -> R,
+    pub(crate) any: fn(&mut Random) -> R,
+    /// The same place with all digits.
+    pub(crate) precise: fn(&Isometry<N, R, D>) -> precise::Pose<D>,
+}
+
+/// How a solid is drawn, at any scale.
+#[derive(Clone, Copy, Debug)]
+struct Recipe {
+    kind: usize,
+    sizes: Sizes,
+    seed: u64,
+}
+
+/// Two solids in their places, and how contacts of them are asked for.
+pub(crate) struct Scene<N: Real, R, const D: usize> {
+    recipes: [Recipe; 2],
+    pub(crate) forms: [Form<N, D>; 2],
+    pub(crate) poses: [Isometry<N, R, D>; 2],
+    /// The linear prediction.
+    pub(crate) limit: N,
+    /// The angular prediction.
+    pub(crate) angle: N,
+    /// A small step of the second solid.
+    pub(crate) step: Vector<N, D>,
+    /// One lies in the middle of another that is much larger.
+    pub(crate) is_swallowed: bool,
+    /// Some lengths are zero.
+    pub(crate) is_degenerate: bool,
+    /// The regime in words.
+    regime: String,
+}
+
+impl<N, R, const D: usize> Stage<N, R, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Clone + std::fmt::Debug,
+{
+    /// The scene with this number of two kinds.
+    pub(crate) fn scene(&self, kinds: [usize; 2], number: usize, seed: u64) -> Scene<N, R, D> {
+        let random = &mut Random::new(seed);
+        let (gap, alignment) = (GAPS[number % GAPS.len()], ALIGNMENTS[number / GAPS.len() % 4]);
+        let setup = *random.pick(&SETUPS);
+        let ratio = if setup == Setup::Unlike { *random.pick(&[0.03, 30.0]) } else { 1.0 };
+        let recipe = |index: usize, seed: u64| {
+            let sizes =
+                Sizes { least: [0.1, 0.1 * ratio][index], zeros: setup == Setup::Degenerate };
+            Recipe { kind: kinds[index], sizes, seed }
+        };
+        let recipes = [recipe(0, random.bits()), recipe(1, random.bits())];
+        let forms = recipes.map(|recipe| self.draw(&recipe));
+        // A length of the scene: of two points there is no other.
+        let length = (forms[0].reach + forms[1].reach).max(0.1);
+        let mut poses = self.places(length, gap, alignment, random);
+        if let Some(gap) = gap {
+            let smaller = forms[0].reach.min(forms[1].reach).max(0.01);
+            bring(&forms, &mut poses, N::lit(gap * smaller));
+        }
+        self.set_up(setup, &mut poses, random);
+        poses.iter_mut().for_each(|pose| drop_dust(pose, N::lit(length)));
+        let limit = limit(&forms, &poses, N::lit(0.1 * length), random);
+        let step = random.vector::<D>(1e-4 * length).map(N::lit).into();
+        Scene {
+            recipes,
+            forms,
+            poses,
+            limit,
+            angle: N::lit(*random.pick(&[0.0, 0.05])),
+            step,
+            is_degenerate: setup == Setup::Degenerate,
+            is_swallowed: setup == Setup::Unlike && gap.is_none(),
+            regime: format!("gap {gap:?}, {alignment:?}, {setup:?}, scene {number} of seed {seed}"),
+        }
+    }
+
+    fn draw(&self, recipe: &Recipe) -> Form<N, D> {
+        (self.form)(recipe.kind, recipe.sizes, &mut Random::new(recipe.seed))
+    }
+
+    /// The first at the origin, the second well above or below it, or all but in its middle.
+    fn places(
+        &self,
+        length: f64,
+        gap: Option<f64>,
+        alignment: Alignment,
+        random: &mut Random,
+    ) -> [Isometry<N, R, D>; 2] {
+        let lean = match alignment {
+            Alignment::Any | Alignment::Aligned => 0.0,
+            Alignment::Nearly => 10.0_f64.powf(-random.range(2.0, 7.0)),
+            Alignment::Hardly => N::EPSILON.as_f64() * 2.0_f64.powf(random.range(-4.0, 4.0)),
+        };
+        let turn = match alignment {
+            Alignment::Any => (self.any)(random),
+            Alignment::Aligned => (self.straight)(random),
+            Alignment::Nearly | Alignment::Hardly => {
+                (self.straight)(random) * (self.tilt)(lean, random)
+            }
+        };
+        // Over the middle, all but over it, or anywhere.
+        let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
+        let mut away = scale(&random.vector::<D>(1.0), beside * length);
+        away[1] = length * *random.pick(if gap.is_some() { &[1.5, -1.5] } else { &[0.0, 0.01] });
+        let away = Vector::<N, D>::from(away.map(N::lit));
+        let at = [Vector::<N, D>::zeros(), away];
+        let mut poses = at.map(|at| Isometry::from_parts(at.into(), R::identity()));
+        poses[1].rotation = turn;
+        poses
+    }
+
+    fn set_up(&self, setup: Setup, poses: &mut [Isometry<N, R, D>; 2], random: &mut Random) {
+        match setup {
+            Setup::Plain | Setup::Degenerate | Setup::Unlike => {}
+            Setup::Far => {
+                let far = Vector::<N, D>::from(random.vector::<D>(1e4).map(N::lit));
+                poses.iter_mut().for_each(|pose| pose.translation.vector += far);
+            }
+            Setup::Turned => {
+                let turn = (self.any)(random);
+                for pose in poses {
+                    pose.translation.vector = turn.transform_vector(&pose.translation.vector);
+                    pose.rotation = turn.clone() * pose.rotation.clone();
+                }
+            }
+        }
+    }
+
+    /// The same scene, some power of two as large.
+    pub(crate) fn scaled(&self, scene: &Scene<N, R, D>, scale: f64) -> Scene<N, R, D> {
+        let recipes = scene.recipes.map(|recipe| {
+            let sizes = Sizes { least: recipe.sizes.least * scale, ..recipe.sizes };
+            Recipe { sizes, ..recipe }
+        });
+        let factor = N::lit(scale);
+        let mut poses = scene.poses.clone();
+        poses.iter_mut().for_each(|pose| pose.translation.vector *= factor);
+        Scene {
+            recipes,
+            forms: recipes.map(|recipe| self.draw(&recipe)),
+            poses,
+            limit: scene.limit * factor,
+            step: scene.step * factor,
+            regime: format!("{} times as large, {}", scale, scene.regime),
+            ..*scene
+        }
+    }
+}
+
+/// Moves the second solid along the normal, until the signed distance is about `gap`.
+fn bring<N, R, const D: usize>(forms: &[Form<N, D>; 2], poses: &mut [Isometry<N, R, D>; 2], gap: N)
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D>,
+{
+    let [shape1, shape2] = forms.each_ref().map(|form| &*form.shape);
+    if let Some(found) = contact(&poses[0], shape1, &poses[1], shape2, N::INFINITY) {
+        poses[1].translation.vector += found.normal.into_inner() * (found.depth + gap);
+    }
+}
+
+/// Makes coordinates zero that are nothing beside rounding, so that no product of a few of them underflows.
+fn drop_dust<N, R, const D: usize>(pose: &mut Isometry<N, R, D>, length: N)
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D>,
+{
+    let least = length * N::EPSILON * N::lit(1.0 / 1024.0);
+    for x in pose.translation.vector.iter_mut().filter(|x| x.abs() < least) {
+        *x = N::ZERO;
+    }
+}
+
+/// A prediction: mostly `wide`; or none, or exactly the distance, or a little less.
+fn limit<N, R, const D: usize>(
+    forms: &[Form<N, D>; 2],
+    poses: &[Isometry<N, R, D>; 2],
+    wide: N,
+    random: &mut Random,
+) -> N
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D>,
+{
+    let [shape1, shape2] = forms.each_ref().map(|form| &*form.shape);
+    let found = contact(&poses[0], shape1, &poses[1], shape2, N::INFINITY);
+    let distance = found.map_or(N::ZERO, |found| -found.depth);
+    let is_apart = distance > N::ZERO;
+    match random.below(8) {
+        0 => N::ZERO,
+        1 if is_apart => distance,
+        2 if is_apart => distance - distance * N::EPSILON,
+        _ => wide,
+    }
+}
+
+impl<N, R, const D: usize> Scene<N, R, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Clone + std::fmt::Debug,
+{
+    pub(crate) fn shapes(&self) -> [&dyn Shape<N, D>; 2] {
+        self.forms.each_ref().map(|form| &*form.shape)
+    }
+
+    /// The places after a small step of the second solid.
+    pub(crate) fn moved(&self) -> [Isometry<N, R, D>; 2] {
+        let mut poses = self.poses.clone();
+        poses[1].translation.vector += self.step;
+        poses
+    }
+
+    /// One rounding error of the size of the scene: both bounding radii, the distance of the origins and
+    /// that from the origin of the world, in which points are given.
+    pub(crate) fn unit(&self) -> f64 {
+        let at = self.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
+        let size = self.forms[0].reach + self.forms[1].reach;
+        N::EPSILON.as_f64() * (size + (at[1] - at[0]).norm() + at[0].norm())
+    }
+
+    /// The solids are the same at one place, so that nothing tells one from the other.
+    pub(crate) fn is_twin(&self) -> bool {
+        let [shape1, shape2] = self.shapes().map(|shape| format!("{shape:?}"));
+        let [pose1, pose2] = &self.poses;
+        shape1 == shape2 && pose1.translation == pose2.translation
+    }
+}
+
+impl<N: Real, R: std::fmt::Debug, const D: usize> std::fmt::Display for Scene<N, R, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [text1, text2] = self.forms.each_ref().map(|form| &form.text);
+        let [pose1, pose2] = &self.poses;
+        let (limit, angle) = (self.limit, self.angle);
+        write!(f, "{text1} at {pose1:?} and {text2} at {pose2:?}; ")?;
+        write!(f, "predictions {limit:?} and {angle:?}; {}", self.regime)
+    }
+}
