@@ -4,7 +4,7 @@ use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cylinder_cylinder,
     flipped, general, hulls, look_up, plane_any, revolved, rounded, segment_cuboid,
-    segment_segment, segment_triangle, triangle_cuboid, triangle_polytope, triangle_triangle,
+    segment_segment, triangle_cuboid, triangle_polytope, triangle_triangle,
 };
 use crate::convex::Separation;
 use crate::math::Real;
@@ -24,9 +24,8 @@ impl<N: Real> Table3<N> {
         let by: Algorithm<N, 3> = ball_cylinder::separation;
         let bo: Algorithm<N, 3> = ball_cone::separation;
         let ss: Algorithm<N, 3> = segment_segment::separation;
-        let st: Algorithm<N, 3> = segment_triangle::separation;
-        let sh: Algorithm<N, 3> = hulls::segment::separation;
         let sc: Algorithm<N, 3> = segment_cuboid::separation;
+        let sf: Algorithm<N, 3> = hulls::segment::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
         let tt: Algorithm<N, 3> = triangle_triangle::separation;
         let tc: Algorithm<N, 3> = triangle_cuboid::separation;
@@ -46,8 +45,8 @@ impl<N: Real> Table3<N> {
         // ellipsoid, tapered capsule, rounded, support map, plane, composite.
         [
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
-            [__, ss, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, ss, st, sc, sh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, ss, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, tt, tc, th, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],

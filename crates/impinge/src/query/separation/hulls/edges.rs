@@ -2,7 +2,8 @@
 //! are apart.
 
 use super::face::ReferenceFace;
-use super::vertices::rows;
+use super::polyhedral::Polyhedral;
+use super::vertices::{Vertices, rows};
 use super::{LANES, noise};
 use crate::convex::Separation;
 use crate::math::lanes::{self, by_axis, dot, highest_lane, load, seen_from, spread};
@@ -30,34 +31,62 @@ pub(super) struct EdgeBlock<N: Real> {
 }
 
 impl<N: Real> EdgeBlock<N> {
-    /// Edges of no length.
-    pub(super) fn zero() -> Self {
+    /// Up to eight edges of a solid. The rest are copies of the first.
+    #[inline(always)]
+    pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        solid: &Polyhedral<'_, N>,
+        vertices: &Vertices<N>,
+        candidates: &[u8],
+    ) -> Self {
         let zero = [[N::ZERO; LANES]; 3];
-        Self { indices: [0; LANES], from: zero, along: zero }
+        let mut block = Self { indices: [0; LANES], from: zero, along: zero };
+        let mut ends = zero;
+        for lane in 0..LANES {
+            let index = candidates[if lane < candidates.len() { lane } else { 0 }];
+            block.indices[lane] = index;
+            let [from, to] = solid.ends(vertices, usize::from(index));
+            for axis in 0..3 {
+                (block.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
+            }
+        }
+        for (axis, ends) in ends.iter().enumerate() {
+            let along = V::load(simd, ends) - V::load(simd, &block.from[axis]);
+            along.store(&mut block.along[axis]);
+        }
+        block
     }
 }
 
 /// The indices of some edges, ascending.
-struct CandidateEdges {
+pub(super) struct CandidateEdges {
     indices: [u8; MAX_EDGES],
     len: usize,
 }
 
 impl CandidateEdges {
-    /// Those that end at one of some vertices, given as bits.
     #[inline(always)]
-    fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
+    pub(super) fn of(edges: &[PolytopeEdge], is_candidate: impl Fn(&PolytopeEdge) -> bool) -> Self {
         let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
         for (index, edge) in (0_u8..).zip(edges) {
-            let [from, to] = edge.vertices;
             // Without a branch: the next edge takes the place of one that is no candidate.
             candidates.indices[candidates.len] = index;
-            candidates.len += usize::from((vertices >> from | vertices >> to) & 1 == 1);
+            candidates.len += usize::from(is_candidate(edge));
         }
         candidates
     }
 
-    fn indices(&self) -> &[u8] {
+    /// Those that end at one of some vertices, given as bits.
+    #[inline(always)]
+    fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
+        Self::of(
+            edges,
+            #[inline(always)]
+            |edge| (vertices >> edge.vertices[0] | vertices >> edge.vertices[1]) & 1 == 1,
+        )
+    }
+
+    pub(super) fn indices(&self) -> &[u8] {
         &self.indices[..self.len]
     }
 }
@@ -92,7 +121,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     #[inline(always)]
     fn edge(&self, index: u8) -> ReferenceEdge<N> {
         let index = usize::from(index);
-        let [from, to] = self.own.ends(index);
+        let [from, to] = self.own.solid.ends(self.own.vertices, index);
         let along = to - from;
         ReferenceEdge { index, from, along, squared: along.norm_squared() }
     }
@@ -101,29 +130,6 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     #[inline(always)]
     fn normals_beside(&self, edge: usize) -> [Vector<N, 3>; 2] {
         self.own.solid.edges[edge].faces.map(|face| self.own.solid.normal(face as usize))
-    }
-
-    /// Up to eight edges of the other solid. The rest are copies of the first.
-    #[inline(always)]
-    fn edge_block<S: Simd, V: Wide<S, Scalar = N>>(
-        &self,
-        simd: S,
-        candidates: &[u8],
-    ) -> EdgeBlock<N> {
-        let (mut block, mut ends) = (EdgeBlock::zero(), [[N::ZERO; LANES]; 3]);
-        for lane in 0..LANES {
-            let index = candidates[if lane < candidates.len() { lane } else { 0 }];
-            block.indices[lane] = index;
-            let [from, to] = self.other.ends(usize::from(index));
-            for axis in 0..3 {
-                (block.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
-            }
-        }
-        for (axis, ends) in ends.iter().enumerate() {
-            let along = V::load(simd, ends) - V::load(simd, &block.from[axis]);
-            along.store(&mut block.along[axis]);
-        }
-        block
     }
 
     /// The outward normals of the two faces beside each edge of a block.
@@ -159,7 +165,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
             (None, self.separation() + N::TWO * noise());
         for eight in candidates2.indices().chunks(LANES) {
-            let edges2 = self.edge_block::<S, V>(simd, eight);
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
             let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
             for &index in candidates1.indices() {
                 let edge1 = self.edge(index);
@@ -206,7 +212,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
         for eight in candidates2.indices().chunks(LANES) {
-            let edges2 = self.edge_block::<S, V>(simd, eight);
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
             for &index in candidates1.indices() {
                 let edge1 = self.edge(index);
                 let squares = squared_distances::<S, N, V>(simd, &edge1, &edges2);
@@ -221,27 +227,14 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             }
         }
         let (points, across) = self.nearest_points(nearest?);
-        let [on_own, on_other] = points;
-        let away = on_other - on_own;
-        // The perpendicular of the edges is right to the last bits, however near the points are.
-        let is_across = |across: &Vector<N, 3>| {
-            (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
-        };
-        let normal = match unit(&across).map(|(across, _)| across).filter(is_across) {
-            Some(across) if across.dot(&away) < N::ZERO => -across,
-            Some(across) => across,
-            None => unit(&away)?.0,
-        };
-        self.proved::<S, V>(simd, &normal, points)
+        self.proved::<S, V>(simd, &normal_between(&points, &across)?, points)
     }
 
     /// The nearest points of two edges, and a vector perpendicular to both, to either side.
     fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
-        let (ends1, ends2) = (self.own.ends(edge1), self.other.ends(edge2));
-        let (point1, point2) =
-            nearest_of_segments(&ends1.map(Point::from), &ends2.map(Point::from));
-        let across = cross(&(ends1[1] - ends1[0]), &(ends2[1] - ends2[0]));
-        ([point1.coords, point2.coords], across)
+        let ends1 = self.own.solid.ends(self.own.vertices, edge1);
+        let ends2 = self.other.solid.ends(self.other.vertices, edge2);
+        nearest_points(&ends1, &ends2)
     }
 
     /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
@@ -251,16 +244,52 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         &self,
         simd: S,
         normal: &Vector<N, 3>,
-        [on_own, on_other]: [Vector<N, 3>; 2],
+        points: [Vector<N, 3>; 2],
     ) -> Option<Separation<N, 3>> {
         let low = self.other.vertices.low::<S, V>(simd, normal);
         let high = -self.own.vertices.low::<S, V>(simd, &-normal);
-        let distance = low - high;
-        let off = on_other - on_own - normal * distance;
-        let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
-        let (point1, point2) = (Point::from(on_own), Point::from(on_other));
-        is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
+        proved(normal, low - high, points)
     }
+}
+
+/// The nearest points of two edges, and a vector perpendicular to both, to either side.
+pub(super) fn nearest_points<N: Real>(
+    ends1: &[Vector<N, 3>; 2],
+    ends2: &[Vector<N, 3>; 2],
+) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
+    let (point1, point2) = nearest_of_segments(&ends1.map(Point::from), &ends2.map(Point::from));
+    let across = cross(&(ends1[1] - ends1[0]), &(ends2[1] - ends2[0]));
+    ([point1.coords, point2.coords], across)
+}
+
+/// The direction from the first to the second of the nearest points of two edges: their common perpendicular,
+/// which is right to the last bits however near the points are, if it leads from one to the other.
+pub(super) fn normal_between<N: Real>(
+    [from, to]: &[Vector<N, 3>; 2],
+    across: &Vector<N, 3>,
+) -> Option<Vector<N, 3>> {
+    let away = to - from;
+    let is_across = |across: &Vector<N, 3>| {
+        (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
+    };
+    match unit(across).map(|(across, _)| across).filter(is_across) {
+        Some(across) if across.dot(&away) < N::ZERO => Some(-across),
+        Some(across) => Some(across),
+        None => unit(&away).map(|(normal, _)| normal),
+    }
+}
+
+/// The answer along a unit vector with this distance of supporting planes, if two points lie along it as far
+/// apart.
+pub(super) fn proved<N: Real>(
+    normal: &Vector<N, 3>,
+    distance: N,
+    [on_own, on_other]: [Vector<N, 3>; 2],
+) -> Option<Separation<N, 3>> {
+    let off = on_other - on_own - normal * distance;
+    let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
+    let (point1, point2) = (Point::from(on_own), Point::from(on_other));
+    is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }
 
 /// The separations of the solids along the common perpendiculars of eight pairs of edges: of those that are a

@@ -18,15 +18,6 @@ pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) heights: Heights<N>,
 }
 
-impl<N: Real> LocalSolid<'_, '_, N> {
-    /// The ends of an edge.
-    #[inline(always)]
-    pub(super) fn ends(&self, edge: usize) -> [Vector<N, 3>; 2] {
-        let [from, to] = self.solid.edges[edge].vertices;
-        [self.vertices.at(from as usize), self.vertices.at(to as usize)]
-    }
-}
-
 /// The face of all that the other solid lies farthest above, or least deep below.
 pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) own: LocalSolid<'s, 'a, N>,

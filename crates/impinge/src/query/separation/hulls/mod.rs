@@ -1,4 +1,5 @@
-//! The separating axis test between two convex polyhedra of few parts: hulls, and a box and a hull.
+//! The separating axis test between two convex polyhedra of few parts: hulls, a box and a hull, and segments
+//! against triangles and hulls ([`segment`]).
 //!
 //! That of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013), with vertices,
 //! planes and edges in lanes of eight:

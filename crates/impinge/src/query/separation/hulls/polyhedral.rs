@@ -1,11 +1,13 @@
-//! Convex polyhedra, hulls and boxes alike: vertices and face planes in lanes, edges, and the rings of faces.
+//! Convex polyhedra, hulls, boxes and triangles alike: vertices and face planes in lanes, edges, and the rings
+//! of faces.
 
 use core::array::from_fn;
 
 use super::edges::MAX_EDGES;
+use super::vertices::Vertices;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::math::{Real, Vector};
-use crate::shape::{Cuboid, Planes, Polytope, PolytopeEdge, SupportMap};
+use crate::math::{Real, Vector, cross, max, max_component};
+use crate::shape::{Cuboid, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
 
 /// A convex polyhedron in its own frame.
 pub(super) struct Polyhedral<'a, N: Real> {
@@ -21,8 +23,9 @@ pub(super) struct Polyhedral<'a, N: Real> {
 
 /// The vertices around the faces.
 enum Rings<'a, N: Real> {
-    OfPolytope(&'a Polytope<N, 3>),
-    OfBox,
+    Polytope(&'a Polytope<N, 3>),
+    Cuboid,
+    Triangle,
 }
 
 impl<'a, N: Real> Polyhedral<'a, N> {
@@ -37,7 +40,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
             vertices: polytope.vertices().len(),
             planes,
             edges: polytope.edges(),
-            rings: Rings::OfPolytope(polytope),
+            rings: Rings::Polytope(polytope),
             reach: polytope.reach(),
         })
     }
@@ -45,17 +48,26 @@ impl<'a, N: Real> Polyhedral<'a, N> {
     /// The number of faces.
     pub(super) fn faces(&self) -> usize {
         match self.rings {
-            Rings::OfPolytope(polytope) => polytope.faces().len(),
-            Rings::OfBox => 6,
+            Rings::Polytope(polytope) => polytope.faces().len(),
+            Rings::Cuboid => 6,
+            Rings::Triangle => 5,
         }
     }
 
     /// The vertices around a face, counter-clockwise seen from outside.
     pub(super) fn ring(&self, face: usize) -> &[u32] {
         match self.rings {
-            Rings::OfPolytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),
-            Rings::OfBox => &BOX_RINGS[face],
+            Rings::Polytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),
+            Rings::Cuboid => &BOX_RINGS[face],
+            Rings::Triangle => TRIANGLE_RINGS[face],
         }
+    }
+
+    /// The ends of an edge, among the vertices in some frame.
+    #[inline(always)]
+    pub(super) fn ends(&self, vertices: &Vertices<N>, edge: usize) -> [Vector<N, 3>; 2] {
+        let [from, to] = self.edges[edge].vertices;
+        [vertices.at(from as usize), vertices.at(to as usize)]
     }
 
     /// The outward unit normal of a face.
@@ -105,11 +117,80 @@ impl<N: Real> BoxFeatures<N> {
             vertices: 8,
             planes: &self.planes,
             edges: &BOX_EDGES,
-            rings: Rings::OfBox,
+            rings: Rings::Cuboid,
             reach: self.reach,
         }
     }
 }
+
+/// The vertices and face planes of a triangle, in lanes: a prism without height, whose front and back are the
+/// triangle and whose other faces are the sides, along each of which two edges lie.
+pub(super) struct TriangleFeatures<N: Real> {
+    blocks: [[[N; LANES]; 3]; 1],
+    planes: [Planes<N, 3>; 1],
+    reach: N,
+}
+
+impl<N: Real> TriangleFeatures<N> {
+    /// `None` of a triangle that is thin, whose normal would be off by more than rounding errors.
+    pub(super) fn new(triangle: &Triangle<N, 3>) -> Option<Self> {
+        let [a, b, c] = triangle.corners();
+        let sides = [b - a, c - b, a - c];
+        // Of length about 1, so that squares stay numbers of the type.
+        let scale = max(max_component(&sides[0]), max_component(&sides[1])).power_of_two_below();
+        let sides = sides.map(|side| side / scale);
+        let squared = sides.map(|side| side.norm_squared());
+        let longest = max(max(squared[0], squared[1]), squared[2]);
+        let across = cross(&sides[0], &sides[1]);
+        let area = across.norm();
+        // Written so that NaN has no normal.
+        let is_wide = area > N::lit(THIN) * longest;
+        if !is_wide {
+            return None;
+        }
+        let front = across / area;
+        let outward: [_; 3] = from_fn(|side| cross(&sides[side], &front) / squared[side].sqrt());
+        let faces = [front, -front, outward[0], outward[1], outward[2]];
+        // The last face fills up.
+        let face = |lane: usize| if lane < 4 { lane } else { 4 };
+        let corner = |lane: usize| &triangle.corners()[if lane < 2 { lane } else { 2 }];
+        // The plane of a side holds the corner that the side begins at.
+        let on = [a, a, a, b, c];
+        let planes = Planes {
+            normals: from_fn(|axis| from_fn(|lane| faces[face(lane)][axis])),
+            offsets: from_fn(|lane| faces[face(lane)].dot(&on[face(lane)].coords)),
+        };
+        let blocks = [from_fn(|axis| from_fn(|lane| corner(lane)[axis]))];
+        Some(Self { blocks, planes: [planes], reach: triangle.reach() })
+    }
+
+    pub(super) fn polyhedral(&self) -> Polyhedral<'_, N> {
+        Polyhedral {
+            blocks: &self.blocks,
+            vertices: 3,
+            planes: &self.planes,
+            edges: &TRIANGLE_EDGES,
+            rings: Rings::Triangle,
+            reach: self.reach,
+        }
+    }
+}
+
+/// Triangles with a smaller ratio of their height to their longest side are thin.
+const THIN: f64 = 1.0 / 256.0;
+
+/// The edges of a triangle: of each side that of the front and that of the back.
+const TRIANGLE_EDGES: [PolytopeEdge; 6] = [
+    PolytopeEdge { vertices: [0, 1], faces: [0, 2] },
+    PolytopeEdge { vertices: [1, 2], faces: [0, 3] },
+    PolytopeEdge { vertices: [2, 0], faces: [0, 4] },
+    PolytopeEdge { vertices: [0, 1], faces: [2, 1] },
+    PolytopeEdge { vertices: [1, 2], faces: [3, 1] },
+    PolytopeEdge { vertices: [2, 0], faces: [4, 1] },
+];
+
+/// The vertices around the front, the back and the sides of a triangle.
+const TRIANGLE_RINGS: [&[u32]; 5] = [&[0, 1, 2], &[0, 2, 1], &[1, 0], &[2, 1], &[0, 2]];
 
 /// The edges of a box by their numbers; see [`Cuboid`].
 const BOX_EDGES: [PolytopeEdge; 12] = {
@@ -150,12 +231,11 @@ const BOX_RINGS: [[u32; 4]; 6] = {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::cross;
+    use crate::math::Point;
 
-    #[test]
-    fn features_of_a_box_fit_together() {
-        let features = BoxFeatures::new(&Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0)));
-        let solid = features.polyhedral();
+    /// Edges lie between their faces, and rings run counter-clockwise around those with an area.
+    fn check(solid: &Polyhedral<'_, f64>) {
+        let is_zero = |height: &f64| height.abs() < 1e-14;
         let at = |vertex: u32| {
             Vector::<f64, 3>::from(from_fn(|axis| solid.blocks[0][axis][vertex as usize]))
         };
@@ -165,15 +245,33 @@ mod tests {
             assert!(cross(&m, &n).dot(&(b - a)) > 0.0, "{edge:?} lies between its faces");
             for face in edge.faces.map(|face| face as usize) {
                 let height = |v: Vector<f64, 3>| solid.normal(face).dot(&v) - solid.offset(face);
-                assert_eq!((height(a), height(b)), (0.0, 0.0), "{edge:?} lies on face {face}");
+                assert!([a, b].map(height).iter().all(is_zero), "{edge:?} lies on face {face}");
             }
         }
         for face in 0..solid.faces() {
             let ring: Vec<_> = solid.ring(face).iter().map(|&vertex| at(vertex)).collect();
-            let turn = cross(&(ring[1] - ring[0]), &(ring[2] - ring[1]));
-            assert!(turn.dot(&solid.normal(face)) > 0.0, "face {face} runs counter-clockwise");
+            if let [a, b, c, ..] = ring[..] {
+                let turn = cross(&(b - a), &(c - b));
+                assert!(turn.dot(&solid.normal(face)) > 0.0, "face {face} runs counter-clockwise");
+            }
             let height = |v: &Vector<f64, 3>| solid.normal(face).dot(v) - solid.offset(face);
-            assert!(ring.iter().all(|v| height(v) == 0.0), "the corners of face {face} lie on it");
+            let heights: Vec<_> = ring.iter().map(height).collect();
+            assert!(heights.iter().all(is_zero), "the corners of face {face} lie on it");
         }
+    }
+
+    #[test]
+    fn features_of_a_box_fit_together() {
+        let features = BoxFeatures::new(&Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0)));
+        check(&features.polyhedral());
+    }
+
+    #[test]
+    fn features_of_a_triangle_fit_together() {
+        let [a, b, c] = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 4.0, 1.0]].map(Point::from);
+        let features = TriangleFeatures::new(&Triangle::new(a, b, c)).expect("wide");
+        check(&features.polyhedral());
+        let thin = Triangle::new(a, b, b + (c - a) * 1e-4);
+        assert!(TriangleFeatures::new(&thin).is_none(), "its normal is not accurate");
     }
 }

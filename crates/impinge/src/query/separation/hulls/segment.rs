@@ -1,122 +1,207 @@
-//! Segments and capsules against convex hulls of so few parts that all of them can be looked at.
+//! Segments and capsules against triangles and hulls: the separating axis test of a polyhedron of two vertices
+//! and one edge.
 //!
-//! The planes of all faces, eight at a time, tell how far the segment lies above each, and which it climbs
-//! over. Over the highest face the lower end is the answer. If it is beside it, edges decide: where the two
-//! overlap those between a face that the segment climbs over and one that it does not, which with the segment
-//! are the faces of the Minkowski difference; where they are apart the nearest of the edges of faces that are
-//! seen from some point of the segment. What is not proved is left to the general algorithm.
+//! A segment has no faces, so the reference face is always the solid's. Over it the lower end is the answer. If
+//! that lies beside it, edges decide: where the two overlap those between a face that the segment climbs over
+//! and one that it does not, which with the segment are the faces of the Minkowski difference; where they are
+//! apart the nearest of the edges of faces that some point of the segment lies above.
 
-use super::super::rod::{Parting, Rod, Verdict, noise, settled};
-use super::super::segments::nearest_of_segments;
+use super::super::segments::core;
 use super::super::{general, wrong_kinds};
-use super::edges::{EdgeBlock, ReferenceEdge, squared_distances};
-use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::convex::Separation;
-use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
+use super::edges::{
+    CandidateEdges, EdgeBlock, ReferenceEdge, nearest_points, normal_between, proved,
+    squared_distances,
+};
+use super::polyhedral::{Polyhedral, TriangleFeatures};
+use super::vertices::Vertices;
+use super::{LANES, SatResult, in_first_frame, noise, out_of_reach};
+use crate::convex::{Separation, Units};
+use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide, cross, max, min};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, max_component, min};
 use crate::query::Pair;
-use crate::shape::{Kind, Polytope, PolytopeEdge, SupportMap};
+use crate::shape::Kind;
 
-/// The separation of a segment or capsule from a convex hull.
+/// The separation of a segment or capsule from a triangle or a convex hull.
+///
+/// Cost: linear in the numbers of faces and edges, by eights. Thin triangles, large hulls and what is not
+/// proved fall back to the general algorithm.
 pub(in crate::query::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
 ) -> Option<Separation<N, 3>> {
-    let Kind::Polytope(hull) = pair.second else { wrong_kinds(pair) };
-    let ask = |rod: &Rod<'_, N>, most: N| {
-        if has_few_features(hull) {
-            SegmentQuery::new(rod, hull).verdict(most)
-        } else {
-            Verdict::Undecided
+    let (_, radius) = core(pair, &pair.first);
+    match result(Level::new(), pair, limit + radius) {
+        SatResult::Beyond => None,
+        SatResult::Found(found) => {
+            Some(found.rounded(radius, N::ZERO)).filter(|found| found.distance <= limit)
         }
+        SatResult::Unproved => general::of_flat_cores(pair, limit),
+    }
+}
+
+/// The result of the test for the cores of a pair.
+pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
+    let (ends, _) = core(pair, &pair.first);
+    let sat = |solid: &Polyhedral<'_, N>| sat(level, &ends, solid, &pair.pose12, limit);
+    match pair.second {
+        Kind::Triangle(triangle) => TriangleFeatures::new(triangle)
+            .map_or(SatResult::Unproved, |features| sat(&features.polyhedral())),
+        Kind::Polytope(hull) => Polyhedral::of_polytope(hull)
+            .filter(|solid| solid.faces() > 3)
+            .map_or(SatResult::Unproved, |solid| sat(&solid)),
+        _ => wrong_kinds(pair),
+    }
+}
+
+/// The test with the vectors of an instruction set; the result does not depend on it.
+fn sat<N: Real>(
+    level: Level,
+    ends: &[Point<N, 3>; 2],
+    solid: &Polyhedral<'_, N>,
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> SatResult<N> {
+    let reach = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
+    let units = Units::of(reach, solid.reach, &pose12.translation);
+    if !(pose12.is_finite() && units.scale.is_finite_number()) {
+        return SatResult::Unproved;
+    }
+    let place = |end: &Point<N, 3>| {
+        pose12.rotation.tr_mul(&((end.coords - pose12.translation) * units.shrink))
     };
-    settled(pair, hull.reach(), limit, ask, || general::of_flat_cores(pair, limit))
+    let query = SegmentQuery {
+        solid,
+        ends: [place(&ends[0]), place(&ends[1])],
+        // From the ends as given, which loses nothing to the way between the origins.
+        along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
+        shrink: units.shrink,
+    };
+    let beyond = out_of_reach(&units, limit);
+    let result = with_lanes!(level, simd => query.sat_in_lanes::<_, N::Lanes<_>>(simd, beyond));
+    match result {
+        SatResult::Found(found) => {
+            SatResult::Found(in_first_frame(&found.scaled(units.scale), pose12))
+        }
+        other => other,
+    }
 }
 
-/// A solid with few parts.
-fn has_few_features<N: Real>(hull: &Polytope<N, 3>) -> bool {
-    let has_room = hull.blocks().len() <= BLOCKS && hull.planes().len() <= PLANE_BLOCKS;
-    has_room && hull.faces().len() > 3
-}
-
-/// A hull and the segment.
+/// A segment in the frame of a solid, in units of the pair. Answers are from the solid to the segment.
 struct SegmentQuery<'a, N: Real> {
-    rod: &'a Rod<'a, N>,
-    hull: &'a Polytope<N, 3>,
-    planes: PlaneHeights<N>,
+    solid: &'a Polyhedral<'a, N>,
+    ends: [Vector<N, 3>; 2],
+    /// From the first end to the second.
+    along: Vector<N, 3>,
+    shrink: N,
 }
 
-/// What the planes of all faces say.
-struct PlaneHeights<N> {
+/// The segment and the planes of all faces.
+struct FaceHeights<N> {
     /// The face that the segment is highest above, the first of equals, and how high.
-    face: usize,
-    gap: N,
+    index: usize,
+    separation: N,
     /// A bit for each face: the second end is higher above its plane than the first.
     climbed: u64,
-    /// Some point of the segment is above its plane.
-    seen: u64,
+    /// A bit for each face: some point of the segment is above its plane.
+    visible: u64,
 }
 
-impl<'a, N: Real> SegmentQuery<'a, N> {
-    fn new(rod: &'a Rod<'a, N>, hull: &'a Polytope<N, 3>) -> Self {
-        Self { rod, hull, planes: PlaneHeights::of(Level::new(), rod, hull) }
-    }
-
-    fn verdict(&self, most: N) -> Verdict<N> {
-        let gap = self.planes.gap;
-        if gap > most {
-            return Verdict::Beyond;
+impl<N: Real> SegmentQuery<'_, N> {
+    #[inline(always)]
+    fn sat_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, beyond: N) -> SatResult<N> {
+        let faces = self.query_faces::<S, V>(simd);
+        if faces.separation > beyond {
+            return SatResult::Beyond;
         }
-        let found = if gap > N::ZERO {
-            self.above().or_else(|| self.nearest())
+        let vertices = Vertices::in_own_frame::<S, V>(simd, self.solid, self.shrink);
+        let found = if faces.separation > N::ZERO {
+            match self.over_face(&vertices, &faces) {
+                Some(found) => Some(found),
+                None => self.nearest_edge::<S, V>(simd, &vertices, &faces),
+            }
         } else {
-            match self.best_edge(gap + N::TWO * noise()) {
-                None => self.above(),
-                Some((_, _, height)) if height > N::ZERO => self.nearest(),
-                Some((edge, outward, _)) => self.across(edge, outward),
+            match self.query_edges::<S, V>(simd, &vertices, &faces) {
+                None => self.over_face(&vertices, &faces),
+                Some((_, separation)) if separation > N::ZERO => {
+                    self.nearest_edge::<S, V>(simd, &vertices, &faces)
+                }
+                Some((edge, _)) => self.edge_contact::<S, V>(simd, &vertices, edge, &faces),
             }
         };
-        found.map_or(Verdict::Undecided, Verdict::Parted)
+        found.map_or(SatResult::Unproved, SatResult::Found)
     }
 
-    fn vertex(&self, index: u32) -> Vector<N, 3> {
-        self.hull.vertices()[index as usize].coords * self.rod.shrink
+    /// Queries the face directions.
+    #[inline(always)]
+    fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> FaceHeights<N> {
+        let [a, b]: [[V; 3]; 2] = [spread(simd, &self.ends[0]), spread(simd, &self.ends[1])];
+        let (shrink, zero) = (V::all(simd, self.shrink), V::all(simd, N::ZERO));
+        let mut faces = FaceHeights { index: 0, separation: -N::INFINITY, climbed: 0, visible: 0 };
+        for (number, block) in self.solid.planes.iter().enumerate() {
+            let normals: [V; 3] = load(simd, &block.normals);
+            let offsets = V::load(simd, &block.offsets) * shrink;
+            let (high1, high2) = (dot(&normals, &a) - offsets, dot(&normals, &b) - offsets);
+            let low = high1.smaller(high2);
+            faces.climbed |= high2.simd_gt(high1).to_bitmask() << (number * LANES);
+            faces.visible |= high1.larger(high2).simd_gt(zero).to_bitmask() << (number * LANES);
+            let highest = highest_lane(low);
+            if highest > faces.separation {
+                let is_highest = low.simd_eq(V::all(simd, highest)).to_bitmask();
+                faces.index = number * LANES + is_highest.trailing_zeros() as usize;
+                faces.separation = highest;
+            }
+        }
+        faces
     }
 
-    /// How far along a vector the hull reaches.
-    fn level(&self, along: &Vector<N, 3>) -> N {
-        self.hull.core_support(along).coords.dot(along) * self.rod.shrink
+    /// The point at a share of the way, measured from the nearer end.
+    fn at(&self, share: N) -> Vector<N, 3> {
+        if share <= N::HALF {
+            self.ends[0] + self.along * share
+        } else {
+            self.ends[1] - self.along * (N::ONE - share)
+        }
     }
 
-    /// The answer along the normal of the highest face, if the lower end lies over it, or the middle of what
-    /// does of a segment along it.
-    fn above(&self) -> Option<Parting<N>> {
-        let face = &self.hull.faces()[self.planes.face];
-        let (first, last) = self.over(&face.normal)?;
-        let [a, b] = [self.rod.ends[0].dot(&face.normal), self.rod.ends[1].dot(&face.normal)];
-        let on_rod = if (a - b).abs() <= noise() {
-            self.rod.at((first + last) * N::HALF)
-        } else if a < b && first <= N::ZERO {
-            self.rod.ends[0]
-        } else if b < a && last >= N::ONE {
-            self.rod.ends[1]
+    /// The answer along the normal of the highest face, if the lower end lies over it; of a segment along it
+    /// the middle of what lies over it.
+    fn over_face(
+        &self,
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let normal = self.solid.normal(faces.index);
+        let (first, last) = self.span(vertices, faces.index, &normal)?;
+        let climb = self.along.dot(&normal);
+        let point = if climb.abs() <= noise() {
+            self.at((first + last) * N::HALF)
+        } else if climb > N::ZERO && first <= N::ZERO {
+            self.ends[0]
+        } else if climb < N::ZERO && last >= N::ONE {
+            self.ends[1]
         } else {
             return None;
         };
-        let (outward, distance) = (face.normal, self.planes.gap);
-        Some(Parting { outward, on_rod, on_solid: on_rod - outward * distance, distance })
+        let distance = faces.separation;
+        let (point1, point2) = (Point::from(point - normal * distance), Point::from(point));
+        Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Where the part of the segment that lies over the highest face begins and ends, as shares of the whole.
-    fn over(&self, normal: &Vector<N, 3>) -> Option<(N, N)> {
-        let ring = self.hull.face_vertices(&self.hull.faces()[self.planes.face]);
+    /// Where the part of the segment that lies over a face begins and ends, as shares of the whole; `None` of a
+    /// face without an area, which nothing bounds along its length.
+    fn span(&self, vertices: &Vertices<N>, face: usize, normal: &Vector<N, 3>) -> Option<(N, N)> {
+        let ring = self.solid.ring(face);
         let (mut first, mut last) = (N::ZERO, N::ONE);
-        let mut from = self.vertex(ring[ring.len() - 1]);
+        let mut from = vertices.at(ring[ring.len() - 1] as usize);
         for &vertex in ring {
-            let to = self.vertex(vertex);
-            let inward = cross(normal, &(to - from));
-            let [a, b] = self.rod.ends.map(|end| inward.dot(&(end - from)));
+            let to = vertices.at(vertex as usize);
+            let side = to - from;
+            if ring.len() < 3 || side.norm_squared() <= noise::<N>() * noise() {
+                return None;
+            }
+            let inward = cross(normal, &side);
+            let [a, b] = self.ends.map(|end| inward.dot(&(end - from)));
             from = to;
             if a < N::ZERO && b < N::ZERO {
                 return None;
@@ -130,144 +215,112 @@ impl<'a, N: Real> SegmentQuery<'a, N> {
         (first <= last).then_some((first, last))
     }
 
-    /// The edge that leaves the largest gap, if it is larger than `least`, the direction along which it does, and
-    /// the gap.
-    fn best_edge(&self, least: N) -> Option<(PolytopeEdge, Vector<N, 3>, N)> {
-        let (mut best, mut bound) = (None, least);
-        let (end, along) = (&self.rod.ends[0], &self.rod.along);
-        for edge in self.hull.edges() {
-            let [one, other] = edge.faces;
-            if (self.planes.climbed >> one ^ self.planes.climbed >> other) & 1 == 0 {
-                continue;
-            }
-            let [from, to] = edge.vertices.map(|vertex| self.vertex(vertex));
-            let across = cross(&(to - from), along);
-            let length = across.norm();
-            // The edge runs around its first face: out of the hull, its product with what climbs over that.
-            let is_out = self.planes.climbed >> one & 1 == 1;
-            let height = across.dot(&(end - from));
-            let height = if is_out { height } else { -height };
-            if length > noise() && height > bound * length {
-                bound = height / length;
-                best =
-                    Some((*edge, if is_out { across / length } else { -across / length }, bound));
-            }
-        }
-        best
-    }
-
-    /// The answer along the common perpendicular of the segment and an edge.
-    fn across(&self, edge: PolytopeEdge, outward: Vector<N, 3>) -> Option<Parting<N>> {
-        let points = self.points_beside(edge);
-        self.rod.proved(outward, self.level(&outward), points)
-    }
-
-    /// The nearest points of the segment and an edge.
-    fn points_beside(&self, edge: PolytopeEdge) -> [Vector<N, 3>; 2] {
-        let ends = edge.vertices.map(|vertex| Point::from(self.vertex(vertex)));
-        let (on_rod, on_edge) = nearest_of_segments(&self.rod.ends.map(Point::from), &ends);
-        [on_rod.coords, on_edge.coords]
-    }
-
-    /// The nearest points of the two, which are apart, if they lie on an edge.
-    fn nearest(&self) -> Option<Parting<N>> {
-        let edge = self.hull.edges()[nearest_edge(Level::new(), self)?];
-        let points = self.points_beside(edge);
-        let away = points[0] - points[1];
-        let [from, to] = edge.vertices.map(|vertex| self.vertex(vertex));
-        let across = cross(&(to - from), &self.rod.along);
-        let length = across.norm();
-        let mut outward = None;
-        if length > noise() {
-            // The perpendicular is right to the last bits, however near the points are.
-            let across = across / length;
-            let along = across.dot(&away);
-            if (away - across * along).norm_squared() <= noise::<N>() * noise() {
-                outward = Some(if along < N::ZERO { -across } else { across });
-            }
-        }
-        if outward.is_none() {
-            let length = away.norm();
-            outward = (length > noise()).then(|| away / length);
-        }
-        let outward = outward?;
-        self.rod.proved(outward, self.level(&outward), points)
-    }
-}
-
-impl<N: Real> PlaneHeights<N> {
-    /// With the vectors of an instruction set; the answer does not depend on it.
-    fn of(level: Level, rod: &Rod<'_, N>, hull: &Polytope<N, 3>) -> Self {
-        with_lanes!(level, simd => Self::in_lanes::<_, N::Lanes<_>>(simd, rod, hull))
-    }
-
+    /// Queries the edge directions: the edge that with the segment is a face of the Minkowski difference and
+    /// parts the two most, if by more than the reference face does, and more than rounding errors; and by
+    /// how much.
     #[inline(always)]
-    fn in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
+    fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
         simd: S,
-        rod: &Rod<'_, N>,
-        hull: &Polytope<N, 3>,
-    ) -> Self {
-        let [a, b]: [[V; 3]; 2] = [spread(simd, &rod.ends[0]), spread(simd, &rod.ends[1])];
-        let (shrink, zero) = (V::all(simd, rod.shrink), V::all(simd, N::ZERO));
-        let mut planes = Self { face: 0, gap: -N::INFINITY, climbed: 0, seen: 0 };
-        for (number, block) in hull.planes().iter().enumerate() {
-            let normals: [V; 3] = load(simd, &block.normals);
-            let offsets = V::load(simd, &block.offsets) * shrink;
-            let (high1, high2) = (dot(&normals, &a) - offsets, dot(&normals, &b) - offsets);
-            let low = high1.smaller(high2);
-            planes.climbed |= high2.simd_gt(high1).to_bitmask() << (number * LANES);
-            planes.seen |= high1.larger(high2).simd_gt(zero).to_bitmask() << (number * LANES);
-            let highest = highest_lane(low);
-            if highest > planes.gap {
-                let lanes = low.simd_eq(V::all(simd, highest)).to_bitmask();
-                planes.face = number * LANES + lanes.trailing_zeros() as usize;
-                planes.gap = highest;
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<(usize, N)> {
+        let (edges, climbed) = (self.solid.edges, faces.climbed);
+        let candidates = CandidateEdges::of(
+            edges,
+            #[inline(always)]
+            |edge| (climbed >> edge.faces[0] ^ climbed >> edge.faces[1]) & 1 == 1,
+        );
+        let (along, end): ([V; 3], [V; 3]) =
+            (spread(simd, &self.along), spread(simd, &self.ends[0]));
+        let tiny = V::all(simd, noise::<N>() * noise());
+        let (mut best, mut largest) = (None, faces.separation + N::TWO * noise());
+        for eight in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+            let outward = block.indices.map(|index| self.outward(usize::from(index), climbed));
+            let across = lanes::cross(&load(simd, &block.along), &along);
+            let squared = dot(&across, &across);
+            let away: [V; 3] = by_axis(
+                #[inline(always)]
+                |axis| end[axis] - V::load(simd, &block.from[axis]),
+            );
+            let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
+            // Parallel edges have no perpendicular, and faces that part as much.
+            let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
+            let highest = highest_lane(separations);
+            if highest > largest {
+                let is_largest = separations.simd_eq(V::all(simd, highest)).to_bitmask();
+                let lane = is_largest.trailing_zeros() as usize;
+                (best, largest) = (Some(usize::from(block.indices[lane])), highest);
             }
         }
-        planes
+        best.map(|edge| (edge, largest))
     }
-}
 
-/// The edge of a face that is seen that is nearest to the segment, the first of equals.
-fn nearest_edge<N: Real>(level: Level, query: &SegmentQuery<'_, N>) -> Option<usize> {
-    with_lanes!(level, simd => nearest_in_lanes::<_, N, N::Lanes<_>>(simd, query))
-}
-
-#[inline(always)]
-fn nearest_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    query: &SegmentQuery<'_, N>,
-) -> Option<usize> {
-    let (rod, seen) = (query.rod, query.planes.seen);
-    let (from, along) = (rod.ends[0], rod.along);
-    let rod = ReferenceEdge { index: 0, from, along, squared: along.norm_squared() };
-    let mut eight = EdgeBlock::zero();
-    let (mut count, mut best, mut least) = (0, None, N::INFINITY);
-    let (mut places, mut next) = ([0; LANES], 0);
-    let edges = query.hull.edges();
-    while next < edges.len() {
-        let [one, other] = edges[next].faces;
-        if (seen >> one | seen >> other) & 1 == 1 {
-            let [from, to] = edges[next].vertices.map(|vertex| query.vertex(vertex));
-            for axis in 0..3 {
-                eight.from[axis][count] = from[axis];
-                eight.along[axis][count] = to[axis] - from[axis];
-            }
-            places[count] = next;
-            count += 1;
-        }
-        next += 1;
-        if count == LANES || next == edges.len() && count > 0 {
-            let (mut numbers, found) =
-                ([N::ZERO; LANES], squared_distances::<S, N, V>(simd, &rod, &eight));
-            found.store(&mut numbers);
-            for (squared, &place) in numbers.iter().zip(&places).take(count) {
-                if *squared < least {
-                    (best, least) = (Some(place), *squared);
-                }
-            }
-            count = 0;
-        }
+    /// One if the product of an edge and the segment leads out of the solid, else minus one: the edge runs
+    /// around its first face, so the product leads out if the segment climbs over that.
+    fn outward(&self, edge: usize, climbed: u64) -> N {
+        let [first, _] = self.solid.edges[edge].faces;
+        if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
     }
-    best
+
+    /// The answer where the common perpendicular of an edge and the segment meets both, if it is proved.
+    #[inline(always)]
+    fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        edge: usize,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (points, across) = nearest_points(&self.solid.ends(vertices, edge), &self.ends);
+        let normal = across * (self.outward(edge, faces.climbed) / across.norm());
+        self.proved::<S, V>(simd, vertices, &normal, points)
+    }
+
+    /// The nearest points of an edge and the segment, if supporting planes prove them.
+    #[inline(always)]
+    fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (edges, visible) = (self.solid.edges, faces.visible);
+        let candidates = CandidateEdges::of(
+            edges,
+            #[inline(always)]
+            |edge| (visible >> edge.faces[0] | visible >> edge.faces[1]) & 1 == 1,
+        );
+        let (from, along) = (self.ends[0], self.along);
+        let segment = ReferenceEdge { index: 0, from, along, squared: along.norm_squared() };
+        let (mut nearest, mut least) = (None, N::INFINITY);
+        for eight in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+            let squares = squared_distances::<S, N, V>(simd, &segment, &block);
+            let lowest = -highest_lane(-squares);
+            if lowest < least {
+                let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
+                let lane = is_lowest.trailing_zeros() as usize;
+                (nearest, least) = (Some(usize::from(block.indices[lane])), lowest);
+            }
+        }
+        let (points, across) = nearest_points(&self.solid.ends(vertices, nearest?), &self.ends);
+        self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
+    }
+
+    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
+    /// supporting planes.
+    #[inline(always)]
+    fn proved<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        normal: &Vector<N, 3>,
+        points: [Vector<N, 3>; 2],
+    ) -> Option<Separation<N, 3>> {
+        let low = min(normal.dot(&self.ends[0]), normal.dot(&self.ends[1]));
+        let high = -vertices.low::<S, V>(simd, &-normal);
+        proved(normal, low - high, points)
+    }
 }

@@ -37,7 +37,7 @@ pub(crate) fn gaps3<N: Real>(
     match solid {
         Kind::Cuboid(cuboid) => Packets { parts, solid: cuboid, pose12, limit }.each(visit),
         Kind::Polytope(hull) if polytope::is_small(hull) => {
-            Packets { parts, solid: hull, pose12, limit }.each(visit)
+            Packets { parts, solid: hull, pose12, limit }.each(visit);
         }
         _ => return false,
     }
