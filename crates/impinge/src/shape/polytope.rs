@@ -303,6 +303,7 @@ fn heights<N: Real, const D: usize>(
 }
 
 /// A count of vertices, edges or faces as it is stored.
+#[inline]
 pub(super) fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("a solid has fewer than 2³² parts")
 }

@@ -31,6 +31,8 @@ impl<N: Real> Shown<N> {
             Kind::Capsule(capsule) => Some(Self::of_segment(capsule.segment())),
             Kind::Cuboid(cuboid) => cuboid.shown(direction),
             Kind::Polytope(polygon) => Some(polygon.shown(direction)),
+            Kind::Triangle(triangle) => triangle.shown(direction),
+            Kind::Rounded(solid) => Self::of(solid.inner().0, direction),
             _ => None,
         };
         own.or_else(|| Self::of_map(Geometry(kind).as_support_map()?, direction))
@@ -58,18 +60,23 @@ impl<N: Real> Shown<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Capsule, ConvexPolygon, Cuboid, Shape, Triangle};
+    use super::super::{Capsule, ConvexPolygon, Cuboid, Rounded, Shape, Triangle};
     use super::*;
 
     #[test]
     fn what_is_shown_is_the_feature() {
         let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
         let corners = [p(0.0, -1.0), p(1.5, 0.0), p(1.0, 1.0), p(-0.5, 0.75)];
-        let solids: [Box<dyn Shape<f64, 2>>; 6] = [
+        let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 0.5));
+        let solids: [Box<dyn Shape<f64, 2>>; 10] = [
             Box::new(Segment::new(corners[0], corners[1])),
             Box::new(Capsule::<f64, 2>::new(1.0, 0.5)),
             Box::new(Triangle::new(corners[0], corners[1], corners[2])),
-            Box::new(Cuboid::new(Vector::<f64, 2>::new(1.0, 0.5))),
+            Box::new(Triangle::new(corners[0], corners[2], corners[1])),
+            Box::new(Triangle::new(p(0.0, 0.0), p(1.0, 0.5), p(2.0, 1.0))),
+            Box::new(Rounded::new(cuboid, 0.25)),
+            Box::new(Rounded::new(Capsule::<f64, 2>::new(1.0, 0.5), 0.25)),
+            Box::new(cuboid),
             Box::new(Cuboid::new(Vector::<f64, 2>::new(0.0, 0.5))),
             Box::new(ConvexPolygon::new(&corners)),
         ];

@@ -13,6 +13,7 @@ pub(super) struct Tilt<N: Real> {
 
 impl<N: Real> Tilt<N> {
     /// The limit of [`super::SupportMap::core_feature`].
+    #[inline]
     pub(super) fn usual() -> Self {
         Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
@@ -35,11 +36,13 @@ impl<N: Real> Tilt<N> {
     }
 
     /// A part that leans out of the plane by an angle with this squared sine still faces.
+    #[inline]
     pub(super) fn admits(self, sine_squared: N) -> bool {
         sine_squared <= self.sine_squared
     }
 
     /// A face with this unit normal faces the unit vector `direction`.
+    #[inline]
     pub(super) fn admits_face<const D: usize>(
         self,
         normal: &Vector<N, D>,

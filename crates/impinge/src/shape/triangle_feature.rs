@@ -2,7 +2,7 @@
 
 use super::segment::length_of;
 use super::tilt::{FACING_SINE_SQUARED, Tilt};
-use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, Triangle};
+use super::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 
 /// The plane (in two dimensions: the space) that a triangle spans.
@@ -183,9 +183,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 
     /// A side, the longest if the corners lie on a line.
     fn fill_side(&self, side: usize, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        let ring = self.ring(direction);
-        let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
-        out.set_segment(side_id::<D>(side), ends.map(|index| self.point(index)));
+        out.set_segment(side_id::<D>(side), self.side_ends(side, direction));
         let normal = self.side_normal(side).filter(|normal| normal.dot(direction) > N::ZERO);
         let normal = normal.or_else(|| {
             let (along, _) = unit(&(out.vertices[1] - out.vertices[0]))?;
@@ -223,6 +221,13 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         normal.unwrap_or_else(|| axis(0))
     }
 
+    /// The ends of a side in the order of the ring.
+    fn side_ends(&self, side: usize, direction: &Vector<N, D>) -> [(FeatureId, Point<N, D>); 2] {
+        let ring = self.ring(direction);
+        let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
+        ends.map(|index| self.point(index))
+    }
+
     #[track_caller]
     fn index(id: FeatureId, dimension: usize) -> usize {
         let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
@@ -232,10 +237,21 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     }
 
     fn ends(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        let side = Self::index(id, 1);
-        let ring = self.ring(&Vector::<N, D>::zeros());
-        let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
-        ends.map(|index| self.point(index))
+        self.side_ends(Self::index(id, 1), &Vector::<N, D>::zeros())
+    }
+}
+
+impl<N: Real> Triangle<N, 2> {
+    /// See [`Shown::of`]; `None` where the corners coincide.
+    pub(super) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+        let span = Span::of(self.corners())?;
+        let (side, slope) = self.flattest_side(&span, direction);
+        if Tilt::usual().admits(slope * slope) {
+            let ends = self.side_ends(side, direction);
+            return Some(Shown::side(side_id::<2>(side), ends));
+        }
+        let (id, point) = self.point(self.support_corner(direction));
+        Some(Shown::vertex(id, point))
     }
 }
 

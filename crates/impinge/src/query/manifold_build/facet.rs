@@ -427,6 +427,7 @@ impl<N: Real, const D: usize> Facet<N, D> {
 
 impl Which {
     /// The direction in which this solid faces the other.
+    #[inline(always)]
     pub(super) fn outward<N: Real, const D: usize>(self, frame: &Frame<N, D>) -> Vector<N, D> {
         match self {
             Self::First => frame.normal(),

@@ -14,7 +14,6 @@
 mod along;
 mod ball;
 mod box_lanes;
-mod box_sides;
 mod capsule_face;
 mod chain;
 mod closed_lanes;
@@ -25,7 +24,6 @@ mod frame;
 mod half_space;
 mod level_corners;
 mod names;
-mod outlines;
 mod overlap;
 mod patch;
 mod patch_line;
@@ -59,7 +57,7 @@ pub(crate) use self::witness::{
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
-use crate::math::{Pose, Real, Vector, max, min, orthonormal_basis, perp};
+use crate::math::{Pose, Real, Vector, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Geometry, Kind};
 
 /// Builds the manifold of two solids in the plane: at most two points.
@@ -106,6 +104,7 @@ pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
 }
 
 /// The direction along the line of contact in the plane, and zero for the second that there is not.
+#[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
@@ -156,9 +155,18 @@ pub(crate) fn contacts2<N: Real>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_plane(pair, request.prediction), out);
     }
-    if box_sides::build(pair, request, out) || outlines::build(pair, request, out) {
-        return;
+    if let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (pair.first, pair.second) {
+        return box_lanes::build2([cuboid1, cuboid2], &pair.pose12, request, out);
     }
+    contacts_of_separation2(pair, request, out);
+}
+
+/// The manifold of a pair in the plane from its separation.
+fn contacts_of_separation2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
     match separation_in_plane(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
@@ -198,6 +206,9 @@ fn choose<N: Real, const D: usize>(
     limit: usize,
     out: &mut RawManifold<N, D>,
 ) {
+    if candidates.len() <= limit && names::renew(candidates, distance, out) {
+        return;
+    }
     names::inherit(&out.points, candidates);
     let level = distance + tolerance;
     let chosen = chosen(candidates, (level, tolerance), limit.max(1));
@@ -221,28 +232,6 @@ fn chosen<N: Real, const D: usize>(
     }
     let seen = candidates.iter().map(|c| (c.flat, c.distance, c.kept_id.is_some()));
     reduce::chosen(&mut reduce::projected(seen, level), limit, tolerance)
-}
-
-/// [`choose`] for a fused algorithm, whose candidates are not yet held against the separation's
-/// distance and the prediction; answers whether one of them is the witness. If not, nothing happens.
-fn choose_admitted<N: Real, const D: usize>(
-    mut candidates: Candidates<N, D>,
-    (distance, tolerance): (N, N),
-    (prediction, limit): (N, usize),
-    out: &mut RawManifold<N, D>,
-) -> bool {
-    let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
-    let is_found = (lowest - distance).abs() <= tolerance;
-    if !is_found {
-        return false;
-    }
-    candidates.retain(|candidate| {
-        let no_nearer = max(candidate.distance, distance);
-        candidate.distance = min(no_nearer, prediction);
-        no_nearer <= prediction + tolerance
-    });
-    choose(&mut candidates, (distance, tolerance), limit, out);
-    true
 }
 
 /// The corners of the common area, and the witness if it is none of them.

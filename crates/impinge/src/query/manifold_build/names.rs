@@ -22,6 +22,39 @@ pub(super) fn inherit<N: Real, const D: usize>(
     }
 }
 
+/// Moves the points of a manifold to the candidates, the nearest of which takes the separation's `distance`, if
+/// they have the same features in the same order, each pair of features once; answers whether it did.
+pub(super) fn renew<N: Real, const D: usize>(
+    candidates: &[Candidate<N, D>],
+    distance: N,
+    out: &mut RawManifold<N, D>,
+) -> bool {
+    let old = out.points.as_mut_slice();
+    let is_same = |(point, new): (&RawPoint<N, D>, &Candidate<N, D>)| {
+        point.feature1 == new.features[0] && point.feature2 == new.features[1]
+    };
+    if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
+        return false;
+    }
+    let is_twin = |(at, new): (usize, &Candidate<N, D>)| {
+        candidates[..at].iter().any(|other| other.features == new.features)
+    };
+    if candidates.iter().enumerate().any(is_twin) {
+        return false;
+    }
+    let (mut deepest, mut least) = (0, N::INFINITY);
+    for (at, (point, new)) in old.iter_mut().zip(candidates).enumerate() {
+        (point.point1, point.distance, point.code) = (new.point1, new.distance, 0);
+        if new.distance < least {
+            (deepest, least) = (at, new.distance);
+        }
+    }
+    if let Some(point) = old.get_mut(deepest) {
+        point.distance = distance;
+    }
+    true
+}
+
 /// Replaces the points of a manifold, in the order of their numbers; those without one get the next.
 pub(super) fn settle<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],

@@ -1,8 +1,21 @@
-//! Two solids of the plane: the stretch that two sides share, in no more room than that takes.
+//! Two flat-sided 2D solids: the interval in which their supporting sides overlap.
 //!
-//! The same as [`Facet`](super::facet::Facet) and [`Overlap`](super::overlap::Overlap), which define it, bit
-//! for bit: in the plane a facet is a side or a point, two sides are parallel seen along the normal, and
-//! a place along the line of contact is one number.
+//! The one path to the contacts of segments, capsules, triangles, boxes, polygons, what is rounded of these, and
+//! support maps that show a side or a corner; boxes, and segments and capsules, have lanes besides. A supporting
+//! feature is a side or a corner, perhaps with a radius around it, two sides are parallel seen along the normal,
+//! and a place along the line of contact is one number:
+//!
+//! ```text
+//!          from ─────────────── to          the second solid's side
+//!           │                   ┊
+//!   from ───┼──────────── to    ┊           the first solid's
+//!           │              │
+//!           └─── overlap ──┘  ───────────→  the line of contact
+//! ```
+//!
+//! The contacts are the ends of the overlap that the request admits, an angle being a number in that test
+//! ([`Frame::admit`]), and the witness where none of them is as near. Composites have the same from
+//! [`Facet`](super::facet::Facet) and [`Overlap`](super::overlap::Overlap), bit for bit.
 
 use super::facet::{Corner, Which, lifted};
 use super::frame::{Candidate, Frame};
@@ -64,7 +77,7 @@ pub(super) struct Stretch<N: Real> {
 }
 
 impl<N: Real> Stretch<N> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn of(
         (which, kind): (Which, Kind<'_, N, 2>),
         pose: Option<&Pose<N, 2>>,
@@ -82,14 +95,14 @@ impl<N: Real> Stretch<N> {
         Self::placed((Which::First, &Shown::of_segment(segment)), (N::ZERO, None), frame)
     }
 
-    #[inline]
+    #[inline(always)]
     fn placed(
         (which, shown): (Which, &Shown<N>),
         (rounding, pose): (N, Option<&Pose<N, 2>>),
         frame: &Frame<N, 2>,
     ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
-            let point = pose.map_or(vertex, |pose| pose.point(&vertex));
+            let point = pose.map_or(vertex, |pose| placed(pose, &vertex));
             Corner { point, flat: frame.flat(&point), id, side: shown.id }
         };
         let mut stretch = Self {
@@ -112,6 +125,7 @@ impl<N: Real> Stretch<N> {
 
     /// A side of no extent seen along the normal is its first corner, with the name of the side; one that
     /// leans too much its nearest corner.
+    #[inline(always)]
     fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
@@ -153,6 +167,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// The point of the core that is seen at a place.
+    #[inline(always)]
     pub(super) fn under(&self, place: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
         let share = (place - from.flat.x) * self.along / (self.along * self.along);
@@ -160,6 +175,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// The part beside a place; `None` beyond the ends.
+    #[inline(always)]
     fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
         let along = (place - self.corners[0].flat.x) * self.along / self.length;
         let tolerance = N::TWO * tolerance;
@@ -183,6 +199,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// How far the rounded surface is above a point of the core, along the normal.
+    #[inline]
     fn lift(&self, core: &Point<N, 2>, frame: &Frame<N, 2>) -> N {
         if self.rounding <= N::ZERO {
             return N::ZERO;
@@ -193,7 +210,17 @@ impl<N: Real> Stretch<N> {
     }
 }
 
+/// [`Pose::point`], of which the products of matrices are not inlined.
+#[inline(always)]
+fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
+    let (turn, shift) = (&pose.rotation, &pose.translation);
+    let x = turn[(0, 0)] * local.x + turn[(0, 1)] * local.y + shift.x;
+    let y = turn[(1, 0)] * local.x + turn[(1, 1)] * local.y + shift.y;
+    Point::<N, 2>::new(x, y)
+}
+
 /// The radius by which the core of a solid is swollen.
+#[inline]
 fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     match kind {
         Kind::Segment(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_) => N::ZERO,

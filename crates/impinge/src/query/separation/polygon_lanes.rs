@@ -1,97 +1,24 @@
 //! Outlines of up to eight vertices: their sides, and their vertices, all at once.
 //!
-//! The algorithm of [`super::polygon_polygon`], which defines the answers, bit for bit. What is not usual
-//! is left to it: more vertices, sides of no length, numbers that end, and nearest points that do not
+//! The sides alone are tried first. Where their best normal leads to the nearest points, as it mostly does
+//! ([`Facing::settled`]), the tips of sharp corners are not looked at. What is not usual is left to
+//! [`super::polygon_polygon`]: more vertices, sides of no length, numbers that end, and nearest points that do not
 //! meet the best axis.
 
-use super::polygon_nearest::nearest_points;
+use super::polygon_nearest::Facing;
 use super::polygon_polygon::Axis;
 use crate::convex::Separation;
-use crate::math::lanes::{dot, with_lanes};
+use crate::math::lanes::{dot, either, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max, perp, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::query::Pair;
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
 /// How many vertices are looked at side by side.
 pub(super) const LANES: usize = 8;
 
 /// A number for each vertex.
-pub(in crate::query) type Row<N> = [N; LANES];
-
-/// A convex polygon in its own frame, swollen by a rounding radius; its last vertex fills the rest.
-pub(super) struct Polygon<N: Real> {
-    vertices: [Row<N>; 2],
-    sides: PolygonSides<N>,
-    count: usize,
-    rounding: N,
-}
-
-/// The sides, each at the vertex that it starts from.
-enum PolygonSides<N: Real> {
-    /// Their outward unit normals.
-    Normals([Row<N>; 2]),
-    /// Where they end.
-    Ends([Row<N>; 2]),
-    /// A point has none.
-    None,
-}
-
-impl<N: Real> Polygon<N> {
-    /// `None` for solids of other kinds and for polygons of more vertices.
-    pub(super) fn of(kind: &Kind<'_, N, 2>) -> Option<Self> {
-        Some(match kind {
-            Kind::Ball(ball) => {
-                let (zero, sides) = ([[N::ZERO; LANES]; 2], PolygonSides::None);
-                Self { vertices: zero, sides, count: 1, rounding: ball.radius() }
-            }
-            Kind::Segment(segment) => Self::of_segment(segment, N::ZERO),
-            Kind::Capsule(capsule) => Self::of_segment(capsule.segment(), capsule.radius()),
-            Kind::Triangle(triangle) => Self::of_triangle(triangle),
-            Kind::Cuboid(cuboid) => Self::of_box(cuboid.half_extents()),
-            Kind::Polytope(polygon) => return Self::of_polytope(polygon),
-            _ => return None,
-        })
-    }
-
-    pub(super) fn of_segment(segment: &Segment<N, 2>, rounding: N) -> Self {
-        let (a, b) = (segment.a(), segment.b());
-        let row = |x: N, y: N| [x, y, y, y, y, y, y, y];
-        let sides = PolygonSides::Ends([row(b.x, a.x), row(b.y, a.y)]);
-        Self { vertices: [row(a.x, b.x), row(a.y, b.y)], sides, count: 2, rounding }
-    }
-
-    fn of_triangle(triangle: &Triangle<N, 2>) -> Self {
-        let [a, b, c] = triangle.corners();
-        let is_clockwise = cross2(&(b - a), &(c - a)) < N::ZERO;
-        let (b, c) = if is_clockwise { (c, b) } else { (b, c) };
-        let row = |x: N, y: N, z: N| [x, y, z, z, z, z, z, z];
-        let vertices = [row(a.x, b.x, c.x), row(a.y, b.y, c.y)];
-        let sides = PolygonSides::Ends([row(b.x, c.x, a.x), row(b.y, c.y, a.y)]);
-        Self { vertices, sides, count: 3, rounding: N::ZERO }
-    }
-
-    fn of_box(half: &Vector<N, 2>) -> Self {
-        let (x, y) = (half.x, half.y);
-        let (zero, one) = (N::ZERO, N::ONE);
-        let vertices = [[-x, x, x, -x, -x, -x, -x, -x], [-y, -y, y, y, y, y, y, y]];
-        let normals = [
-            [-zero, one, zero, -one, -one, -one, -one, -one],
-            [-one, zero, one, -zero, -zero, -zero, -zero, -zero],
-        ];
-        Self { vertices, sides: PolygonSides::Normals(normals), count: 4, rounding: N::ZERO }
-    }
-
-    fn of_polytope(polygon: &Polytope<N, 2>) -> Option<Self> {
-        let ([vertices], [planes]) = (polygon.blocks(), polygon.planes()) else { return None };
-        let sides = PolygonSides::Normals(planes.normals);
-        Some(Self {
-            vertices: *vertices,
-            sides,
-            count: polygon.vertices().len(),
-            rounding: N::ZERO,
-        })
-    }
-}
+pub(super) type Row<N> = [N; LANES];
 
 /// How the search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,45 +30,54 @@ pub(super) enum Verdict<N: Real> {
     Undecided,
 }
 
-/// The separation of two polygons; the best axis may be known.
+/// The separation of two solids; the best axis may be known.
 pub(super) fn between<N: Real>(
     level: Level,
-    polygons: [&Polygon<N>; 2],
-    pose12: &Pose<N, 2>,
+    pair: &Pair<'_, N, 2>,
     known: Option<Axis<N>>,
     limit: N,
 ) -> Verdict<N> {
-    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, polygons, pose12, known, limit))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
 }
 
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    [polygon1, polygon2]: [&Polygon<N>; 2],
-    pose12: &Pose<N, 2>,
+    pair: &Pair<'_, N, 2>,
     known: Option<Axis<N>>,
     limit: N,
 ) -> Verdict<N> {
-    let Some(own) = Outline::<N, V>::of(simd, polygon1) else { return Verdict::Undecided };
-    let Some(other) = Outline::<N, V>::of(simd, polygon2) else { return Verdict::Undecided };
-    let other = other.placed(simd, pose12);
+    let Some(own) = Outline::<N, V>::of(simd, &pair.first) else { return Verdict::Undecided };
+    let Some(other) = Outline::<N, V>::of(simd, &pair.second) else { return Verdict::Undecided };
+    let other = other.placed(simd, &pair.pose12);
     let rounding = own.rounding + other.rounding;
-    let noise = N::lit(4.0) * N::EPSILON * max(own.size(simd), other.size(simd));
-    let best = match known {
-        Some(best) => best,
-        None => match best_axis(simd, &own, &other) {
-            Some(best) => best,
+    let noise = N::lit(4.0) * N::EPSILON * highest_lane(own.sizes().larger(other.sizes()));
+    // Closures are not inlined into vector code.
+    let sides = match known {
+        Some(known) => known,
+        None => match best_side(simd, &own, &other) {
+            Some(sides) => sides,
             None => return Verdict::Undecided,
         },
     };
     // A lower bound: what it rejects by more than rounding is out of reach.
-    if best.gap - rounding > limit + N::lit(16.0) * (noise + N::EPSILON * rounding) {
+    let reach = limit + N::lit(16.0) * (noise + N::EPSILON * rounding);
+    if sides.gap - rounding > reach {
         return Verdict::Beyond;
     }
-    match of_axis(simd, [&own, &other], &best, noise) {
-        Some(found) => Verdict::Found(found),
-        None => Verdict::Undecided,
-    }
+    let outlines = [&own, &other];
+    let cores = Facing::of(simd, outlines, &sides, noise).settled();
+    let found = match cores {
+        Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
+        None => {
+            let best = if known.is_some() { sides } else { best_axis(simd, &own, &other, sides) };
+            if best.gap - rounding > reach {
+                return Verdict::Beyond;
+            }
+            of_axis(simd, outlines, &best, noise)
+        }
+    };
+    found.map_or(Verdict::Undecided, Verdict::Found)
 }
 
 /// The separation of two outlines whose best axis is known; `None` if that is not the one of the nearest
@@ -149,20 +85,12 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 pub(super) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    [own, other]: [&Outline<N, V>; 2],
+    outlines: [&Outline<N, V>; 2],
     best: &Axis<N>,
     noise: N,
 ) -> Option<Separation<N, 2>> {
-    let is_number = best.gap.is_finite_number();
-    if !is_number {
-        return None;
-    }
-    let cores = if best.gap <= N::ZERO {
-        overlapping(simd, own, other, best, noise)
-    } else {
-        apart(simd, own, other, best, noise)?
-    };
-    Some(cores.rounded(own.rounding, other.rounding))
+    let cores = Facing::of(simd, outlines, best, noise).separation(simd)?;
+    Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 
 /// A polygon in some frame.
@@ -178,30 +106,86 @@ pub(super) struct Outline<N: Real, V> {
 }
 
 impl<N: Real, V> Outline<N, V> {
-    /// `None` if the length of a side is no usual number.
+    /// The outline of a solid in its own frame; `None` of other kinds and of polygons of more vertices, and where
+    /// the length of a side is no usual number.
     #[inline(always)]
-    pub(super) fn of<S: Simd>(simd: S, polygon: &Polygon<N>) -> Option<Self>
+    pub(super) fn of<S: Simd>(simd: S, kind: &Kind<'_, N, 2>) -> Option<Self>
     where
         V: Wide<S, Scalar = N>,
     {
-        let Polygon { vertices: rows, ref sides, count, rounding } = *polygon;
-        let vertices = [V::load(simd, &rows[0]), V::load(simd, &rows[1])];
-        match sides {
-            PolygonSides::Normals(normals) => {
-                let normals = [V::load(simd, &normals[0]), V::load(simd, &normals[1])];
-                Some(Self::of_sides(vertices, normals, count, rounding))
+        match kind {
+            Kind::Ball(ball) => {
+                let zero = [V::all(simd, N::ZERO); 2];
+                Some(Self::of_sides(zero, zero, 1, ball.radius()))
             }
-            PolygonSides::None => Some(Self::of_sides(vertices, vertices, count, rounding)),
-            PolygonSides::Ends(ends) => {
-                let ends = [V::load(simd, &ends[0]), V::load(simd, &ends[1])];
-                Self::of_ends(simd, vertices, ends, count, rounding)
-            }
+            Kind::Segment(segment) => Self::of_segment(simd, segment, N::ZERO),
+            Kind::Capsule(capsule) => Self::of_segment(simd, capsule.segment(), capsule.radius()),
+            Kind::Triangle(triangle) => Self::of_triangle(simd, triangle),
+            Kind::Cuboid(cuboid) => Some(Self::of_box(simd, cuboid.half_extents())),
+            Kind::Polytope(polygon) => Self::of_polytope(simd, polygon),
+            _ => None,
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn of_segment<S: Simd>(simd: S, segment: &Segment<N, 2>, radius: N) -> Option<Self>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [is_last, _] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &segment.a().coords);
+        let b: [V; 2] = spread(simd, &segment.b().coords);
+        let (vertices, ends) = (either(is_last, &b, &a), either(is_last, &a, &b));
+        Self::of_ends(simd, vertices, ends, 2, radius)
+    }
+
+    /// The corners may be given in either order.
+    #[inline(always)]
+    fn of_triangle<S: Simd>(simd: S, triangle: &Triangle<N, 2>) -> Option<Self>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [a, b, c] = triangle.corners();
+        let is_clockwise = cross2(&(b - a), &(c - a)) < N::ZERO;
+        let (b, c) = if is_clockwise { (c, b) } else { (b, c) };
+        let [is_later, is_last] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &a.coords);
+        let b: [V; 2] = spread(simd, &b.coords);
+        let c: [V; 2] = spread(simd, &c.coords);
+        let vertices = either(is_last, &c, &either(is_later, &b, &a));
+        let ends = either(is_last, &a, &either(is_later, &c, &b));
+        Self::of_ends(simd, vertices, ends, 3, N::ZERO)
+    }
+
+    #[inline(always)]
+    fn of_box<S: Simd>(simd: S, half: &Vector<N, 2>) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (no, yes) = (N::ZERO, N::ONE);
+        let xs = V::load(simd, &[-yes, yes, yes, -yes, -yes, -yes, -yes, -yes]);
+        let ys = V::load(simd, &[-yes, -yes, yes, yes, yes, yes, yes, yes]);
+        let normals = [
+            V::load(simd, &[-no, yes, no, -yes, -yes, -yes, -yes, -yes]),
+            V::load(simd, &[-yes, no, yes, -no, -no, -no, -no, -no]),
+        ];
+        let vertices = [xs * V::all(simd, half.x), ys * V::all(simd, half.y)];
+        Self::of_sides(vertices, normals, 4, N::ZERO)
+    }
+
+    #[inline(always)]
+    fn of_polytope<S: Simd>(simd: S, polygon: &Polytope<N, 2>) -> Option<Self>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let ([vertices], [planes]) = (polygon.blocks(), polygon.planes()) else { return None };
+        let (vertices, normals) = (load(simd, vertices), load(simd, &planes.normals));
+        Some(Self::of_sides(vertices, normals, polygon.vertices().len(), N::ZERO))
     }
 
     /// The outline of these vertices, of which the sides end there; `None` as above.
     #[inline(always)]
-    pub(super) fn of_ends<S: Simd>(
+    fn of_ends<S: Simd>(
         simd: S,
         vertices: [V; 2],
         ends: [V; 2],
@@ -225,12 +209,7 @@ impl<N: Real, V> Outline<N, V> {
 
     /// The outline of these vertices and normals of sides.
     #[inline(always)]
-    pub(super) fn of_sides<S: Simd>(
-        vertices: [V; 2],
-        normals: [V; 2],
-        count: usize,
-        radius: N,
-    ) -> Self
+    fn of_sides<S: Simd>(vertices: [V; 2], normals: [V; 2], count: usize, radius: N) -> Self
     where
         V: Wide<S, Scalar = N>,
     {
@@ -266,36 +245,54 @@ impl<N: Real, V> Outline<N, V> {
     }
 
     #[inline(always)]
-    fn at(&self, vertex: usize) -> Point<N, 2> {
+    pub(super) fn at(&self, vertex: usize) -> Point<N, 2> {
         Point::<N, 2>::new(self.rows[0][vertex], self.rows[1][vertex])
     }
 
     #[inline(always)]
-    fn next(&self, vertex: usize) -> usize {
+    pub(super) fn next(&self, vertex: usize) -> usize {
         if vertex + 1 < self.count { vertex + 1 } else { 0 }
     }
 
     #[inline(always)]
-    fn previous(&self, vertex: usize) -> usize {
+    pub(super) fn previous(&self, vertex: usize) -> usize {
         if vertex > 0 { vertex - 1 } else { self.count - 1 }
     }
 
-    /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
+    /// For each vertex a length that its distance from the origin does not exceed, within a factor of 2.
     #[inline(always)]
-    pub(super) fn size<S: Simd>(&self, simd: S) -> N
+    fn sizes<S: Simd>(&self) -> V
     where
         V: Wide<S, Scalar = N>,
     {
-        highest(simd, self.vertices[0].abs() + self.vertices[1].abs()).0
+        self.vertices[0].abs() + self.vertices[1].abs()
+    }
+
+    /// The greatest of these lengths.
+    #[inline(always)]
+    pub(super) fn size<S: Simd>(&self) -> N
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        highest_lane(self.sizes())
     }
 
     /// How far the vertices lie along a direction.
     #[inline(always)]
-    fn along<S: Simd>(&self, simd: S, direction: &Vector<N, 2>) -> V
+    pub(super) fn along<S: Simd>(&self, simd: S, direction: &Vector<N, 2>) -> V
     where
         V: Wide<S, Scalar = N>,
     {
         dot(&[V::all(simd, direction.x), V::all(simd, direction.y)], &self.vertices)
+    }
+
+    /// How far each side is along its normal.
+    #[inline(always)]
+    pub(super) fn offsets<S: Simd>(&self) -> V
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        dot(&self.normals, &self.vertices)
     }
 
     /// How far the outline reaches along each of eight directions.
@@ -340,6 +337,17 @@ impl<N: Real, V> Outline<N, V> {
     }
 }
 
+/// All lanes but the first, and all but the first two.
+#[inline(always)]
+fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2] {
+    let (no, yes) = (N::ZERO, N::ONE);
+    let zero = V::all(simd, no);
+    [
+        V::load(simd, &[no, yes, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+        V::load(simd, &[no, no, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+    ]
+}
+
 /// The greatest of eight numbers, and the first lane that has it.
 #[inline(always)]
 pub(super) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, numbers: V) -> (N, usize) {
@@ -351,31 +359,43 @@ pub(super) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, numbers
     (most, (is_most.trailing_zeros() as usize).min(LANES - 1))
 }
 
-/// The best of the directions of one outline: the gap that it leaves to another, and the direction.
+/// The side of one outline whose normal leaves the largest gap to another: the gap and the normal.
 #[inline(always)]
-fn best_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     own: &Outline<N, V>,
     other: &Outline<N, V>,
 ) -> (N, Vector<N, 2>) {
-    let gaps = gaps(simd, own, other, &own.normals);
-    let (gap, side) = highest(simd, gaps);
-    let (tips, is_tip) = own.tips(simd);
-    if is_tip.any_true() {
-        let none = V::all(simd, -N::INFINITY);
-        let at_tips = is_tip.select(self::gaps(simd, own, other, &tips), none);
-        let (tip_gap, tip) = highest(simd, at_tips);
-        // The side at a vertex comes before its tip.
-        if tip_gap > gap || tip_gap == gap && tip < side {
-            return (tip_gap, lane(&tips, tip).coords);
-        }
+    if !own.has_sides {
+        return (-N::INFINITY, Vector::<N, 2>::zeros());
     }
+    let back = [-own.normals[0], -own.normals[1]];
+    let (gap, side) = highest(simd, -other.reach(simd, &back) - own.offsets());
     (gap, lane(&own.normals, side).coords)
+}
+
+/// The same of the tips; `None` of an outline without any.
+#[inline(always)]
+fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    own: &Outline<N, V>,
+    other: &Outline<N, V>,
+) -> Option<(N, Vector<N, 2>)> {
+    if !own.has_sides {
+        return None;
+    }
+    let (tips, is_tip) = own.tips(simd);
+    if !is_tip.any_true() {
+        return None;
+    }
+    let none = V::all(simd, -N::INFINITY);
+    let (gap, tip) = highest(simd, is_tip.select(gaps(simd, own, other, &tips), none));
+    Some((gap, lane(&tips, tip).coords))
 }
 
 /// The gaps between two outlines along directions away from the first.
 #[inline(always)]
-pub(super) fn gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     own: &Outline<N, V>,
     other: &Outline<N, V>,
@@ -385,10 +405,10 @@ pub(super) fn gaps<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     -other.reach(simd, &back) - own.reach(simd, directions)
 }
 
-/// The direction of the largest gap among the normals of all sides and the tips: those of the first
-/// outline come before those of the second. `None` for two points.
+/// The direction of the largest gap among the normals of all sides, those of the first outline before those of
+/// the second. `None` for two points.
 #[inline(always)]
-fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     own: &Outline<N, V>,
     other: &Outline<N, V>,
@@ -396,9 +416,7 @@ fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if !own.has_sides && !other.has_sides {
         return None;
     }
-    let none = (-N::INFINITY, Vector::<N, 2>::zeros());
-    let first = if own.has_sides { best_of_one(simd, own, other) } else { none };
-    let second = if other.has_sides { best_of_one(simd, other, own) } else { none };
+    let (first, second) = (best_side_of_one(simd, own, other), best_side_of_one(simd, other, own));
     Some(if second.0 > first.0 {
         Axis { gap: second.0, normal: -second.1 }
     } else {
@@ -406,84 +424,25 @@ fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     })
 }
 
-/// Outlines that touch or overlap.
+/// The direction of the largest gap, where that among the normals of the sides is known.
 #[inline(always)]
-fn overlapping<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     own: &Outline<N, V>,
     other: &Outline<N, V>,
-    best: &Axis<N>,
-    noise: N,
-) -> Separation<N, 2> {
-    let tangent = perp(&best.normal);
-    let [low1, high1] = feature(simd, own, &best.normal, &tangent, noise);
-    let [low2, high2] = feature(simd, other, &-best.normal, &tangent, noise);
-    super::polygon_polygon::in_middle([low1, high1], [low2.0, high2.0], best)
-}
-
-/// The lowest and highest of the vertices that reach within `tolerance` of the farthest along a normal, as
-/// measured along a tangent.
-#[inline(always)]
-fn feature<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    outline: &Outline<N, V>,
-    normal: &Vector<N, 2>,
-    tangent: &Vector<N, 2>,
-    tolerance: N,
-) -> [(N, Point<N, 2>); 2] {
-    let (_, support) = highest(simd, outline.along(simd, normal));
-    let farthest = outline.at(support);
-    let below = [
-        V::all(simd, farthest.x) - outline.vertices[0],
-        V::all(simd, farthest.y) - outline.vertices[1],
-    ];
-    let across = [V::all(simd, normal.x), V::all(simd, normal.y)];
-    let is_near = dot(&across, &below).simd_le(V::all(simd, tolerance));
-    let along = outline.along(simd, tangent);
-    let (high, most) = highest(simd, is_near.select(along, V::all(simd, -N::INFINITY)));
-    let (low, least) = highest(simd, is_near.select(-along, V::all(simd, -N::INFINITY)));
-    let middle = tangent.dot(&farthest.coords);
-    // Of equals the farthest counts, then the first.
-    [
-        if -low == middle { (middle, farthest) } else { (-low, outline.at(least)) },
-        if high == middle { (middle, farthest) } else { (high, outline.at(most)) },
-    ]
-}
-
-/// Outlines that are apart along the best axis; `None` if that is not the one of the nearest points.
-#[inline(always)]
-fn apart<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    own: &Outline<N, V>,
-    other: &Outline<N, V>,
-    best: &Axis<N>,
-    noise: N,
-) -> Option<Separation<N, 2>> {
-    let (_, near1) = highest(simd, own.along(simd, &best.normal));
-    let (_, near2) = highest(simd, other.along(simd, &-best.normal));
-    let (around1, around2) = (around(own, near1), around(other, near2));
-    let points = nearest_points::<S, N, V>(simd, &around1, &around2)?;
-    let between = points.1 - points.0;
-    let slack = N::lit(8.0) * noise;
-    let beside = (between - best.normal * best.gap).norm();
-    let direct = unit(&between).filter(|_| beside > noise);
-    let mut axis = *best;
-    if let Some((normal, length)) = direct {
-        let high1 = highest(simd, own.along(simd, &normal)).0;
-        let high2 = highest(simd, other.along(simd, &-normal)).0;
-        if -high2 - high1 + slack >= best.gap {
-            axis = Axis { gap: length, normal };
-        }
+    mut best: Axis<N>,
+) -> Axis<N> {
+    if let Some((gap, tip)) = best_tip_of_one(simd, own, other)
+        && gap > best.gap
+    {
+        best = Axis { gap, normal: tip };
     }
-    let is_met = between.norm() - axis.gap <= N::lit(4.0) * noise;
-    let (point1, point2) = points;
-    is_met.then_some(Separation { distance: axis.gap, normal: axis.normal, point1, point2 })
-}
-
-/// A vertex between the one before and the one after.
-#[inline(always)]
-fn around<N: Real, V>(outline: &Outline<N, V>, vertex: usize) -> [Point<N, 2>; 3] {
-    [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
+    if let Some((gap, tip)) = best_tip_of_one(simd, other, own)
+        && gap > best.gap
+    {
+        best = Axis { gap, normal: -tip };
+    }
+    best
 }
 
 /// The vector in a lane.

@@ -1,37 +1,21 @@
-//! The separating axis test of two boxes in the plane.
+//! The separating axis test of two 2D boxes.
 
+use super::polygon_polygon::Axis;
 use crate::math::{Pose, Real, Vector};
 
 /// Two boxes, the second placed in the frame of the first.
-pub(in crate::query) struct Rectangles<N: Real> {
-    pub(in crate::query) half1: Vector<N, 2>,
-    pub(in crate::query) half2: Vector<N, 2>,
-    pub(in crate::query) pose12: Pose<N, 2>,
-}
-
-/// The normal of a side, turned to point from the first box to the second, and the gap along it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::query) struct SideAxis<N: Real> {
-    /// The side belongs to the second box.
-    pub(in crate::query) is_second: bool,
-    /// The axis of its box that the side is perpendicular to.
-    pub(in crate::query) axis: usize,
-    pub(in crate::query) normal: Vector<N, 2>,
-    pub(in crate::query) gap: N,
+pub(super) struct Rectangles<N: Real> {
+    pub(super) half1: Vector<N, 2>,
+    pub(super) half2: Vector<N, 2>,
+    pub(super) pose12: Pose<N, 2>,
 }
 
 impl<N: Real> Rectangles<N> {
-    /// What arithmetic on these numbers cannot resolve.
-    pub(in crate::query) fn noise(&self) -> N {
-        let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
-        N::lit(4.0) * N::EPSILON * size
-    }
-
-    /// The direction of the largest gap.
+    /// The normal of a side that leaves the largest gap, turned to point from the first box to the second.
     ///
     /// Equal gaps: the sides of the first box come before those of the second, each in the order of
     /// its outline, which starts below and goes round counter-clockwise.
-    pub(in crate::query) fn best_axis(&self) -> SideAxis<N> {
+    pub(super) fn best_axis(&self) -> Axis<N> {
         let leans = self.pose12.rotation.abs();
         let offset = self.pose12.translation;
         let reaches2 = leans * self.half2;
@@ -43,7 +27,7 @@ impl<N: Real> Rectangles<N> {
         });
         let (gap, _, axis, is_positive) = better(first[0], first[1]);
         let normal = signed(Vector::<N, 2>::ith(axis, N::ONE), is_positive);
-        let best = SideAxis { is_second: false, axis, normal, gap };
+        let best = Axis { gap, normal };
         let seen = self.pose12.inverse_vector(&offset);
         let reaches1 = leans.tr_mul(&self.half1);
         let second = [0, 1].map(|axis| {
@@ -58,7 +42,7 @@ impl<N: Real> Rectangles<N> {
             return best;
         }
         let along = self.pose12.rotation.column(axis).into_owned();
-        SideAxis { is_second: true, axis, normal: signed(along, is_positive), gap }
+        Axis { gap, normal: signed(along, is_positive) }
     }
 }
 

@@ -58,7 +58,7 @@ trait Eights<N: Real, const D: usize> {
     fn fall_back(job: &mut BoxJob<'_, N, D>);
 }
 
-/// Brings the manifolds of pairs of boxes of the plane up to date, as [`update_box_pairs3`].
+/// Brings the manifolds of pairs of 2D boxes up to date, as [`update_box_pairs3`].
 pub(crate) fn update_box_pairs2<N: Real>(jobs: &mut [BoxJob<'_, N, 2>]) {
     update_at::<N, plane::Found<N>, 2>(Level::new(), jobs);
 }
@@ -71,15 +71,26 @@ pub(crate) fn update_box_pairs3<N: Real>(jobs: &mut [BoxJob<'_, N, 3>]) {
     update_at::<N, space::Found<N>, 3>(Level::new(), jobs);
 }
 
-/// The manifold of two boxes of which the second is placed in the frame of the first: a batch of one.
+/// The manifold of two 2D boxes of which the second is placed in the frame of the first.
+pub(super) fn build2<N: Real>(
+    cuboids: [&Cuboid<N, 2>; 2],
+    pose12: &Pose<N, 2>,
+    request: &ManifoldRequest<N>,
+    raw: &mut RawManifold<N, 2>,
+) {
+    let job = BoxJob { poses: [&Pose::identity(), pose12], cuboids, request, raw };
+    update_box_pairs2(&mut [job]);
+}
+
+/// The manifold of two 3D boxes of which the second is placed in the frame of the first.
 pub(super) fn build3<N: Real>(
     cuboids: [&Cuboid<N, 3>; 2],
     pose12: &Pose<N, 3>,
     request: &ManifoldRequest<N>,
     raw: &mut RawManifold<N, 3>,
 ) {
-    let poses = [&Pose::identity(), pose12];
-    update_box_pairs3(&mut [BoxJob { poses, cuboids, request, raw }]);
+    let job = BoxJob { poses: [&Pose::identity(), pose12], cuboids, request, raw };
+    update_box_pairs3(&mut [job]);
 }
 
 /// [`update_box_pairs3`] with the vectors of an instruction set.

@@ -3,8 +3,9 @@
 //! Pairs whose separation is one closed form and whose manifold is one point: a ball against a ball, a
 //! box, a segment or a capsule, and segments and capsules that are not side by side. Each lane of a
 //! vector is another pair, with the operations of the functions for one pair in the same order, so with
-//! the same bits. What is unusual about a pair (a centre in a box, cores that cross, solids too small or
-//! too large to be squared, more than one point, numbers that are none) is declined and goes one by one.
+//! the same bits; 2D segments and capsules are the same but for rounding. What is unusual about a pair (a
+//! centre in a box, cores that cross, solids too small or too large to be squared, more than one point, numbers
+//! that are none) is declined and goes one by one.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
 

@@ -3,10 +3,10 @@
 mod faces;
 mod lasting;
 mod level_corners;
-mod outlines;
 mod overlap;
 mod properties;
 mod resting;
 mod rods;
 pub(in crate::query) mod scene;
+mod side_pairs;
 mod stretch;

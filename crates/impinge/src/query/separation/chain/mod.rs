@@ -11,7 +11,6 @@ mod tests;
 
 use smallvec::SmallVec;
 
-use super::polygon_lanes::Polygon;
 use crate::convex::Separation;
 use crate::math::lanes::{dot, either, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
@@ -66,7 +65,7 @@ fn links_at<N: Real>(
     }
     match &question.solid {
         Kind::Ball(ball) => ball::links(level, question, ball, links),
-        solid => polygon::links(level, question, &Polygon::of(solid)?, links),
+        _ => polygon::links(level, question, links),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Eight segments at once against a polygon of up to eight vertices, swollen or not.
 
-use super::super::polygon_lanes::{Outline, Polygon, of_axis};
+use super::super::polygon_lanes::{Outline, of_axis};
 use super::super::polygon_polygon::{self, Axis};
 use super::{ChainQuestion, Eight, Links};
 use crate::convex::Separation;
@@ -18,20 +18,18 @@ type Row<N> = [N; LANES];
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
-    polygon: &Polygon<N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, polygon, links))
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &ChainQuestion<'_, N>,
-    polygon: &Polygon<N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    let solid = Outline::<N, V>::of(simd, polygon)?;
+    let solid = Outline::<N, V>::of(simd, &question.solid)?;
     let solid = PolygonExtents::new(simd, solid.placed(simd, &question.solid_pose()));
     for (block, tiles) in question.tiles.iter().enumerate() {
         let eight = Eight::<V>::of(simd, tiles, question)?;
@@ -48,7 +46,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
                 links.found.extend(found.map(|found| (block * LANES + lane, found)));
                 continue;
             }
-            let own = Outline::<N, V>::of(simd, &Polygon::of_segment(&segment, N::ZERO))?;
+            let own = Outline::<N, V>::of_segment(simd, &segment, N::ZERO)?;
             let outlines = [&own, &solid.outline];
             let found = of_axis(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
             if found.distance <= question.limit {
@@ -94,12 +92,12 @@ impl<N: Real, V> PolygonExtents<N, V> {
             outline.normals[axis].store(&mut normals[axis]);
             ways[axis].store(&mut tips[axis]);
         }
-        outline.reach(simd, &outline.normals).store(&mut reaches);
+        outline.offsets().store(&mut reaches);
         let are_tips = is_tip.to_bitmask();
         if are_tips != 0 {
             outline.reach(simd, &ways).store(&mut tip_reaches);
         }
-        let size = outline.size(simd);
+        let size = outline.size();
         Self { outline, size, normals, reaches, tips, tip_reaches, are_tips }
     }
 }
@@ -183,11 +181,11 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let tip = over(&tip, dot(&tip, &tip).sqrt());
     let (low, high) = heights(simd, &front, solid);
     let (first, second) = (dot(&front, a), dot(&front, b));
-    let mut best = BestDirection { gap: low - first.larger(second), normal: front };
+    let mut best = BestDirection { gap: low - first, normal: front };
     let (tip_low, tip_high) = heights(simd, &tip, solid);
     let (tip_first, tip_second) = (dot(&tip, a), dot(&tip, b));
     best.attempt(tip_low - tip_first.larger(tip_second), &tip);
-    best.attempt(first.smaller(second) - high, &back);
+    best.attempt(second - high, &back);
     best.attempt(tip_first.smaller(tip_second) - tip_high, &negated(&tip));
     best
 }

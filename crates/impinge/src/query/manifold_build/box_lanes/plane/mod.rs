@@ -1,4 +1,4 @@
-//! Boxes in 2D: the separating axis test, and the ends of what the two sides share.
+//! 2D boxes: the separating axis test and the overlap of the sides in lanes.
 
 mod axis;
 mod names;
@@ -14,7 +14,7 @@ use super::{BoxJob, Eights, LANES};
 use crate::math::lanes::lit;
 use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
-use crate::query::manifold_build::contacts2;
+use crate::query::manifold_build::contacts_of_separation2;
 
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
 const SLOTS: usize = 4;
@@ -105,7 +105,7 @@ impl<N: Real> Eights<N, 2> for Found<N> {
     }
 
     fn fall_back(job: &mut BoxJob<'_, N, 2>) {
-        contacts2(&job.pair(), job.request, job.raw);
+        contacts_of_separation2(&job.pair(), job.request, job.raw);
     }
 }
 

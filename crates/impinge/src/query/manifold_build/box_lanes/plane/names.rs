@@ -4,7 +4,6 @@ use super::SLOTS;
 use crate::math::Real;
 use crate::query::RawPoint;
 use crate::query::manifold_build::box_lanes::choose::Naming;
-use crate::query::manifold_build::box_sides::{side, vertex};
 use crate::shape::FeatureId;
 
 /// A side, the end on the negative side of the axis along it, the other end.
@@ -12,6 +11,16 @@ type Parts = [FeatureId; 3];
 
 /// The sides of a box by their axis, plus twice whether they are on its positive side.
 static SIDES: [Parts; 4] = [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
+
+/// The vertex with these positive coordinates: along the axis, and along the other one.
+const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
+    FeatureId::Vertex((is_positive as u32) << axis | (other_is_positive as u32) << (1 - axis))
+}
+
+/// The side that is perpendicular to an axis.
+const fn side(axis: usize, is_positive: bool) -> FeatureId {
+    FeatureId::Face(2 * (axis == 1) as u32 + !is_positive as u32)
+}
 
 const fn parts(axis: usize, is_positive: bool) -> Parts {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]

@@ -1,5 +1,8 @@
-//! The two sides that meet, of eight pairs, and the ends of what they share: side by side. A lone pair of
-//! boxes in the plane takes `box_sides.rs`.
+//! The two sides that meet, of eight pairs, and the ends of what they share.
+//!
+//! The side that the separating axis test names is an interval along an axis of its own box, the most aligned
+//! side of the other box a slanted one above it, and the contact points are the ends of their overlap. Of a side
+//! that is tilted too much the lower end alone counts, the corner that faces the other box.
 
 use super::super::admit::{Admission, Slots};
 use super::super::gather::{Boxes, other, tolerance};
