@@ -46,9 +46,7 @@ pub(crate) fn points_promised<N: Real, const D: usize>(
 }
 
 /// Laws that do not hold of all scenes, each of a dimension.
-const KNOWN: [(&str, usize); 2] = [
-    // A lone pair of boxes of the plane takes another builder than a batch: the last digit differs.
-    ("5 batches, cuboid and cuboid", 2),
+const KNOWN: [(&str, usize); 1] = [
     // The product of four lengths that tells whether axes cross underflows in `f32` at a millionth of the size:
     // a point at an end of an axis is named after the axis.
     ("5 scaled, capsule and capsule", 3),

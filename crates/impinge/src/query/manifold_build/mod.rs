@@ -57,7 +57,7 @@ pub(crate) use self::witness::{
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
-use crate::math::{Pose, Real, Vector, orthonormal_basis, perp};
+use crate::math::{Pose, Real, Space, Vector, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Geometry, Kind};
 
 /// Builds the manifold of two solids in the plane: at most two points.
@@ -147,7 +147,7 @@ fn contacts_of_separation3<N: Real>(
 }
 
 /// The manifold of a pair in the plane; as [`contacts3`].
-pub(crate) fn contacts2<N: Real>(
+pub(crate) fn contacts2<N: Space<2>>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
@@ -158,7 +158,9 @@ pub(crate) fn contacts2<N: Real>(
     if let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (pair.first, pair.second) {
         return box_lanes::build2([cuboid1, cuboid2], &pair.pose12, request, out);
     }
-    contacts_of_separation2(pair, request, out);
+    if !closed_lanes::build_segments2(pair, request, out) {
+        contacts_of_separation2(pair, request, out);
+    }
 }
 
 /// The manifold of a pair in the plane from its separation.

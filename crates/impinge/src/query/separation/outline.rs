@@ -1,218 +1,327 @@
-//! Convex outlines in the plane: what segments, triangles, boxes and polygons have in common.
-
-use core::array::from_fn;
+//! Convex outlines in the plane: what points, segments, triangles, boxes and polygons have in common.
 
 use smallvec::{SmallVec, smallvec};
 
-use super::wrong_kinds;
-use crate::math::{Point, Pose, Real, Vector, cross2, max, unit};
-use crate::query::Pair;
-use crate::shape::{Kind, Polytope};
+use super::segment_lanes::is_usual;
+use crate::math::lanes::{dot, either, highest_lane, load, spread};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::shape::{Kind, Polytope, Segment, Triangle};
 
-/// A convex polygon, swollen by a rounding radius.
+/// How many vertices are looked at side by side.
+pub(super) const LANES: usize = 8;
+
+/// Outlines of more vertices are left to the general algorithm.
+const MOST_BLOCKS: usize = 4;
+
+/// A number for each of eight vertices.
+pub(super) type Row<N> = [N; LANES];
+
+/// A convex polygon in some frame, swollen by a radius.
 ///
-/// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines.
+/// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
 pub(super) struct Outline<N: Real> {
-    pub(super) vertices: SmallVec<[Point<N, 2>; 8]>,
-    /// The unit outward normal of the side from each vertex to the next; `None` for a side of no
-    /// length.
-    pub(super) normals: SmallVec<[Option<Vector<N, 2>>; 8]>,
+    blocks: SmallVec<[OutlineBlock<N>; MOST_BLOCKS]>,
+    /// Of vertices.
+    pub(super) count: usize,
     pub(super) rounding: N,
 }
 
+/// Eight vertices; the last one fills the rest.
+#[derive(Clone, Copy)]
+pub(super) struct OutlineBlock<N> {
+    pub(super) vertices: [Row<N>; 2],
+    /// The unit outward normals of the sides that start there; of a point anything.
+    pub(super) normals: [Row<N>; 2],
+}
+
 impl<N: Real> Outline<N> {
-    /// The outline of a solid of the plane in its own frame.
-    pub(super) fn of(pair: &Pair<'_, N, 2>, kind: &Kind<'_, N, 2>) -> Self {
+    /// The outline of a solid in its own frame; `None` of other kinds and of polygons of too many vertices, and
+    /// where the length of a side is no usual number.
+    #[inline(always)]
+    pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        kind: &Kind<'_, N, 2>,
+    ) -> Option<Self> {
         match kind {
-            Kind::Ball(ball) => Self::new(smallvec![Point::origin()], ball.radius()),
-            Kind::Segment(segment) => Self::new(smallvec![*segment.a(), *segment.b()], N::ZERO),
+            Kind::Ball(ball) => Some(Self::of_point(&Point::origin(), ball.radius())),
+            Kind::Segment(segment) => Self::of_segment::<S, V>(simd, segment, N::ZERO),
             Kind::Capsule(capsule) => {
-                let segment = capsule.segment();
-                Self::new(smallvec![*segment.a(), *segment.b()], capsule.radius())
+                Self::of_segment::<S, V>(simd, capsule.segment(), capsule.radius())
             }
-            Kind::Triangle(triangle) => Self::of_triangle(triangle.corners()),
-            Kind::Cuboid(cuboid) => Self::of_box(cuboid.half_extents()),
+            Kind::Triangle(triangle) => Self::of_triangle::<S, V>(simd, triangle),
+            Kind::Cuboid(cuboid) => Some(Self::of_box(cuboid.half_extents())),
             Kind::Polytope(polygon) => Self::of_polygon(polygon),
-            _ => wrong_kinds(pair),
+            _ => None,
         }
     }
 
-    /// Vertices that repeat the one before count once: beside a side of no length there would be no
-    /// bisector.
-    fn new(mut vertices: SmallVec<[Point<N, 2>; 8]>, rounding: N) -> Self {
-        vertices.dedup();
-        if vertices.len() > 1 && vertices.first() == vertices.last() {
-            vertices.pop();
-        }
-        let mut outline = Self { vertices, normals: SmallVec::new(), rounding };
-        for at in 0..outline.vertices.len() {
-            let [from, to] = outline.side(at);
-            outline.normals.push(unit(&(to - from)).map(|(along, _)| right_of(&along)));
-        }
-        outline
+    #[inline(always)]
+    fn of_block(vertices: [Row<N>; 2], normals: [Row<N>; 2], count: usize, rounding: N) -> Self {
+        Self { blocks: smallvec![OutlineBlock { vertices, normals }], count, rounding }
     }
 
-    /// The corners may be given in either order.
-    fn of_triangle(&[a, b, c]: &[Point<N, 2>; 3]) -> Self {
-        let clockwise = cross2(&(b - a), &(c - a)) < N::ZERO;
-        Self::new(if clockwise { smallvec![a, c, b] } else { smallvec![a, b, c] }, N::ZERO)
+    #[inline(always)]
+    fn of_point(point: &Point<N, 2>, radius: N) -> Self {
+        Self::of_block([[point.x; LANES], [point.y; LANES]], [[N::ZERO; LANES]; 2], 1, radius)
     }
 
+    /// A segment without length is a point.
+    #[inline(always)]
+    pub(super) fn of_segment<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        segment: &Segment<N, 2>,
+        radius: N,
+    ) -> Option<Self> {
+        if segment.a() == segment.b() {
+            return Some(Self::of_point(segment.a(), radius));
+        }
+        let [is_last, _] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &segment.a().coords);
+        let b: [V; 2] = spread(simd, &segment.b().coords);
+        let (vertices, ends) = (either(is_last, &b, &a), either(is_last, &a, &b));
+        Self::of_ends(simd, &vertices, &ends, 2, radius)
+    }
+
+    /// The corners may be given in either order; equal ones count once.
+    #[inline(always)]
+    fn of_triangle<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        triangle: &Triangle<N, 2>,
+    ) -> Option<Self> {
+        let [a, b, c] = triangle.corners();
+        if a == b || b == c || c == a {
+            let other = if a == b { c } else { b };
+            return Self::of_segment::<S, V>(simd, &Segment::of_finite(*a, *other), N::ZERO);
+        }
+        let is_clockwise = cross2(&(b - a), &(c - a)) < N::ZERO;
+        let (b, c) = if is_clockwise { (c, b) } else { (b, c) };
+        let [is_later, is_last] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &a.coords);
+        let b: [V; 2] = spread(simd, &b.coords);
+        let c: [V; 2] = spread(simd, &c.coords);
+        let vertices = either(is_last, &c, &either(is_later, &b, &a));
+        let ends = either(is_last, &a, &either(is_later, &c, &b));
+        Self::of_ends(simd, &vertices, &ends, 3, N::ZERO)
+    }
+
+    #[inline(always)]
     fn of_box(half: &Vector<N, 2>) -> Self {
-        let corner = |x: N, y: N| Point::<N, 2>::new(x * half.x, y * half.y);
-        let (low, high) = (-N::ONE, N::ONE);
-        let vertices =
-            smallvec![corner(low, low), corner(high, low), corner(high, high), corner(low, high)];
-        let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
-        let normals = smallvec![Some(-y), Some(x), Some(y), Some(-x)];
-        Self { vertices, normals, rounding: N::ZERO }
+        let ([x, y], no, yes) = ([half.x, half.y], N::ZERO, N::ONE);
+        let vertices = [[-x, x, x, -x, -x, -x, -x, -x], [-y, -y, y, y, y, y, y, y]];
+        let normals = [
+            [-no, yes, no, -yes, -yes, -yes, -yes, -yes],
+            [-yes, no, yes, -no, -no, -no, -no, -no],
+        ];
+        Self::of_block(vertices, normals, 4, N::ZERO)
     }
 
-    fn of_polygon(polygon: &Polytope<N, 2>) -> Self {
-        let mut normals = SmallVec::new();
-        for face in polygon.faces() {
-            normals.push(Some(face.normal));
+    #[inline(always)]
+    fn of_polygon(polygon: &Polytope<N, 2>) -> Option<Self> {
+        let (vertices, planes) = (polygon.blocks(), polygon.planes());
+        if vertices.len() > MOST_BLOCKS {
+            return None;
         }
-        Self { vertices: SmallVec::from_slice(polygon.vertices()), normals, rounding: N::ZERO }
+        let blocks = vertices.iter().zip(planes);
+        let blocks = blocks.map(|(vertices, planes)| OutlineBlock {
+            vertices: *vertices,
+            normals: planes.normals,
+        });
+        Some(Self { blocks: blocks.collect(), count: polygon.vertices().len(), rounding: N::ZERO })
+    }
+
+    /// The outline of these vertices, of which the sides end there; `None` as above.
+    #[inline(always)]
+    fn of_ends<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        vertices: &[V; 2],
+        ends: &[V; 2],
+        count: usize,
+        radius: N,
+    ) -> Option<Self> {
+        let side = [ends[0] - vertices[0], ends[1] - vertices[1]];
+        let squared = dot(&side, &side);
+        if !is_usual(simd, squared).all_true() {
+            return None;
+        }
+        let length = squared.sqrt();
+        let normals = [side[1] / length, -(side[0] / length)];
+        Some(Self::of_block(stored(vertices), stored(&normals), count, radius))
     }
 
     /// The same outline seen from the frame in which its own has the given pose.
-    pub(super) fn placed(mut self, pose: &Pose<N, 2>) -> Self {
-        for vertex in &mut self.vertices {
-            *vertex = pose.point(vertex);
-        }
-        for normal in self.normals.iter_mut().flatten() {
-            *normal = pose.vector(normal);
+    #[inline(always)]
+    pub(super) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
+        mut self,
+        simd: S,
+        pose: &Pose<N, 2>,
+    ) -> Self {
+        let at = &pose.translation;
+        for block in &mut self.blocks {
+            let [x, y]: [V; 2] = turned(simd, &block.vertices, &pose.rotation);
+            block.vertices = stored(&[x + V::all(simd, at.x), y + V::all(simd, at.y)]);
+            block.normals = stored(&turned::<S, N, V>(simd, &block.normals, &pose.rotation));
         }
         self
     }
 
-    /// The index of the vertex farthest along `direction`, the first of equals.
-    #[inline]
-    pub(super) fn support(&self, direction: &Vector<N, 2>) -> usize {
-        let (mut best, mut height) = (0, direction.dot(&self.vertices[0].coords));
-        for (at, vertex) in self.vertices.iter().enumerate().skip(1) {
-            let candidate = direction.dot(&vertex.coords);
-            if candidate > height {
-                (best, height) = (at, candidate);
-            }
-        }
-        best
+    #[inline(always)]
+    pub(super) fn at(&self, vertex: usize) -> Point<N, 2> {
+        let [xs, ys] = &self.blocks[vertex / LANES].vertices;
+        Point::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
     }
 
-    /// How far the outline reaches along `direction`, from the origin.
-    #[inline]
-    pub(super) fn height(&self, direction: &Vector<N, 2>) -> N {
-        let first = direction.dot(&self.vertices[0].coords);
-        self.vertices[1..]
-            .iter()
-            .fold(first, |high, vertex| max(direction.dot(&vertex.coords), high))
+    /// The outward normal of the side that starts at a vertex.
+    #[inline(always)]
+    pub(super) fn normal(&self, vertex: usize) -> Vector<N, 2> {
+        let [xs, ys] = &self.blocks[vertex / LANES].normals;
+        Vector::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
     }
 
-    /// The two ends of the side that starts at a vertex.
-    #[inline]
-    pub(super) fn side(&self, at: usize) -> [Point<N, 2>; 2] {
-        [self.vertices[at], self.vertices[self.next(at)]]
+    #[inline(always)]
+    pub(super) const fn next(&self, vertex: usize) -> usize {
+        if vertex + 1 < self.count { vertex + 1 } else { 0 }
     }
 
-    /// The number of the vertex after a vertex.
-    fn next(&self, at: usize) -> usize {
-        if at + 1 < self.vertices.len() { at + 1 } else { 0 }
+    #[inline(always)]
+    pub(super) const fn previous(&self, vertex: usize) -> usize {
+        if vertex > 0 { vertex - 1 } else { self.count - 1 }
     }
 
-    /// The number of the vertex before a vertex.
-    pub(super) fn previous(&self, at: usize) -> usize {
-        if at > 0 { at - 1 } else { self.vertices.len() - 1 }
-    }
-
-    /// Visits the directions that may be the best to part the outline from another: for each vertex the
-    /// outward normal of the side that starts there and, where the angle is sharper than a right
-    /// angle, the outward bisector.
-    ///
-    /// Sides alone would not try the latter: it keeps the directions tried less than a right angle
-    /// apart, so that flat outlines (segments, slivers) that point at each other are told apart.
-    /// Beside a side of no length there is none.
-    #[inline]
-    pub(super) fn visit_axes(&self, visit: &mut impl FnMut(Vector<N, 2>)) {
-        let Some(mut before) = self.normals.last().copied() else { return };
-        for &after in &self.normals {
-            after.into_iter().for_each(&mut *visit);
-            if let (Some(before), Some(after)) = (before, after)
-                && before.dot(&after) < N::ZERO
-            {
-                // The normals turned back by a quarter are the directions of the sides.
-                let tip = unit(&(left_of(&before) - left_of(&after)));
-                tip.into_iter().for_each(|(tip, _)| visit(tip));
-            }
-            before = after;
-        }
+    #[inline(always)]
+    pub(super) const fn is_point(&self) -> bool {
+        self.count < 2
     }
 
     /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
-    pub(super) fn reach(&self) -> N {
-        self.vertices.iter().fold(N::ZERO, |most, p| max(p.x.abs() + p.y.abs(), most))
+    #[inline(always)]
+    pub(super) fn size<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> N {
+        let size = |block: &OutlineBlock<N>| {
+            let [xs, ys]: [V; 2] = load(simd, &block.vertices);
+            highest_lane(xs.abs() + ys.abs())
+        };
+        self.blocks.iter().fold(N::ZERO, |most, block| max(size(block), most))
     }
 
-    /// The lowest and highest of the vertices that reach within `noise` of the farthest along
-    /// `normal`, as measured along `tangent`.
-    pub(super) fn feature(
+    /// The vertex farthest along a direction, the first of equals, and how far.
+    #[inline(always)]
+    pub(super) fn top<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
-        normal: &Vector<N, 2>,
-        tangent: &Vector<N, 2>,
-        noise: N,
-    ) -> [(N, Point<N, 2>); 2] {
-        let farthest = self.vertices[self.support(normal)];
-        let mut ends = [(tangent.dot(&farthest.coords), farthest); 2];
-        for vertex in &self.vertices {
-            let along = tangent.dot(&vertex.coords);
-            if normal.dot(&(farthest - vertex)) <= noise {
-                if along < ends[0].0 {
-                    ends[0] = (along, *vertex);
-                }
-                if along > ends[1].0 {
-                    ends[1] = (along, *vertex);
+        simd: S,
+        direction: &Vector<N, 2>,
+    ) -> (N, usize) {
+        let direction: [V; 2] = spread(simd, direction);
+        let (mut most, mut vertex) = (-N::INFINITY, 0);
+        for (number, block) in self.blocks.iter().enumerate() {
+            let along: V = dot(&direction, &load(simd, &block.vertices));
+            let (high, lane) = highest(simd, along);
+            if high > most {
+                (most, vertex) = (high, number * LANES + lane);
+            }
+        }
+        (most, vertex)
+    }
+
+    /// How far the outline reaches along each of eight directions.
+    #[inline(always)]
+    pub(super) fn reach<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, directions: &[V; 2]) -> V {
+        let mut most = V::all(simd, -N::INFINITY);
+        for (number, block) in self.blocks.iter().enumerate() {
+            let [xs, ys] = &block.vertices;
+            // The last vertex fills the rest.
+            let halves = if self.count - number * LANES > LANES / 2 { 2 } else { 1 };
+            for half in 0..halves {
+                for lane in 0..LANES / 2 {
+                    let lane = (half * LANES / 2 + lane) & (LANES - 1);
+                    let at = [V::all(simd, xs[lane]), V::all(simd, ys[lane])];
+                    most = dot(directions, &at).larger(most);
                 }
             }
         }
-        ends
+        most
+    }
+
+    /// The blocks with what [`Self::reach`] says along the normals of their sides.
+    #[inline(always)]
+    pub(super) fn blocks(&self) -> &[OutlineBlock<N>] {
+        &self.blocks
+    }
+
+    /// The directions half-way between the normals of the sides at each vertex of a block, and where they count:
+    /// where the angle is sharper than a right one.
+    ///
+    /// Sides alone would leave gaps of more than a right angle between the directions, so that flat outlines that
+    /// point at each other were not told apart.
+    #[inline(always)]
+    pub(super) fn tips<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        block: usize,
+    ) -> ([V; 2], V::Mask) {
+        let normals = &self.blocks[block].normals;
+        let last = self.normal(self.previous(block * LANES));
+        let [mut xs, mut ys] = [[last.x; LANES], [last.y; LANES]];
+        xs[1..].copy_from_slice(&normals[0][..LANES - 1]);
+        ys[1..].copy_from_slice(&normals[1][..LANES - 1]);
+        let (before, after): ([V; 2], [V; 2]) = (load(simd, &[xs, ys]), load(simd, normals));
+        let is_tip = dot(&before, &after).simd_lt(V::all(simd, N::ZERO));
+        // Turned by a quarter: from normals to the directions of the sides.
+        let tip = [-before[1] - -after[1], before[0] - after[0]];
+        let length = dot(&tip, &tip).sqrt();
+        ([tip[0] / length, tip[1] / length], is_tip)
     }
 }
 
-/// How many vertices [`Reach`] measures side by side.
-const LANES: usize = 8;
-
-/// How far an outline reaches along many directions: as [`Outline::height`], with the vertices side by
-/// side where there are few.
-pub(super) struct Reach<'a, N: Real> {
-    outline: &'a Outline<N>,
-    /// The coordinates, the last vertex again and again in the rest.
-    lanes: Option<([N; LANES], [N; LANES])>,
+/// Vectors in a frame turned by a matrix.
+#[inline(always)]
+fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    vectors: &[Row<N>; 2],
+    by: &Matrix<N, 2>,
+) -> [V; 2] {
+    let v: [V; 2] = load(simd, vectors);
+    let row = |row: usize| [V::all(simd, by[(row, 0)]), V::all(simd, by[(row, 1)])];
+    [dot(&row(0), &v), dot(&row(1), &v)]
 }
 
-impl<'a, N: Real> Reach<'a, N> {
-    pub(super) fn of(outline: &'a Outline<N>) -> Self {
-        let vertices = outline.vertices.as_slice();
-        let last = vertices.len() - 1;
-        let at = |lane: usize| vertices[if lane < last { lane } else { last }];
-        let lanes = || (from_fn(|lane| at(lane).x), from_fn(|lane| at(lane).y));
-        Self { outline, lanes: (last < LANES).then(lanes) }
-    }
-
-    #[inline]
-    pub(super) fn along(&self, direction: &Vector<N, 2>) -> N {
-        let Some((xs, ys)) = &self.lanes else { return self.outline.height(direction) };
-        let heights: [N; LANES] = from_fn(|lane| direction.x * xs[lane] + direction.y * ys[lane]);
-        let halves: [N; LANES / 2] = from_fn(|lane| max(heights[lane + 4], heights[lane]));
-        max(max(halves[2], halves[0]), max(halves[3], halves[1]))
-    }
+#[inline(always)]
+fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(vectors: &[V; 2]) -> [Row<N>; 2] {
+    let mut rows = [[N::ZERO; LANES]; 2];
+    vectors[0].store(&mut rows[0]);
+    vectors[1].store(&mut rows[1]);
+    rows
 }
 
-/// `v` turned by a quarter clockwise: from the direction of a side to its outward normal.
-fn right_of<N: Real>(v: &Vector<N, 2>) -> Vector<N, 2> {
-    Vector::<N, 2>::new(v.y, -v.x)
+/// All lanes but the first, and all but the first two.
+#[inline(always)]
+fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2] {
+    let (no, yes) = (N::ZERO, N::ONE);
+    let zero = V::all(simd, no);
+    [
+        V::load(simd, &[no, yes, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+        V::load(simd, &[no, no, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+    ]
 }
 
-/// `v` turned by a quarter counter-clockwise: from a normal to the direction of the side.
-fn left_of<N: Real>(v: &Vector<N, 2>) -> Vector<N, 2> {
-    crate::math::perp(v)
+/// The greatest of eight numbers, and the first lane that has it.
+#[inline(always)]
+pub(super) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, numbers: V) -> (N, usize) {
+    let mut lanes = [N::ZERO; LANES];
+    numbers.store(&mut lanes);
+    let [a, b, c, d, e, f, g, h] = lanes;
+    let most = max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)));
+    let is_most = numbers.simd_eq(V::all(simd, most)).to_bitmask();
+    (most, (is_most.trailing_zeros() as usize).min(LANES - 1))
+}
+
+/// The vector in a lane.
+#[inline(always)]
+pub(super) fn lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    vectors: &[V; 2],
+    lane: usize,
+) -> Point<N, 2> {
+    let mut rows = [[N::ZERO; LANES]; 2];
+    vectors[0].store(&mut rows[0]);
+    vectors[1].store(&mut rows[1]);
+    Point::<N, 2>::new(rows[0][lane], rows[1][lane])
 }

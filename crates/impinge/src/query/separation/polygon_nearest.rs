@@ -2,16 +2,17 @@
 //! two corners are the nearest, and else each end of the sides next to it against each side of the other, eight
 //! at a time.
 
-use super::polygon_lanes::{Outline, highest, lane};
+use super::outline::{Outline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
+use super::segment_lanes::nearest_on_segment;
 use crate::convex::Separation;
-use crate::math::lanes::{dot, either};
-use crate::math::simd::{Simd, SimdMask};
+use crate::math::lanes::{dot, either, minus, spread};
+use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
 /// Two outlines and a direction from the first to the second that leaves a gap between them, perhaps below zero.
-pub(super) struct Facing<'a, N: Real, V> {
-    outlines: [&'a Outline<N, V>; 2],
+pub(super) struct Facing<'a, N: Real> {
+    outlines: [&'a Outline<N>; 2],
     axis: Axis<N>,
     /// The vertex of each that is farthest toward the other.
     tops: [usize; 2],
@@ -19,32 +20,29 @@ pub(super) struct Facing<'a, N: Real, V> {
     noise: N,
 }
 
-impl<'a, N: Real, V> Facing<'a, N, V> {
+impl<'a, N: Real> Facing<'a, N> {
     #[inline(always)]
-    pub(super) fn of<S: Simd>(
+    pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
-        outlines: [&'a Outline<N, V>; 2],
+        outlines: [&'a Outline<N>; 2],
         axis: &Axis<N>,
         noise: N,
-    ) -> Self
-    where
-        V: Wide<S, Scalar = N>,
-    {
-        let (_, top1) = highest(simd, outlines[0].along(simd, &axis.normal));
-        let (_, top2) = highest(simd, outlines[1].along(simd, &-axis.normal));
+    ) -> Self {
+        let (_, top1) = outlines[0].top::<S, V>(simd, &axis.normal);
+        let (_, top2) = outlines[1].top::<S, V>(simd, &-axis.normal);
         Self { outlines, axis: *axis, tops: [top1, top2], noise }
     }
 
     /// The separation of the two; `None` if the axis is not the one of the nearest points.
     #[inline(always)]
-    pub(super) fn separation<S: Simd>(&self, simd: S) -> Option<Separation<N, 2>>
-    where
-        V: Wide<S, Scalar = N>,
-    {
+    pub(super) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+    ) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
         match self.settled() {
             None if gap <= N::ZERO => Some(self.overlapping()),
-            None if gap.is_finite_number() => self.apart(simd),
+            None if gap.is_finite_number() => self.apart::<S, V>(simd),
             settled => settled,
         }
     }
@@ -158,10 +156,7 @@ impl<'a, N: Real, V> Facing<'a, N, V> {
 
     /// Outlines that are apart along the axis; `None` if it is not the one of the nearest points.
     #[inline(always)]
-    fn apart<S: Simd>(&self, simd: S) -> Option<Separation<N, 2>>
-    where
-        V: Wide<S, Scalar = N>,
-    {
+    fn apart<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 2>> {
         let ([own, other], noise) = (self.outlines, self.noise);
         let (around1, around2) = (around(own, self.tops[0]), around(other, self.tops[1]));
         let points = nearest_points::<S, N, V>(simd, &around1, &around2)?;
@@ -171,8 +166,8 @@ impl<'a, N: Real, V> Facing<'a, N, V> {
         let direct = unit(&between).filter(|_| beside > noise);
         let mut axis = self.axis;
         if let Some((normal, length)) = direct {
-            let high1 = highest(simd, own.along(simd, &normal)).0;
-            let high2 = highest(simd, other.along(simd, &-normal)).0;
+            let high1 = own.top::<S, V>(simd, &normal).0;
+            let high2 = other.top::<S, V>(simd, &-normal).0;
             if -high2 - high1 + slack >= axis.gap {
                 axis = Axis { gap: length, normal };
             }
@@ -185,7 +180,7 @@ impl<'a, N: Real, V> Facing<'a, N, V> {
 
 /// A vertex between the one before and the one after.
 #[inline(always)]
-fn around<N: Real, V>(outline: &Outline<N, V>, vertex: usize) -> [Point<N, 2>; 3] {
+fn around<N: Real>(outline: &Outline<N>, vertex: usize) -> [Point<N, 2>; 3] {
     [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
 }
 
@@ -205,22 +200,23 @@ pub(super) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let is_second1 = V::load(simd, &[no, no, no, no, yes, yes, yes, yes]).simd_gt(zero);
     let is_second2 = V::load(simd, &[no, no, yes, yes, no, no, yes, yes]).simd_gt(zero);
     let is_end = V::load(simd, &[no, yes, no, yes, no, yes, no, yes]).simd_gt(zero);
-    let before1: [V; 2] = spread(simd, &around1[0]);
-    let at1: [V; 2] = spread(simd, &around1[1]);
-    let after1: [V; 2] = spread(simd, &around1[2]);
-    let before2: [V; 2] = spread(simd, &around2[0]);
-    let at2: [V; 2] = spread(simd, &around2[1]);
-    let after2: [V; 2] = spread(simd, &around2[2]);
+    let before1: [V; 2] = spread(simd, &around1[0].coords);
+    let at1: [V; 2] = spread(simd, &around1[1].coords);
+    let after1: [V; 2] = spread(simd, &around1[2].coords);
+    let before2: [V; 2] = spread(simd, &around2[0].coords);
+    let at2: [V; 2] = spread(simd, &around2[1].coords);
+    let after2: [V; 2] = spread(simd, &around2[2].coords);
     let from1 = either(is_second1, &at1, &before1);
     let to1 = either(is_second1, &after1, &at1);
     let from2 = either(is_second2, &at2, &before2);
     let to2 = either(is_second2, &after2, &at2);
     let end1 = either(is_end, &to1, &from1);
     let end2 = either(is_end, &to2, &from2);
-    let (on2, squared1) = nearest_on_side(simd, &from2, &to2, &end1);
-    let (on1, squared2) = nearest_on_side(simd, &from1, &to1, &end2);
-    let (low1, lane1) = highest(simd, -squared1);
-    let (low2, lane2) = highest(simd, -squared2);
+    let on2 = nearest_on_segment(simd, &[from2, to2], &end1).point;
+    let on1 = nearest_on_segment(simd, &[from1, to1], &end2).point;
+    let (way1, way2) = (minus(&on2, &end1), minus(&on1, &end2));
+    let (low1, lane1) = highest(simd, -dot(&way1, &way1));
+    let (low2, lane2) = highest(simd, -dot(&way2, &way2));
     let (low1, low2) = (-low1, -low2);
     let is_usual = low1 < N::INFINITY && low2 < N::INFINITY;
     if !is_usual {
@@ -233,37 +229,4 @@ pub(super) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     } else {
         (lane(&on1, lane2), lane(&end2, lane2))
     })
-}
-
-/// The same point in all lanes.
-#[inline(always)]
-fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, point: &Point<N, 2>) -> [V; 2] {
-    [V::all(simd, point.x), V::all(simd, point.y)]
-}
-
-/// The points of some sides nearest to some points, and the squares of their distances; as
-/// [`super::segments::nearest_on_segment`].
-#[inline(always)]
-fn nearest_on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    from: &[V; 2],
-    to: &[V; 2],
-    point: &[V; 2],
-) -> ([V; 2], V) {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let from_a = dot(&[point[0] - from[0], point[1] - from[1]], &along);
-    let to_b = dot(&[to[0] - point[0], to[1] - point[1]], &along);
-    let zero = V::all(simd, N::ZERO);
-    let is_beyond_a = from_a.simd_gt(zero);
-    let is_between = is_beyond_a & to_b.simd_gt(zero);
-    let whole = from_a + to_b;
-    let is_nearer_a = from_a.simd_lt(to_b);
-    let share = is_nearer_a.select(from_a, to_b) / whole;
-    let step = [along[0] * share, along[1] * share];
-    let after_a = [from[0] + step[0], from[1] + step[1]];
-    let before_b = [to[0] - step[0], to[1] - step[1]];
-    let between = either(is_nearer_a, &after_a, &before_b);
-    let nearest = either(is_between, &between, &either(is_beyond_a, to, from));
-    let way = [nearest[0] - point[0], nearest[1] - point[1]];
-    (nearest, dot(&way, &way))
 }

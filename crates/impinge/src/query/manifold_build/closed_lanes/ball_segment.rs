@@ -1,11 +1,12 @@
 //! A ball and a segment or capsule: `separation/ball_segment.rs` in lanes.
 
 use super::gather::Inputs;
-use super::nearest::{END_OR_SIDE, farther, nearest_on_segment};
+use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, dot, either, lit, minus, negated, rounding_of, times, unit};
 use super::{Form, Found, PairQuestion, Solid};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
+use crate::query::separation::nearest_on_segment;
 use crate::shape::FeatureId;
 
 /// Balls with their centre some way off a segment that has a length.

@@ -3,7 +3,7 @@
 //! Pairs whose separation is one closed form and whose manifold is one point: a ball against a ball, a
 //! box, a segment or a capsule, and segments and capsules that are not side by side. Each lane of a
 //! vector is another pair, with the operations of the functions for one pair in the same order, so with
-//! the same bits; 2D segments and capsules are the same but for rounding. What is unusual about a pair (a
+//! the same bits; a lone pair of 2D segments or capsules is a batch of one. What is unusual about a pair (a
 //! centre in a box, cores that cross, solids too small or too large to be squared, more than one point, numbers
 //! that are none) is declined and goes one by one.
 //!
@@ -14,7 +14,6 @@ mod ball_cuboid;
 mod ball_segment;
 mod gather;
 mod nearest;
-mod outlines;
 mod segments2;
 mod segments3;
 mod solid;
@@ -31,7 +30,7 @@ use self::segments3::Segments3;
 pub(crate) use self::solid::Solid;
 use self::vectors::{bits, is_finite};
 use super::box_lanes::transposed;
-use super::{Candidate, Pair, names};
+use super::{Candidate, Pair, choose, names};
 use crate::convex::Separation;
 use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
@@ -78,6 +77,49 @@ pub(crate) fn update_pairs2<N: Space<2>>(
         update_at::<Segments2, _, _, 2>(Level::new(), pairs);
     }
     are_segments || update_with_ball(solids, pairs)
+}
+
+/// The manifold of two segments or capsules of the plane; answers whether the pair is one.
+pub(super) fn build_segments2<N: Space<2>>(
+    pair: &Pair<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+    raw: &mut RawManifold<N, 2>,
+) -> bool {
+    let solid = |kind| Solid::of(Geometry(kind)).filter(Solid::is_segment);
+    let (Some(first), Some(second)) = (solid(pair.first), solid(pair.second)) else { return false };
+    let poses = [Pose::identity(), pair.pose12];
+    let mut alone = Alone { poses, solids: [first, second], request, raw };
+    update_at::<Segments2, _, _, 2>(Level::new(), &mut alone);
+    true
+}
+
+/// A batch of one.
+struct Alone<'a, N: Real, const D: usize> {
+    poses: [Pose<N, D>; 2],
+    solids: [Solid<N, D>; 2],
+    request: &'a ManifoldRequest<N>,
+    raw: &'a mut RawManifold<N, D>,
+}
+
+impl<N: Real, const D: usize> KeptPairs<N, D> for Alone<'_, N, D> {
+    fn len(&self) -> usize {
+        1
+    }
+
+    fn begin(&mut self, index: usize) -> Option<PairQuestion<'_, N, D>> {
+        Some(self.parts(index).0)
+    }
+
+    fn parts(&mut self, _: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
+        let (poses, solids) = (self.poses.each_ref(), self.solids.each_ref());
+        (PairQuestion { poses, solids, request: self.request }, self.raw)
+    }
+
+    fn raw(&mut self, _: usize) -> &mut RawManifold<N, D> {
+        self.raw
+    }
+
+    fn end(&mut self, _: usize) {}
 }
 
 /// Brings pairs of space up to date, as [`update_pairs2`].
@@ -131,6 +173,15 @@ trait Form<N: Real, const D: usize> {
 
     /// The features of the two solids that a pair's byte of [`Found::parts`] stands for.
     fn features(parts: u8) -> [FeatureId; 2];
+
+    /// The manifold of a pair that is declined.
+    #[inline(never)]
+    fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>)
+    where
+        N: Space<D>,
+    {
+        (N::tables().contacts)(pair, request, raw);
+    }
 }
 
 /// [`Form`] for all pairs, with the vectors of an instruction set.
@@ -139,13 +190,6 @@ fn update_at<F: Form<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize>(
     pairs: &mut P,
 ) {
     with_lanes!(level, simd => update::<F, P, _, N, N::Lanes<_>, D>(simd, pairs));
-}
-
-/// A pair alone.
-#[inline(never)]
-fn one_by_one<N: Space<D>, const D: usize>(pairs: &mut impl KeptPairs<N, D>, index: usize) {
-    let (question, raw) = pairs.parts(index);
-    (N::tables().contacts)(&question.pair(), question.request, raw);
 }
 
 /// Eight by eight. The numbers of the next eight are gathered before those gathered last are used,
@@ -169,8 +213,9 @@ fn update<F, P, S: Simd, N: Space<D>, V: Wide<S, Scalar = N>, const D: usize>(
         let parts = transposed(u64::from_le_bytes(found.parts)).to_le_bytes();
         let taken = now.places.iter().zip(parts).take(now.count);
         for (lane, (&index, parts)) in taken.enumerate() {
-            if !found.settle(lane, F::features(parts), pairs.raw(index)) {
-                one_by_one(pairs, index);
+            if !found.settle::<F>(lane, parts, pairs.raw(index)) {
+                let (question, raw) = pairs.parts(index);
+                F::fall_back(&question.pair(), question.request, raw);
             }
             pairs.end(index);
         }
@@ -181,14 +226,21 @@ fn update<F, P, S: Simd, N: Space<D>, V: Wide<S, Scalar = N>, const D: usize>(
 /// The contacts of eight pairs.
 struct Found<N: Real, const D: usize> {
     normal: [[N; LANES]; D],
-    point1: [[N; LANES]; D],
-    distance: [N; LANES],
+    gap: [N; LANES],
+    /// The first and the second contact: the points on the first solid, and the distances, of which that of a
+    /// lone contact is the gap.
+    points1: [[[N; LANES]; D]; 2],
+    distances: [[N; LANES]; 2],
+    /// Lengths up to this are rounding errors, where there are two contacts.
+    tolerance: [N; LANES],
     /// Eight masks that tell what the points lie on, the same number of each pair; what they mean is up
-    /// to the form.
+    /// to the form. Where there are two contacts, four are of the first.
     parts: [u8; LANES],
-    /// The lanes that are too far apart, and those that have a contact. The others are declined.
+    /// The lanes that are too far apart, those that have a contact, and those that have two. The others are
+    /// declined.
     is_apart: u8,
     is_found: u8,
+    is_two: u8,
 }
 
 impl<N: Real, const D: usize> Found<N, D> {
@@ -196,11 +248,14 @@ impl<N: Real, const D: usize> Found<N, D> {
         let row = [N::ZERO; LANES];
         Self {
             normal: [row; D],
-            point1: [row; D],
-            distance: row,
+            gap: row,
+            points1: [[row; D]; 2],
+            distances: [row; 2],
+            tolerance: row,
             parts: [0; LANES],
             is_apart: 0,
             is_found: 0,
+            is_two: 0,
         }
     }
 
@@ -218,22 +273,26 @@ impl<N: Real, const D: usize> Found<N, D> {
         let is_usual = is_usual & is_finite(simd, distance);
         self.is_apart = bits(distance.simd_gt(prediction) & is_usual);
         self.is_found = bits(distance.simd_le(prediction) & is_usual);
-        distance.store(&mut self.distance);
+        distance.store(&mut self.gap);
         for axis in 0..D {
             normal[axis].store(&mut self.normal[axis]);
-            point1[axis].store(&mut self.point1[axis]);
+            point1[axis].store(&mut self.points1[0][axis]);
         }
     }
 
     /// Replaces the manifold of one pair; answers whether that was possible.
     #[inline(always)]
-    fn settle(&self, lane: usize, features: [FeatureId; 2], raw: &mut RawManifold<N, D>) -> bool {
-        let is_found = self.is_found >> lane & 1 == 1;
-        let is_apart = self.is_apart >> lane & 1 == 1;
+    fn settle<F: Form<N, D>>(&self, lane: usize, parts: u8, raw: &mut RawManifold<N, D>) -> bool {
+        let [is_found, is_apart, is_two] =
+            [self.is_found, self.is_apart, self.is_two].map(|lanes| lanes >> lane & 1 == 1);
         if is_found {
-            let point1 = vector(&self.point1, lane);
-            let distance = self.distance[lane & (LANES - 1)];
             raw.normal = vector(&self.normal, lane);
+            if is_two {
+                self.settle_two([F::features(parts), F::features(parts >> 4)], lane, raw);
+                return true;
+            }
+            let (point1, distance) = (vector(&self.points1[0], lane), self.gap[lane & (LANES - 1)]);
+            let features = F::features(parts);
             match raw.points.as_mut_slice() {
                 [old] if [old.feature1, old.feature2] == features => {
                     old.point1 = Point::from(point1);
@@ -245,6 +304,19 @@ impl<N: Real, const D: usize> Found<N, D> {
             raw.points.clear();
         }
         is_found | is_apart
+    }
+
+    /// Two contacts, whose normal is given.
+    fn settle_two(&self, features: [[FeatureId; 2]; 2], lane: usize, raw: &mut RawManifold<N, D>) {
+        let lane = lane & (LANES - 1);
+        let mut candidates = [0, 1].map(|which| Candidate {
+            point1: Point::from(vector(&self.points1[which], lane)),
+            distance: self.distances[which][lane],
+            flat: Vector::<N, 2>::zeros(),
+            features: features[which],
+            kept_id: None,
+        });
+        choose(&mut candidates, (self.gap[lane], self.tolerance[lane]), 2, raw);
     }
 }
 

@@ -1,11 +1,12 @@
 //! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
 
 use super::gather::Inputs;
-use super::nearest::{END_OR_SIDE, farther, nearest_on_segment};
+use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
 use super::{Form, Found, PairQuestion};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
+use crate::query::separation::nearest_on_segment;
 use crate::shape::FeatureId;
 
 /// Segments and capsules whose cores are some way apart and cross when seen along the normal.

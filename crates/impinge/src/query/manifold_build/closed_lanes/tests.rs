@@ -1,7 +1,6 @@
-//! Eight at a time against one by one, on every instruction set: bit for bit, and 2D segments but for rounding.
+//! Eight at a time against one by one, on every instruction set: bit for bit.
 
 use super::super::box_lanes::tests::facts;
-use super::super::frame::rounding;
 use super::super::tests::scene::{Random, Scene};
 use super::{
     BallBall, BallCuboid, BallSegment, Form, KeptPairs, PairQuestion, Segments2, Segments3, Solid,
@@ -61,37 +60,14 @@ impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
     }
 }
 
-/// A form, and whether its answers differ by rounding from those of one pair after the other.
-trait Compared<N: Real, const D: usize>: Form<N, D> {
-    const ROUNDS: bool = false;
-}
-
-impl<N: Real, const D: usize> Compared<N, D> for BallBall where Self: Form<N, D> {}
-impl<N: Real, const D: usize> Compared<N, D> for BallCuboid where Self: Form<N, D> {}
-impl<N: Real, const D: usize> Compared<N, D> for BallSegment where Self: Form<N, D> {}
-impl<N: Real> Compared<N, 3> for Segments3 where Self: Form<N, 3> {}
-impl<N: Real> Compared<N, 2> for Segments2 {
-    const ROUNDS: bool = true;
-}
-
-/// The same points on the same features, but for rounding.
-fn are_close<N: Real, const D: usize>(
-    case: &Case<N, D>,
-    one: &RawManifold<N, D>,
-    other: &RawManifold<N, D>,
-) -> bool {
-    let close = N::TWO * rounding(&case.question().pair());
-    one.points.len() == other.points.len()
-        && one.points.iter().zip(&other.points).all(|(one, other)| {
-            (one.id, one.feature1, one.feature2) == (other.id, other.feature1, other.feature2)
-                && (one.distance - other.distance).abs() <= close
-                && (one.point1 - other.point1).norm() <= close
-        })
+/// Number by number, so that zeros have no sign, or bit by bit, as NaN is.
+fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifold<N, D>) -> bool {
+    one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
 /// Some steps of the same pairs, so that names are inherited; answers how many points there were and
 /// how many pairs were declined, of how many.
-fn compare<F: Compared<N, D>, N: Space<D>, const D: usize>(
+fn compare<F: Form<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
 ) -> [usize; 3] {
@@ -108,7 +84,7 @@ fn compare<F: Compared<N, D>, N: Space<D>, const D: usize>(
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
                 let case = &cases[index];
                 assert!(
-                    facts(one) == facts(other) || F::ROUNDS && are_close(case, one, other),
+                    are_same(one, other),
                     "{what}, {level:?}, {step}, {index}: {one:?} {other:?} {:?}",
                     (case.poses, case.solids, case.request)
                 );
@@ -257,7 +233,7 @@ fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid
 }
 
 /// All of the above for one form.
-fn check<F: Compared<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
+fn check<F: Form<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
     for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
         let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));
         let [points, declined, begun] = compare::<F, N, D>(&steps, "drawn");
@@ -300,7 +276,7 @@ fn eight_pairs_with_balls_are_as_one() {
     }
 }
 
-fn segments<F: Compared<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
+fn segments<F: Form<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     check::<F, N, D>([Sort::Segment, Sort::Segment]);
     check::<F, N, D>([Sort::Segment, Sort::Capsule]);
     check::<F, N, D>([Sort::Capsule, Sort::Capsule]);

@@ -7,18 +7,12 @@ pub(super) use crate::math::lanes::{
 };
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
+use crate::query::separation::is_usual;
 
 /// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
-}
-
-/// The lanes where a square is far from both ends of the range, so that its root is the length.
-#[inline(always)]
-pub(super) fn is_usual<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, squared: V) -> V::Mask {
-    squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
-        & squared.simd_lt(V::all(simd, N::MAX.sqrt()))
 }
 
 /// `unit` of vectors of usual length, which the mask says: direction and length.

@@ -1,18 +1,20 @@
 //! The segments of a chain in the plane against one solid, eight side by side.
 //!
-//! The algorithms of [`polygon_polygon`](super::polygon_polygon) and [`ball_segment`](super::ball_segment),
-//! in the same order of operations, so that the answers have the same bits: most segments are told to be
-//! beyond the limit, the rest by what is known of them then.
+//! The algorithms of [`polygon_polygon`](super::polygon_polygon), [`segment_lanes`](super::segment_lanes) and
+//! [`ball_segment`](super::ball_segment), in the same order of operations, so that the answers have the same bits:
+//! most segments are told to be beyond the limit, the rest by what is known of them then.
 
 mod ball;
 mod polygon;
+mod segment;
 #[cfg(test)]
 mod tests;
 
 use smallvec::SmallVec;
 
+use super::segment_lanes::nearest_on_segment;
 use crate::convex::Separation;
-use crate::math::lanes::{dot, either, load, minus, spread};
+use crate::math::lanes::{dot, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::query::tiles::{LANES, Tiles};
@@ -65,16 +67,15 @@ fn links_at<N: Real>(
     }
     match &question.solid {
         Kind::Ball(ball) => ball::links(level, question, ball, links),
+        Kind::Segment(core) => segment::links(level, question, core, N::ZERO, links),
+        Kind::Capsule(capsule) => {
+            segment::links(level, question, capsule.segment(), capsule.radius(), links)
+        }
         _ => polygon::links(level, question, links),
     }
 }
 
 impl<N: Real> ChainQuestion<'_, N> {
-    /// The pose of the solid, not a ball, in the frame of the segments.
-    fn solid_pose(&self) -> Pose<N, 2> {
-        if let Kind::Segment(_) = self.solid { self.pose12.inverse() } else { self.pose12 }
-    }
-
     /// A bit for each segment of some tiles.
     fn lanes_of(&self, block: usize) -> u8 {
         u8::MAX >> (LANES - (self.count - block * LANES).min(LANES))
@@ -113,7 +114,7 @@ impl<V> Eight<V> {
             return None;
         }
         let center: [V; 2] = spread(simd, &(question.center.coords - question.origin));
-        let offset = minus(&center, &nearest(simd, [&a, &b], &side, &center));
+        let offset = minus(&center, &nearest_on_segment(simd, &[a, b], &center).point);
         Some(Self { ends: [a, b], side, squared, from_middle: dot(&offset, &offset) })
     }
 
@@ -129,22 +130,4 @@ impl<V> Eight<V> {
         let least = |x: N, y: N| if x < y { x } else { y };
         least(least(least(a, e), least(c, g)), least(least(b, f), least(d, h))).sqrt()
     }
-}
-
-/// The points of segments nearest to a point, as [`nearest_on_segment`](super::segments::nearest_on_segment).
-#[inline(always)]
-fn nearest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    [a, b]: [&[V; 2]; 2],
-    side: &[V; 2],
-    point: &[V; 2],
-) -> [V; 2] {
-    let (from_a, to_b) = (dot(&minus(point, a), side), dot(&minus(b, point), side));
-    let zero = V::all(simd, N::ZERO);
-    let (is_after_a, is_nearer_a) = (from_a.simd_gt(zero), from_a.simd_lt(to_b));
-    let share = is_nearer_a.select(from_a, to_b) / (from_a + to_b);
-    let step = [side[0] * share, side[1] * share];
-    let after_a = [a[0] + step[0], a[1] + step[1]];
-    let between = either(is_nearer_a, &after_a, &minus(b, &step));
-    either(is_after_a & to_b.simd_gt(zero), &between, &either(is_after_a, b, a))
 }

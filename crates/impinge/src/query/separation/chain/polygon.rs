@@ -1,18 +1,13 @@
 //! Eight segments at once against a polygon of up to eight vertices, swollen or not.
 
-use super::super::polygon_lanes::{Outline, of_axis};
-use super::super::polygon_polygon::{self, Axis};
+use super::super::outline::{Outline, Row};
+use super::super::polygon_polygon::{Axis, of_axis};
 use super::{ChainQuestion, Eight, Links};
-use crate::convex::Separation;
-use crate::math::lanes::{dot, either, negated, over, with_lanes};
+use crate::math::lanes::{dot, either, negated, over, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
-use crate::query::Pair;
 use crate::query::tiles::LANES;
-use crate::shape::{Kind, Segment};
-
-/// A number for each lane.
-type Row<N> = [N; LANES];
+use crate::shape::Segment;
 
 /// The separations of segments from a polygon; `None` where the usual ways do not lead to one.
 pub(super) fn links<N: Real>(
@@ -29,8 +24,9 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &ChainQuestion<'_, N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    let solid = Outline::<N, V>::of(simd, &question.solid)?;
-    let solid = PolygonExtents::new(simd, solid.placed(simd, &question.solid_pose()));
+    let solid = Outline::of::<S, V>(simd, &question.solid).filter(|solid| solid.count <= LANES)?;
+    let solid = solid.placed::<S, V>(simd, &question.pose12);
+    let solid = PolygonExtents::new::<S, V>(simd, solid);
     for (block, tiles) in question.tiles.iter().enumerate() {
         let eight = Eight::<V>::of(simd, tiles, question)?;
         links.from_middle = min(links.from_middle, eight.least());
@@ -41,14 +37,9 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             within &= within - 1;
             let [a, b, _] = tiles.corners(lane);
             let segment = Segment::of_finite(a - question.origin, b - question.origin);
-            if let Kind::Segment(_) = question.solid {
-                let found = from_segment(question, &segment);
-                links.found.extend(found.map(|found| (block * LANES + lane, found)));
-                continue;
-            }
-            let own = Outline::<N, V>::of_segment(simd, &segment, N::ZERO)?;
+            let own = Outline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
             let outlines = [&own, &solid.outline];
-            let found = of_axis(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
+            let found = of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
             if found.distance <= question.limit {
                 links.found.push((block * LANES + lane, found));
             }
@@ -57,21 +48,10 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     Some(())
 }
 
-/// The separation of a segment of the chain from another, which comes first.
-#[inline(never)]
-fn from_segment<N: Real>(
-    question: &ChainQuestion<'_, N>,
-    segment: &Segment<N, 2>,
-) -> Option<Separation<N, 2>> {
-    let (first, second) = (question.solid, Kind::Segment(segment));
-    polygon_polygon::separation(&Pair { first, second, pose12: question.pose12 }, question.limit)
-}
-
 /// A polygon in the frame of the segments, and how far it reaches along its own directions.
-struct PolygonExtents<N: Real, V> {
-    outline: Outline<N, V>,
+struct PolygonExtents<N: Real> {
+    outline: Outline<N>,
     size: N,
-    normals: [Row<N>; 2],
     reaches: Row<N>,
     tips: [Row<N>; 2],
     tip_reaches: Row<N>,
@@ -79,26 +59,24 @@ struct PolygonExtents<N: Real, V> {
     are_tips: u64,
 }
 
-impl<N: Real, V> PolygonExtents<N, V> {
+impl<N: Real> PolygonExtents<N> {
     #[inline(always)]
-    fn new<S: Simd>(simd: S, outline: Outline<N, V>) -> Self
-    where
-        V: Wide<S, Scalar = N>,
-    {
-        let (mut normals, mut tips) = ([[N::ZERO; LANES]; 2], [[N::ZERO; LANES]; 2]);
-        let (mut reaches, mut tip_reaches) = ([N::ZERO; LANES], [N::ZERO; LANES]);
-        let (ways, is_tip) = outline.tips(simd);
+    fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: Outline<N>) -> Self {
+        let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
+        let (ways, is_tip) = outline.tips::<S, V>(simd, 0);
         for axis in 0..2 {
-            outline.normals[axis].store(&mut normals[axis]);
             ways[axis].store(&mut tips[axis]);
         }
-        outline.offsets().store(&mut reaches);
+        let mut reaches = [N::ZERO; LANES];
+        for (vertex, reach) in reaches.iter_mut().enumerate().take(outline.count) {
+            *reach = outline.normal(vertex).dot(&outline.at(vertex).coords);
+        }
         let are_tips = is_tip.to_bitmask();
         if are_tips != 0 {
             outline.reach(simd, &ways).store(&mut tip_reaches);
         }
-        let size = outline.size();
-        Self { outline, size, normals, reaches, tips, tip_reaches, are_tips }
+        let size = outline.size::<S, V>(simd);
+        Self { outline, size, reaches, tips, tip_reaches, are_tips }
     }
 }
 
@@ -135,7 +113,7 @@ impl<N: Real> SegmentAxes<N> {
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         eight: &Eight<V>,
-        solid: &PolygonExtents<N, V>,
+        solid: &PolygonExtents<N>,
         limit: N,
     ) -> Self {
         let [a, b] = &eight.ends;
@@ -171,7 +149,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     [a, b]: [&[V; 2]; 2],
     side: &[V; 2],
     squared: V,
-    solid: &Outline<N, V>,
+    solid: &Outline<N>,
 ) -> BestDirection<V> {
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
@@ -195,11 +173,11 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     directions: &[V; 2],
-    solid: &Outline<N, V>,
+    solid: &Outline<N>,
 ) -> (V, V) {
     let (mut low, mut high) = (V::all(simd, N::INFINITY), V::all(simd, -N::INFINITY));
-    for vertex in 0..solid.count.min(LANES) {
-        let at = [V::all(simd, solid.rows[0][vertex]), V::all(simd, solid.rows[1][vertex])];
+    for vertex in 0..solid.count {
+        let at: [V; 2] = spread(simd, &solid.at(vertex).coords);
         let along = dot(directions, &at);
         (low, high) = (along.smaller(low), along.larger(high));
     }
@@ -211,12 +189,12 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     [a, b]: [&[V; 2]; 2],
-    solid: &PolygonExtents<N, V>,
+    solid: &PolygonExtents<N>,
     best: &mut BestDirection<V>,
 ) {
     for vertex in 0..solid.outline.count.min(LANES) {
-        let direction = [solid.normals[0][vertex], solid.normals[1][vertex]];
-        add(simd, [a, b], direction, solid.reaches[vertex], best);
+        let normal = solid.outline.normal(vertex);
+        add(simd, [a, b], [normal.x, normal.y], solid.reaches[vertex], best);
         if solid.are_tips >> vertex & 1 == 1 {
             let direction = [solid.tips[0][vertex], solid.tips[1][vertex]];
             add(simd, [a, b], direction, solid.tip_reaches[vertex], best);
