@@ -31,11 +31,11 @@ use crate::query::separation::{
 };
 use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
-    BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
-    Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
-    contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
-    tangents2, tangents3, time_of_pair, update_box_pairs2, update_box_pairs3, witness_feature2,
-    witness_feature3, witness_features2, witness_features3, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair, Placed,
+    PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world,
+    contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3, tangents2,
+    tangents3, time_of_pair, witness_feature2, witness_feature3, witness_features2,
+    witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -86,10 +86,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) each_hit: EachHitFn<N, D>,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
-    /// Those of the pairs of a group that are due, several at a time, if that can be done.
+    /// Those of some pairs of a group, several at a time, if that can be done.
     pub(crate) update_lanes: UpdateLanesFn<N, D>,
-    /// Those of many pairs of boxes.
-    pub(crate) box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     /// Two directions across a normal; the second is zero in the plane.
     pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
@@ -247,7 +245,6 @@ struct Particular<N: Space<D>, const D: usize> {
     seen: SeenFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
-    box_contacts: fn(&mut [BoxJob<'_, N, D>]),
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
     witness_feature: FeatureFn<N, D>,
@@ -269,7 +266,6 @@ impl<N: Real> Particular<N, 2> {
         seen: seen_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
-        box_contacts: update_box_pairs2,
         tangents: tangents2,
         witness_features: witness_features2,
         witness_feature: witness_feature2,
@@ -292,7 +288,6 @@ impl<N: Real> Particular<N, 3> {
         seen: seen_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
-        box_contacts: update_box_pairs3,
         tangents: tangents3,
         witness_features: witness_features3,
         witness_feature: witness_feature3,
@@ -335,7 +330,6 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             each_hit,
             contacts: particular.contacts,
             update_lanes: particular.update_lanes,
-            box_contacts: particular.box_contacts,
             tangents: particular.tangents,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifolds,

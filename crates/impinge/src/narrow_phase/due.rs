@@ -2,7 +2,7 @@
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
-use super::group::{Chosen, Rows};
+use super::group::Rows;
 use super::reuse::Reference;
 use super::state::ContactState;
 use super::update::{Changes, note_touching};
@@ -19,11 +19,11 @@ pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Pairs with copies of their solids, of which some may be due; what changes is noted.
+/// Pairs with copies of their solids that are due; what changes is noted.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
-    /// Which are due.
-    pub(super) due: Chosen,
+    /// Where in the rows they are.
+    pub(super) places: &'t [usize],
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) changes: &'t mut Changes,
 }
@@ -47,36 +47,33 @@ pub(crate) fn update_lanes3<N: Space<3>>(
 impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> {
     #[inline(always)]
     fn len(&self) -> usize {
-        self.rows.states.len()
+        self.places.len()
     }
 
     #[inline(always)]
-    fn begin(&mut self, index: usize) -> Option<PairQuestion<'_, N, D>> {
-        if !self.due.contains(index) {
-            return None;
-        }
-        let (key, entry, view) = self.rows.row(index);
-        ContactView::expire_any(view);
-        let poses = [self.table.pose(key[0]), self.table.pose(key[1])];
-        Some(entry.state.turned(poses, &entry.request)?.0)
+    fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
+        ContactView::expire_any(self.rows.views.get_mut(self.places[index]));
+        self.parts(index).0
     }
 
     #[inline(always)]
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
-        let [first, second] = self.rows.keys[index];
+        let place = self.places[index];
+        let [first, second] = self.rows.keys[place];
         let poses = [self.table.pose(first), self.table.pose(second)];
-        let entry = &mut self.rows.states[index];
-        entry.state.turned(poses, &entry.request).expect("a pair that began has its solids")
+        let entry = &mut self.rows.states[place];
+        entry.state.turned(poses, &entry.request).expect("all pairs of a group have their solids")
     }
 
     #[inline(always)]
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
-        self.rows.states[index].state.raw_mut()
+        self.rows.states[self.places[index]].state.raw_mut()
     }
 
     #[inline(always)]
     fn end(&mut self, index: usize) {
-        let is_touching = self.rows.states[index].is_touching();
-        note_touching(&mut self.rows, index, is_touching, self.changes);
+        let place = self.places[index];
+        let is_touching = self.rows.states[place].is_touching();
+        note_touching(&mut self.rows, place, is_touching, self.changes);
     }
 }

@@ -228,12 +228,6 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
 }
 
 impl Chosen {
-    /// The pair is among them.
-    #[inline]
-    pub(super) const fn contains(&self, index: usize) -> bool {
-        self.0[index / WORD] >> (index % WORD) & 1 != 0
-    }
-
     /// Leaves out those that are not to stay.
     pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
         for index in self.indices() {

@@ -6,8 +6,8 @@ use crate::query::composite::Between;
 use crate::query::far::{Apart, Bounds};
 use crate::query::pair::is_swapped;
 use crate::query::{
-    BoxJob, CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion,
-    Placed, Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
+    CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion, Placed,
+    Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
 };
 use crate::shape::{Geometry, Kind, Shape};
 
@@ -271,22 +271,6 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     pub(super) fn fetch(&self) -> u32 {
         let names = self.kept.contacts.points.iter().map(|point| point.id);
         names.fold(0, u32::wrapping_add)
-    }
-
-    /// What it takes to bring the contacts of two boxes up to date; `None` for other solids.
-    #[inline]
-    pub(super) fn box_job<'a>(
-        &'a mut self,
-        poses: [&'a Pose<N, D>; 2],
-        request: &'a ManifoldRequest<N>,
-    ) -> Option<BoxJob<'a, N, D>> {
-        let Some([Solid::Cuboid(one), Solid::Cuboid(other)]) = &self.solids else {
-            return None;
-        };
-        let (cuboids, kinds) = ([one, other], [Kind::Cuboid(one), Kind::Cuboid(other)]);
-        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
-        let (poses, cuboids) = ([poses[first], poses[second]], [cuboids[first], cuboids[second]]);
-        Some(BoxJob { poses, cuboids, request, raw: &mut self.kept.contacts })
     }
 
     /// The contacts, which are not none, read in place; the pose is that of [`Self::home`] at the last

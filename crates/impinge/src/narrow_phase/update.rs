@@ -6,13 +6,13 @@ use super::ahead::update_due;
 use super::default_narrow_phase::push_change;
 use super::due::{ContactRows, DueContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
-use super::group::{CHUNK, Chosen, Group, PairKey, Rows};
+use super::group::{CHUNK, Group, PairKey, Rows};
 use super::lanes::{Lane, Location};
 use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::math::Space;
-use crate::query::{BoxJob, Solid};
+use crate::query::Solid;
 
 /// Below one pair to update in this many, the pairs are found from the objects that changed rather
 /// than by going through all of them.
@@ -216,12 +216,15 @@ fn update_convex<N: Space<D>, const D: usize>(
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
     let mut due = rows.take_all_due(reuse.table);
-    if rows.references.is_empty() || has_ball(solids) {
-        return compute_convex(&mut rows, reuse.table, due, solids, changes);
+    let may_keep = !(rows.references.is_empty() || has_ball(solids));
+    if may_keep {
+        due.retain(|place| !reuse.keeps(&mut rows, place));
     }
-    due.retain(|place| !reuse.keeps(&mut rows, place));
-    compute_convex(&mut rows, reuse.table, due, solids, changes);
-    due.indices().for_each(|place| reuse.note(&mut rows, place));
+    let places: Places = due.indices().collect();
+    compute_convex(&mut rows, reuse.table, &places, solids, changes);
+    if may_keep {
+        places.iter().for_each(|&place| reuse.note(&mut rows, place));
+    }
 }
 
 /// The contacts of such pairs are never kept: their closed forms are as quick as moving contacts along.
@@ -229,57 +232,21 @@ fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> b
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
 
-/// Computes the contacts of those pairs of a chunk that are due.
-#[inline]
+/// Computes the contacts of the pairs at the given places of a chunk.
 fn compute_convex<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
-    due: Chosen,
+    places: &[usize],
     solids: Option<&[Solid<N, D>; 2]>,
     changes: &mut Changes,
 ) {
-    if let Some([Solid::Cuboid(_), Solid::Cuboid(_)]) = solids {
-        let mut places = Places::new();
-        for place in due.indices() {
-            places.push(place);
-        }
-        return update_boxes_at(rows, table, &places, changes);
-    }
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
-        let mut due = DueContacts { rows: rows.reborrow(), due, table, changes };
+        let mut due = DueContacts { rows: rows.reborrow(), places, table, changes };
         (N::tables().update_lanes)([solid1, solid2], &mut due)
     });
     if !is_done {
-        due.indices().for_each(|place| compute_contact(rows, table, place, changes));
-    }
-}
-
-/// Computes the contacts of the pairs of boxes at the given places, ascending, several at a time.
-fn update_boxes_at<N: Space<D>, const D: usize>(
-    rows: &mut ContactRows<'_, N, D>,
-    table: &ObjectTable<N, D>,
-    places: &[usize],
-    changes: &mut Changes,
-) {
-    let mut jobs = SmallVec::<[BoxJob<'_, N, D>; CHUNK]>::new();
-    let (mut rest, mut first) = (&mut rows.states[..], 0);
-    for &place in places {
-        let (_, from_place) = rest.split_at_mut(place - first);
-        let Some((entry, after)) = from_place.split_first_mut() else { break };
-        (rest, first) = (after, place + 1);
-        ContactView::expire_any(rows.views.get_mut(place));
-        let key = rows.keys[place];
-        let poses = [table.pose(key[0]), table.pose(key[1])];
-        if let Some(job) = entry.state.box_job(poses, &entry.request) {
-            jobs.push(job);
-        }
-    }
-    (N::tables().box_contacts)(&mut jobs);
-    drop(jobs);
-    for &place in places {
-        let is_touching = rows.states[place].is_touching();
-        note_touching(rows, place, is_touching, changes);
+        places.iter().for_each(|&place| compute_contact(rows, table, place, changes));
     }
 }
 
@@ -291,22 +258,15 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     changes: &mut Changes,
 ) {
     let first = picked[0].place as usize;
-    let solids = rows.states[first].state.solids();
-    let are_boxes = matches!(solids, Some([Solid::Cuboid(_), Solid::Cuboid(_)]));
-    let may_keep = !has_ball(solids);
+    let solids = rows.states[first].state.solids().copied();
+    let may_keep = !has_ball(solids.as_ref());
     for picked in picked.chunks(CHUNK) {
         let mut places: Places = picked.iter().map(|at| at.place as usize).collect();
         for &place in &places {
             rows.take_mark(place);
         }
         places.retain(|place| !(may_keep && reuse.keeps(&mut rows, *place)));
-        if are_boxes {
-            update_boxes_at(&mut rows, reuse.table, &places, changes);
-        } else {
-            let table = reuse.table;
-            let mut compute = |&place: &usize| compute_contact(&mut rows, table, place, changes);
-            places.iter().for_each(&mut compute);
-        }
+        compute_convex(&mut rows, reuse.table, &places, solids.as_ref(), changes);
         if may_keep {
             places.iter().for_each(|&place| reuse.note(&mut rows, place));
         }

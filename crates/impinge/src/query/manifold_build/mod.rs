@@ -13,10 +13,9 @@
 
 mod along;
 mod ball;
-mod box_lanes;
+mod batch;
 mod capsule_face;
 mod chain;
-mod closed_lanes;
 mod faces;
 mod facet;
 mod fences;
@@ -41,9 +40,8 @@ mod triangle_face_tests;
 mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between, build_on_face};
-pub(crate) use self::box_lanes::{BoxJob, update_box_pairs2, update_box_pairs3};
+pub(crate) use self::batch::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 pub(super) use self::chain::SegmentPair;
-pub(crate) use self::closed_lanes::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 use self::facet::{Facet, Which};
 use self::frame::{Candidate, Frame};
 use self::overlap::{Candidates, Overlap};
@@ -111,7 +109,7 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
 
 /// The manifold of a pair in space: by the fused algorithm of its kinds where there is one and it does not
 /// decline, else from the separation.
-pub(crate) fn contacts3<N: Real>(
+pub(crate) fn contacts3<N: Space<3>>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
@@ -119,10 +117,7 @@ pub(crate) fn contacts3<N: Real>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_space(pair, request.prediction), out);
     }
-    if let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (pair.first, pair.second) {
-        return box_lanes::build3([cuboid1, cuboid2], &pair.pose12, request, out);
-    }
-    if level_corners::build(pair, request, out) {
+    if batch::build3(pair, request, out) || level_corners::build(pair, request, out) {
         return;
     }
     contacts_of_separation3(pair, request, out);
@@ -155,10 +150,7 @@ pub(crate) fn contacts2<N: Space<2>>(
     if let Kind::Ball(_) = pair.first {
         return ball::build(pair, separation_in_plane(pair, request.prediction), out);
     }
-    if let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (pair.first, pair.second) {
-        return box_lanes::build2([cuboid1, cuboid2], &pair.pose12, request, out);
-    }
-    if !closed_lanes::build_segments2(pair, request, out) {
+    if !batch::build2(pair, request, out) {
         contacts_of_separation2(pair, request, out);
     }
 }

@@ -1,7 +1,7 @@
 //! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
 
-pub(super) use super::super::box_lanes::bits;
 use super::super::frame::ROUNDING_ERRORS;
+pub(super) use super::masks::bits;
 pub(super) use crate::math::lanes::{
     by_axis, cross, dot, either, lit, minus, negated, norm, over, plus, seen_from, times,
 };

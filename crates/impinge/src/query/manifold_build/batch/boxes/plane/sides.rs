@@ -5,8 +5,8 @@
 //! that is tilted too much the lower end alone counts, the corner that faces the other box.
 
 use super::super::admit::{Admission, Slots};
-use super::super::gather::{Boxes, other, tolerance};
 use super::super::masks::bits;
+use super::super::{Boxes, other, tolerance};
 use super::SLOTS;
 use super::axis::BestSide;
 use crate::math::lanes::{by_axis, dot, either, lit};

@@ -11,16 +11,17 @@ use self::faces::Faces;
 use self::names::{Names, Side, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::{Choice, SLOTS};
-use super::gather::{Boxes, Inputs};
 use super::masks::{bits, turned};
-use super::{BoxJob, Eights, LANES};
+use super::{Boxes, Inputs, LANES};
 use crate::math::lanes::lit;
 use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
+use crate::query::manifold_build::batch::{Batch, PairQuestion};
 use crate::query::manifold_build::contacts_of_separation3;
+use crate::query::{ManifoldRequest, Pair, RawManifold};
 
 /// What is known of eight pairs before points are chosen.
-pub(super) struct Found<N: Real> {
+pub(in super::super) struct EightFaces<N: Real> {
     slots: Slots<N, 3, SLOTS>,
     corners: Corners,
     gap: [N; LANES],
@@ -32,9 +33,13 @@ pub(super) struct Found<N: Real> {
     /// The lanes that are too far apart, and those whose slots are filled.
     is_apart: u8,
     is_built: u8,
+    columns: Columns,
 }
 
-impl<N: Real> Eights<N, 3> for Found<N> {
+/// Pairs of 3D boxes.
+pub(in super::super) struct Boxes3;
+
+impl<N: Real> EightFaces<N> {
     fn new() -> Self {
         let row = [N::ZERO; LANES];
         Self {
@@ -46,9 +51,49 @@ impl<N: Real> Eights<N, 3> for Found<N> {
             sides: [0; 8],
             is_apart: 0,
             is_built: 0,
+            columns: Columns([[0; LANES]; 7]),
         }
     }
+}
 
+impl<N: Real> Batch<N, 3> for Boxes3 {
+    type Found = EightFaces<N>;
+
+    fn blank() -> EightFaces<N> {
+        EightFaces::new()
+    }
+
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
+        inputs.put_boxes(lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 3>,
+        found: &mut EightFaces<N>,
+    ) {
+        found.find::<S, V>(simd, inputs);
+        found.turn();
+    }
+
+    #[inline(always)]
+    fn settle(
+        found: &EightFaces<N>,
+        lane: usize,
+        max_points: usize,
+        raw: &mut RawManifold<N, 3>,
+    ) -> bool {
+        found.settle(lane & (LANES - 1), max_points, raw)
+    }
+
+    fn fall_back(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 3>) {
+        contacts_of_separation3(pair, request, raw);
+    }
+}
+
+impl<N: Real> EightFaces<N> {
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -56,7 +101,7 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         self.is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.taken;
+        let is_asked = bits(is_near) & inputs.is_usable;
         self.is_built = 0;
         if is_asked == 0 {
             return;
@@ -87,26 +132,24 @@ impl<N: Real> Eights<N, 3> for Found<N> {
         }
     }
 
+    /// From masks of eight pairs to a byte for each pair.
     #[inline(always)]
-    fn settle(&self, jobs: &mut [BoxJob<'_, N, 3>]) {
-        let columns = Columns::of(self);
-        for (lane, job) in jobs.iter_mut().enumerate().take(LANES) {
-            if self.is_apart >> lane & 1 == 1 {
-                job.raw.points.clear();
-            } else if self.is_built >> lane & 1 == 1 {
-                self.choose(lane, &columns, job);
-            } else {
-                Self::fall_back(job);
-            }
+    fn turn(&mut self) {
+        self.columns = Columns::of(self);
+    }
+
+    #[inline(always)]
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
+        let is_apart = self.is_apart >> lane & 1 == 1;
+        let is_built = self.is_built >> lane & 1 == 1;
+        if is_apart {
+            raw.points.clear();
+        } else if is_built {
+            self.choose(lane, max_points, raw);
         }
+        is_apart | is_built
     }
 
-    fn fall_back(job: &mut BoxJob<'_, N, 3>) {
-        contacts_of_separation3(&job.pair(), job.request, job.raw);
-    }
-}
-
-impl<N: Real> Found<N> {
     /// Fills the slots, `PARTIAL` where one of the faces leans too far; answers where they hold the
     /// separation.
     #[inline(always)]
@@ -129,8 +172,8 @@ impl<N: Real> Found<N> {
     }
 
     #[inline(always)]
-    fn choose(&self, lane: usize, columns: &Columns, job: &mut BoxJob<'_, N, 3>) {
-        let bits = columns.byte(6, lane);
+    fn choose(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) {
+        let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
         let sides = Sides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
         let choice = Choice {
@@ -141,10 +184,9 @@ impl<N: Real> Found<N> {
             gap: self.gap[lane],
             tolerance: self.tolerance[lane],
         };
-        let limit = job.request.max_points.max(1);
-        choice.settle(&Names::new(&sides, bits, parts), limit, job.raw);
+        choice.settle(&Names::new(&sides, bits, parts), max_points.max(1), raw);
         let [x, y, z] = &self.normal;
-        job.raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
+        raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
     }
 }
 
@@ -156,7 +198,7 @@ struct Sides {
 }
 
 impl Sides {
-    /// From the bits of `Found::sides`.
+    /// From the bits of `EightFaces::sides`.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
@@ -172,7 +214,7 @@ struct Columns([[u8; LANES]; 7]);
 
 impl Columns {
     #[inline(always)]
-    fn of<N: Real>(found: &Found<N>) -> Self {
+    fn of<N: Real>(found: &EightFaces<N>) -> Self {
         let Slots { valid, level, .. } = &found.slots;
         let rows = [
             part(valid, 0),

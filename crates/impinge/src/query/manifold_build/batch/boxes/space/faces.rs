@@ -1,7 +1,7 @@
 //! The two faces that meet, of eight pairs side by side: a rectangle of one box, and a face of the other seen along
 //! the normal as a parallelogram.
 
-use super::super::gather::{Boxes, other, tolerance};
+use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
 use super::shown::Shown;
 use crate::math::lanes::{by_axis, dot, either, lit, negated, norm, seen_from};

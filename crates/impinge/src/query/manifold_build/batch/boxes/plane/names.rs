@@ -3,7 +3,7 @@
 use super::SLOTS;
 use crate::math::Real;
 use crate::query::RawPoint;
-use crate::query::manifold_build::box_lanes::choose::Naming;
+use crate::query::manifold_build::batch::boxes::choose::Naming;
 use crate::shape::FeatureId;
 
 /// A side, the end on the negative side of the axis along it, the other end.
@@ -33,7 +33,7 @@ fn part(parts: &Parts, id: FeatureId) -> Option<usize> {
     (id == parts[end]).then_some(end)
 }
 
-/// How the slots of one pair are named: from the bits of the sides (`Found::sides`), and two bits for
+/// How the slots of one pair are named: from the bits of the sides (`EightSides::sides`), and two bits for
 /// each slot that say whether it is at the first end of the other side or the second.
 #[derive(Clone, Copy)]
 pub(super) struct Names {

@@ -4,7 +4,7 @@ use crate::math::simd::{Simd, SimdMask};
 
 /// A bit for each lane.
 #[inline(always)]
-pub(in super::super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+pub(super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     mask.to_bitmask().to_le_bytes()[0]
 }
 
@@ -17,7 +17,7 @@ pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {
 /// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
 /// Delight", 7-3).
 #[inline(always)]
-pub(in crate::query::manifold_build) const fn transposed(mut x: u64) -> u64 {
+const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;
     x ^= swapped ^ swapped << 7;
     let swapped = (x ^ x >> 14) & 0x0000_cccc_0000_cccc;

@@ -1,7 +1,7 @@
 //! Eight pairs of solids side by side.
 
 use super::vectors::{by_axis, dot, norm, seen_from};
-use super::{Form, KeptPairs, LANES, PairQuestion};
+use super::{Batch, KeptPairs, LANES, PairQuestion};
 use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide};
 
@@ -18,10 +18,11 @@ pub(super) struct Inputs<N: Real, const D: usize> {
     radii: [[N; LANES]; 2],
     prediction: [N; LANES],
     sine: [N; LANES],
-    /// How many lanes are taken, and by which pairs.
+    pub(super) max_points: [usize; LANES],
+    /// The first of the pairs, and how many lanes are taken.
+    pub(super) first: usize,
     pub(super) count: usize,
-    pub(super) places: [usize; LANES],
-    /// The lanes that hold a pair for the form.
+    /// The lanes that hold a pair for the algorithm.
     pub(super) is_usable: u8,
 }
 
@@ -35,33 +36,28 @@ impl<N: Real, const D: usize> Inputs<N, D> {
             radii: [row; 2],
             prediction: row,
             sine: row,
+            max_points: [0; LANES],
+            first: 0,
             count: 0,
-            places: [0; LANES],
             is_usable: 0,
         }
     }
 
-    /// Takes up to eight pairs, beginning with one of a number, and answers with which to go on. Lanes
-    /// beyond those taken keep what they had.
+    /// Takes up to eight pairs, beginning with one of a number. Lanes beyond those taken keep what they had.
     #[inline(always)]
-    pub(super) fn gather<F: Form<N, D>, P: KeptPairs<N, D>>(
+    pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
         pairs: &mut P,
-        from: usize,
-    ) -> usize {
-        (self.count, self.is_usable) = (0, 0);
-        let mut index = from;
-        while index < pairs.len() && self.count < LANES {
-            if let Some(pair) = pairs.begin(index) {
-                let lane = self.count;
-                self.is_usable |= u8::from(F::gather(self, lane, &pair)) << lane;
-                self.prediction[lane] = pair.request.prediction;
-                self.places[lane] = index;
-                self.count += 1;
-            }
-            index += 1;
+        first: usize,
+    ) {
+        (self.first, self.is_usable) = (first, 0);
+        self.count = (pairs.len() - first).min(LANES);
+        for lane in 0..self.count {
+            let pair = pairs.begin(first + lane);
+            self.is_usable |= u8::from(B::gather(self, lane, &pair)) << lane;
+            self.prediction[lane & (LANES - 1)] = pair.request.prediction;
+            self.max_points[lane & (LANES - 1)] = pair.request.max_points;
         }
-        index
     }
 
     /// Where two balls are.
@@ -201,8 +197,8 @@ fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 
 /// A pose in each lane: a `Pose`, its rotation by columns.
 pub(super) struct LanePose<V, const D: usize> {
-    rotation: [[V; D]; D],
-    translation: [V; D],
+    pub(super) rotation: [[V; D]; D],
+    pub(super) translation: [V; D],
 }
 
 impl<V, const D: usize> LanePose<V, D> {

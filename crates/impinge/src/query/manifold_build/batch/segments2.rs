@@ -1,10 +1,11 @@
 //! Segments and capsules of the plane: the interval in which their cores face each other, as `stretch.rs` has
 //! it for all flat-sided solids, in lanes.
 
+use super::PairQuestion;
+use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, dot, either, lit, minus, norm, plus, rounding_of, times};
-use super::{Form, Found, PairQuestion};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::query::manifold_build::contacts_of_separation2;
@@ -25,7 +26,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, 2>,
-        found: &mut Found<N, 2>,
+        found: &mut EightContacts<N, 2>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
         let ends1 = [inputs.end::<S, V>(simd, (0, 0)), inputs.end::<S, V>(simd, (0, 1))];
@@ -346,7 +347,7 @@ impl<V, M> Contacts<V, M> {
     }
 
     #[inline(always)]
-    fn store<S: Simd, N: Real>(&self, found: &mut Found<N, 2>)
+    fn store<S: Simd, N: Real>(&self, found: &mut EightContacts<N, 2>)
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,

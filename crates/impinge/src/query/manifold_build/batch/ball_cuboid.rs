@@ -1,8 +1,9 @@
 //! A ball and a box: `separation/ball_cuboid.rs` in lanes.
 
+use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::vectors::{bits, by_axis, length_of, lit, minus, negated, rounding_of, times, unit};
-use super::{Form, Found, PairQuestion, Solid};
+use super::{PairQuestion, Solid};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::{Cuboid, FeatureId};
@@ -24,7 +25,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, D>,
-        found: &mut Found<N, D>,
+        found: &mut EightContacts<N, D>,
     ) {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, (1, 0)));
         let radius = inputs.radius(simd, 0);
@@ -50,7 +51,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
     }
 }
 
-impl<N: Real, const D: usize> Found<N, D> {
+impl<N: Real, const D: usize> EightContacts<N, D> {
     /// `Cuboid::part_at` for a point of each box: masks of the axes that are free, then of the signs.
     /// Answers the lanes where there is such a part.
     #[inline(always)]

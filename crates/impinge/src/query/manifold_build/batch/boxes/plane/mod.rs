@@ -8,19 +8,20 @@ use self::names::Names;
 use self::sides::Sides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::Choice;
-use super::gather::Inputs;
 use super::masks::{bits, turned};
-use super::{BoxJob, Eights, LANES};
+use super::{Inputs, LANES};
 use crate::math::lanes::lit;
 use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
+use crate::query::manifold_build::batch::{Batch, PairQuestion};
 use crate::query::manifold_build::contacts_of_separation2;
+use crate::query::{ManifoldRequest, Pair, RawManifold};
 
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
 const SLOTS: usize = 4;
 
 /// What is known of eight pairs before points are chosen.
-pub(super) struct Found<N: Real> {
+pub(in super::super) struct EightSides<N: Real> {
     slots: Slots<N, 2, SLOTS>,
     gap: [N; LANES],
     tolerance: [N; LANES],
@@ -31,9 +32,14 @@ pub(super) struct Found<N: Real> {
     sides: [u8; 8],
     /// Of each slot, whether it is at the first end of the other side, and at the second.
     at_ends: [u8; 2 * SLOTS],
+    /// For each pair the slots that hold a candidate, and those with the smallest distance.
+    filled: [u8; LANES],
 }
 
-impl<N: Real> Eights<N, 2> for Found<N> {
+/// Pairs of 2D boxes.
+pub(in super::super) struct Boxes2;
+
+impl<N: Real> EightSides<N> {
     fn new() -> Self {
         let row = [N::ZERO; LANES];
         Self {
@@ -43,9 +49,49 @@ impl<N: Real> Eights<N, 2> for Found<N> {
             normal: [row; 2],
             sides: [0; 8],
             at_ends: [0; 2 * SLOTS],
+            filled: [0; LANES],
         }
     }
+}
 
+impl<N: Real> Batch<N, 2> for Boxes2 {
+    type Found = EightSides<N>;
+
+    fn blank() -> EightSides<N> {
+        EightSides::new()
+    }
+
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
+        inputs.put_boxes(lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 2>,
+        found: &mut EightSides<N>,
+    ) {
+        found.find::<S, V>(simd, inputs);
+        found.turn();
+    }
+
+    #[inline(always)]
+    fn settle(
+        found: &EightSides<N>,
+        lane: usize,
+        max_points: usize,
+        raw: &mut RawManifold<N, 2>,
+    ) -> bool {
+        found.settle(lane & (LANES - 1), max_points, raw)
+    }
+
+    fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
+        contacts_of_separation2(pair, request, raw);
+    }
+}
+
+impl<N: Real> EightSides<N> {
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -53,7 +99,7 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.taken;
+        let is_asked = bits(is_near) & inputs.is_usable;
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
         if is_asked == 0 {
             return;
@@ -86,41 +132,34 @@ impl<N: Real> Eights<N, 2> for Found<N> {
         );
     }
 
+    /// From masks of eight pairs to a byte for each pair.
     #[inline(always)]
-    fn settle(&self, jobs: &mut [BoxJob<'_, N, 2>]) {
-        let (sides, at_ends) = (turned(self.sides), turned(self.at_ends));
+    fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;
         let [e, f, g, h] = self.slots.level;
-        let slots = turned([a, b, c, d, e, f, g, h]);
-        for (lane, job) in jobs.iter_mut().enumerate().take(LANES) {
-            let names = Names { sides: sides[lane], at_ends: at_ends[lane] };
-            if names.sides & 64 != 0 {
-                job.raw.points.clear();
-            } else if names.sides & 128 != 0 {
-                self.choose(lane, names, u32::from(slots[lane]), job);
-            } else {
-                Self::fall_back(job);
-            }
-        }
+        self.filled = turned([a, b, c, d, e, f, g, h]);
+        (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
     }
 
-    fn fall_back(job: &mut BoxJob<'_, N, 2>) {
-        contacts_of_separation2(&job.pair(), job.request, job.raw);
-    }
-}
-
-impl<N: Real> Found<N> {
     #[inline(always)]
-    fn choose(&self, lane: usize, names: Names, slots: u32, job: &mut BoxJob<'_, N, 2>) {
-        let choice = Choice {
-            slots: &self.slots,
-            lane,
-            valid: slots & 15,
-            level: slots >> SLOTS,
-            gap: self.gap[lane],
-            tolerance: self.tolerance[lane],
-        };
-        choice.settle(&names, job.request.max_points.clamp(1, 2), job.raw);
-        job.raw.normal = Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane]);
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
+        let names = Names { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
+        if is_apart {
+            raw.points.clear();
+        } else if is_built {
+            let slots = u32::from(self.filled[lane]);
+            let choice = Choice {
+                slots: &self.slots,
+                lane,
+                valid: slots & 15,
+                level: slots >> SLOTS,
+                gap: self.gap[lane],
+                tolerance: self.tolerance[lane],
+            };
+            choice.settle(&names, max_points.clamp(1, 2), raw);
+            raw.normal = Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane]);
+        }
+        is_apart | is_built
     }
 }

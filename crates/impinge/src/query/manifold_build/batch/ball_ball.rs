@@ -1,8 +1,9 @@
 //! Two balls: `separation/ball_ball.rs` in lanes.
 
+use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::vectors::{times, unit};
-use super::{Form, Found, PairQuestion, Solid};
+use super::{PairQuestion, Solid};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
@@ -24,7 +25,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallBall {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, D>,
-        found: &mut Found<N, D>,
+        found: &mut EightContacts<N, D>,
     ) {
         let (normal, apart, is_usual) = unit(simd, &inputs.away::<S, V>(simd));
         let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));

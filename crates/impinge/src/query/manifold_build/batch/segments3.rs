@@ -1,9 +1,10 @@
 //! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
 
+use super::PairQuestion;
+use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
-use super::{Form, Found, PairQuestion};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::query::separation::nearest_on_segment;
@@ -25,7 +26,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, 3>,
-        found: &mut Found<N, 3>,
+        found: &mut EightContacts<N, 3>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
         let ends1 = [inputs.end::<S, V>(simd, (0, 0)), inputs.end::<S, V>(simd, (0, 1))];
@@ -212,7 +213,7 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
     dot(along, along) - high * high
 }
 
-impl<N: Real> Found<N, 3> {
+impl<N: Real> EightContacts<N, 3> {
     /// `part_at`: whether a point of a segment is at the first end and at the last, in two masks.
     /// Answers the lanes where it is not at both.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The separating axis test of eight pairs of boxes in the plane:
 //! `query/separation/rectangle_axes.rs` in lanes.
 
-use super::super::gather::{Boxes, is_finite};
+use super::super::{Boxes, is_finite};
 use crate::math::lanes::{by_axis, dot, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};

@@ -1,9 +1,10 @@
 //! A ball and a segment or capsule: `separation/ball_segment.rs` in lanes.
 
+use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, dot, either, lit, minus, negated, rounding_of, times, unit};
-use super::{Form, Found, PairQuestion, Solid};
+use super::{PairQuestion, Solid};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::query::separation::nearest_on_segment;
@@ -25,7 +26,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, D>,
-        found: &mut Found<N, D>,
+        found: &mut EightContacts<N, D>,
     ) {
         let pose12 = inputs.beside_ball::<S, V>(simd);
         let ends = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
