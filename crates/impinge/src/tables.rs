@@ -25,9 +25,9 @@ use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::separation::{
-    Algorithm, PartedFn, Projection, distance_in_plane, distance_in_space, distance_in_world,
-    gaps2, gaps3, in_world, parted_in_plane, parted_in_space, seen_in_plane, seen_in_space,
-    separation_in_plane, separation_in_space, touching_in_world,
+    Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
+    in_world, seen_in_plane, seen_in_space, separation_in_plane, separation_in_space,
+    touching_in_world,
 };
 use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
@@ -55,8 +55,6 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) seen: SeenFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
-    /// Whether two convex solids are farther apart than a limit of less than zero.
-    pub(crate) parted: PartedFn<N, D>,
     /// Two shapes are certainly farther apart than a limit.
     pub(crate) are_beyond: fn(&Apart<'_, N, D>, N) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
@@ -249,7 +247,6 @@ struct Particular<N: Space<D>, const D: usize> {
     witness_features: FeaturesFn<N, D>,
     witness_feature: FeatureFn<N, D>,
     over: OverFn<N, D>,
-    parted: PartedFn<N, D>,
     on_face: OnFaceFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
@@ -270,7 +267,6 @@ impl<N: Real> Particular<N, 2> {
         witness_features: witness_features2,
         witness_feature: witness_feature2,
         over: over2,
-        parted: parted_in_plane,
         on_face: on_face2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
@@ -292,7 +288,6 @@ impl<N: Real> Particular<N, 3> {
         witness_features: witness_features3,
         witness_feature: witness_feature3,
         over: over3,
-        parted: parted_in_space,
         on_face: on_face3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
@@ -319,7 +314,6 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_features: particular.witness_features,
             witness_feature: particular.witness_feature,
             over: particular.over,
-            parted: particular.parted,
             on_face: particular.on_face,
             impact: impact_of_pair,
             time_of_impact: time_of_pair,

@@ -27,35 +27,25 @@ pub(crate) struct TiledParts<'a, N: Real, const D: usize> {
 /// How far a solid and a part are apart, in the frame of the first of the pair. The points cost more than
 /// this, and few contacts need them.
 #[derive(Clone, Copy)]
-pub(crate) struct PartGap<'k, N: Real, const D: usize> {
+pub(crate) struct PartGap<N: Real, const D: usize> {
     pub(crate) distance: N,
     /// Unit, from the first of the pair to the second.
     pub(crate) normal: Vector<N, D>,
     /// What of the part is nearest, where that is plain.
     pub(crate) touched: Option<FeatureId>,
-    /// The separation; where it differs, it holds.
-    pub(crate) exact: &'k dyn Fn() -> Option<Separation<N, D>>,
+    /// The separation, if it is known.
+    pub(crate) witness: Option<Separation<N, D>>,
 }
 
 /// Is called with the number of a part, counted among those that are meant, and what is known of it.
 pub(crate) type GapVisitor<'v, N, const D: usize> =
-    &'v mut dyn FnMut(usize, Option<&PartGap<'_, N, D>>);
+    &'v mut dyn FnMut(usize, Option<&PartGap<N, D>>);
 
-impl<'k, N: Real, const D: usize> PartGap<'k, N, D> {
-    /// Of a separation that is known and what gives it.
-    pub(crate) fn of(
-        found: &Separation<N, D>,
-        exact: &'k dyn Fn() -> Option<Separation<N, D>>,
-    ) -> Self {
-        Self { distance: found.distance, normal: found.normal, touched: None, exact }
-    }
-
-    /// The separation, if it is what the gap says.
-    pub(crate) fn witness(&self) -> Option<Separation<N, D>> {
-        let is_same = |found: &Separation<N, D>| {
-            found.distance == self.distance && found.normal == self.normal
-        };
-        (self.exact)().filter(is_same)
+impl<N: Real, const D: usize> PartGap<N, D> {
+    /// Of a separation that is known.
+    pub(crate) fn of(found: &Separation<N, D>) -> Self {
+        let Separation { distance, normal, .. } = *found;
+        Self { distance, normal, touched: None, witness: Some(*found) }
     }
 }
 

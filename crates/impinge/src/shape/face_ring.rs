@@ -55,12 +55,7 @@ impl<N: Real> FaceRing<N> {
 }
 
 impl<N: Real> Cuboid<N, 3> {
-    /// What [`core_feature`](super::SupportMap::core_feature) answers, if it is a face with an area.
-    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        self.face_ring_at(Self::facing_face(direction)?)
-    }
-
-    /// The number of that face.
+    /// The number of what [`core_feature`](super::SupportMap::core_feature) answers, if it is a face.
     pub(crate) fn facing_face(direction: &Vector<N, 3>) -> Option<u32> {
         match Self::part_shown(direction) {
             FeatureId::Face(index) => Some(index),
@@ -133,10 +128,12 @@ mod tests {
             for half in solids {
                 let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));
                 cuboid.core_feature(&way, &mut feature);
-                faces += usize::from(same(cuboid.face_ring(&way), &feature, "a box"));
+                let ring = Cuboid::facing_face(&way).and_then(|face| cuboid.face_ring_at(face));
+                faces += usize::from(same(ring, &feature, "a box"));
             }
             hull.core_feature(&way, &mut feature);
-            faces += usize::from(same(hull.face_ring(&way), &feature, "a hull"));
+            let ring = hull.facing_face(&way).and_then(|face| hull.face_ring_at(face));
+            faces += usize::from(same(ring, &feature, "a hull"));
             let [a, b, c] = [corners[at % 8], corners[at / 8 % 8], corners[at / 64 % 8]];
             let triangle = Triangle::new(a, b, c);
             triangle.core_feature(&way, &mut feature);

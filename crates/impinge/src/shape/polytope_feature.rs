@@ -238,12 +238,7 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// What [`SupportMap::core_feature`] answers, if it is a face of few corners.
-    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        self.face_ring_at(self.facing_face(direction)?)
-    }
-
-    /// The number of that face.
+    /// The number of what [`SupportMap::core_feature`] answers, if it is a face.
     pub(crate) fn facing_face(&self, direction: &Vector<N, 3>) -> Option<u32> {
         match self.part_toward(direction, Tilt::usual()) {
             Part::Face(index) => Some(index),

@@ -46,12 +46,8 @@ mod table2;
 mod table3;
 #[cfg(test)]
 mod tests;
-mod triangle_axes;
-mod triangle_cuboid;
-mod triangle_polytope;
 #[cfg(test)]
 mod triangle_tests;
-mod triangle_triangle;
 mod triangles;
 mod world;
 
@@ -67,16 +63,13 @@ pub(crate) use projection::Projection;
 pub(super) use rounded::bare;
 pub(crate) use seen::{seen_in_plane, seen_in_space};
 pub(crate) use segment_lanes::{SegmentGap, is_usual, nearest_on_segment};
-pub(crate) use table2::{parted as parted_in_plane, separation as separation_in_plane};
-pub(crate) use table3::{parted as parted_in_space, separation as separation_in_space};
+pub(crate) use table2::separation as separation_in_plane;
+pub(crate) use table3::separation as separation_in_space;
 pub(crate) use triangles::{BallQuestion, Sighted, gaps2, gaps3, sighted};
 pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
-
-/// Whether two convex solids are farther apart than a limit of less than zero.
-pub(crate) type PartedFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> bool;
 
 /// One algorithm for each pair of kinds, by row and column in the order of [`ShapeKind`].
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];

@@ -53,8 +53,3 @@ impl<N: Real> Table2<N> {
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     look_up(&Table2::<N>::TABLE, pair)(pair, limit)
 }
-
-/// Whether two convex solids of the plane are farther apart than a limit of less than zero.
-pub(crate) fn parted<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> bool {
-    separation(pair, limit).is_none_or(|found| found.distance > limit)
-}

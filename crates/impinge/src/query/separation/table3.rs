@@ -4,12 +4,11 @@ use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
     ball_polytope, ball_segment, ball_tapered, ball_triangle, cuboid_cuboid, cylinder_cylinder,
     flipped, general, hulls, look_up, plane_any, revolved, rounded, segment_cuboid,
-    segment_segment, triangle_cuboid, triangle_polytope, triangle_triangle,
+    segment_segment,
 };
 use crate::convex::Separation;
 use crate::math::Real;
 use crate::query::{Pair, composite};
-use crate::shape::Kind;
 
 /// The table of space, for one scalar.
 struct Table3<N>(core::marker::PhantomData<N>);
@@ -27,9 +26,6 @@ impl<N: Real> Table3<N> {
         let sc: Algorithm<N, 3> = segment_cuboid::separation;
         let sf: Algorithm<N, 3> = hulls::segment::separation;
         let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
-        let tt: Algorithm<N, 3> = triangle_triangle::separation;
-        let tc: Algorithm<N, 3> = triangle_cuboid::separation;
-        let th: Algorithm<N, 3> = triangle_polytope::separation;
         let be: Algorithm<N, 3> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 3> = ball_tapered::separation;
         let rr: Algorithm<N, 3> = rounded::separation;
@@ -47,7 +43,7 @@ impl<N: Real> Table3<N> {
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
             [__, ss, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, tt, tc, th, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, hh, hh, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
@@ -65,19 +61,4 @@ impl<N: Real> Table3<N> {
 /// The separation of any pair in space.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     look_up(&Table3::<N>::TABLE, pair)(pair, limit)
-}
-
-/// Whether two convex solids of space are farther apart than a limit of less than zero.
-pub(crate) fn parted<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> bool {
-    let Pair { first, second, pose12 } = pair;
-    let known = match (first, second) {
-        (Kind::Triangle(triangle), Kind::Cuboid(cuboid)) => {
-            triangle_cuboid::is_beyond(triangle, cuboid, pose12, limit)
-        }
-        (Kind::Triangle(triangle), Kind::Polytope(hull)) => {
-            triangle_polytope::is_beyond(triangle, hull, pose12, limit)
-        }
-        _ => None,
-    };
-    known.unwrap_or_else(|| separation(pair, limit).is_none_or(|found| found.distance > limit))
 }

@@ -101,7 +101,7 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
     query: &Query<'_, N, D>,
-    known: Option<&PartGap<'_, N, D>>,
+    known: Option<&PartGap<N, D>>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
     let (reference, request) = (query.reference, query.request);
@@ -118,10 +118,7 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
     let meeting = Meeting { placed, parts, centers, reference };
     match known {
         Some(gap) => of_surfaces(scene, &meeting, gap, request, notes),
-        None => {
-            let found = (N::tables().separation)(&placed.pair(), request.prediction)?;
-            of_separation(scene, &meeting, &found, request, notes)
-        }
+        None => of_separation(scene, &meeting, request, notes),
     }
 }
 
@@ -154,12 +151,12 @@ struct Meeting<'a, N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
     /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
-    /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is another
-    /// one.
+    /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is not
+    /// known.
     fn verdicts(
         &self,
         scene: &Scene<'_, N, D>,
-        gap: &PartGap<'_, N, D>,
+        gap: &PartGap<N, D>,
         tolerance: N,
         over: Option<FeatureId>,
     ) -> Option<[Verdict<N, D>; 2]> {
@@ -173,14 +170,14 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
             return Some([Verdict::Nothing; 2]);
         }
         let [is_second1, is_second2] = self.placed.turned([false, true]);
-        let is_other = Cell::new(false);
-        let feature = |is_second| match gap.witness() {
+        let is_owing = Cell::new(false);
+        let feature = |is_second| match &gap.witness {
             Some(found) => {
                 let pair = self.placed.pair();
-                (N::tables().witness_feature)(&pair, (&found, tolerance), is_second)
+                (N::tables().witness_feature)(&pair, (found, tolerance), is_second)
             }
             None => {
-                is_other.set(true);
+                is_owing.set(true);
                 FeatureId::Face(0)
             }
         };
@@ -194,7 +191,7 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
         let verdicts = [judge(surface1, &case1), judge(surface2, &case2)];
-        (!is_other.get()).then_some(verdicts)
+        (!is_owing.get()).then_some(verdicts)
     }
 }
 
@@ -203,24 +200,22 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-/// What is to be said of two parts whose separation is known.
+/// What is to be said of two parts whose separation is not known yet.
 fn of_separation<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
-    found: &Separation<N, D>,
     request: &ManifoldRequest<N>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
-    let exact = || Some(*found);
-    let gap = PartGap::of(found, &exact);
-    of_surfaces(scene, meeting, &gap, request, notes)
+    let found = (N::tables().separation)(&meeting.placed.pair(), request.prediction)?;
+    of_surfaces(scene, meeting, &PartGap::of(&found), request, notes)
 }
 
 /// What is to be said of two parts, of which one at least belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
-    gap: &PartGap<'_, N, D>,
+    gap: &PartGap<N, D>,
     request: &ManifoldRequest<N>,
     notes: &mut Notes<N, D>,
 ) -> Option<Finding<N, D>> {
@@ -231,7 +226,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
     let Some(verdicts) = meeting.verdicts(scene, gap, tolerance, over) else {
-        return of_separation(scene, meeting, &(gap.exact)()?, request, notes);
+        return of_separation(scene, meeting, request, notes);
     };
     let normal = placed.outward(&gap.normal);
     let raw = notes.blank();
@@ -243,7 +238,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
             let over = over.filter(|over| is_certain(*over, &verdicts[1]));
             if !touch.build(&pair, over, request, raw) {
-                return of_separation(scene, meeting, &(gap.exact)()?, request, notes);
+                return of_separation(scene, meeting, request, notes);
             }
             Standing::Own
         }
@@ -266,14 +261,14 @@ fn of_surfaces<N: Space<D>, const D: usize>(
 /// Two parts that touch at their nearest points, with a normal that the surface has there, in the frame of the
 /// first of the pair.
 struct Touch<'a, N: Real, const D: usize> {
-    gap: &'a PartGap<'a, N, D>,
+    gap: &'a PartGap<N, D>,
     normal: Vector<N, D>,
     tolerance: N,
 }
 
 impl<N: Space<D>, const D: usize> Touch<'_, N, D> {
     /// Builds the manifold of the two, `over` being the feature that a ball is over if that is certain;
-    /// answers false if it needs the nearest points, and the separation is another one.
+    /// answers false if it needs the nearest points, which are not known.
     fn build(
         &self,
         pair: &Pair<'_, N, D>,
@@ -285,7 +280,7 @@ impl<N: Space<D>, const D: usize> Touch<'_, N, D> {
         if over.is_none() && build_on_face(pair, &normal, gap.distance, tolerance, request, raw) {
             return true;
         }
-        let Some(found) = gap.witness() else { return false };
+        let Some(found) = gap.witness else { return false };
         let witness = Separation { normal, ..found };
         match over {
             Some(over) => {

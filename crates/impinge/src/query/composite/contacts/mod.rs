@@ -267,7 +267,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         if let Some(surface) = scene.surfaces[1] {
             nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
         }
-        let mut find = |index: usize, gap: Option<&PartGap<'_, N, D>>| {
+        let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
             let parts = nearby.parts[index];
             let placed = scene.pair_in(&mut slot, parts);
             findings.extend(facts::finding(&scene, placed, parts, self, gap, notes));

@@ -386,7 +386,7 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
     pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(way);
-        (N::tables().parted)(&pair, -tolerance)
+        (N::tables().separation)(&pair, -tolerance).is_none()
     }
 
     /// A manifold of the bodies as one of the shapes, in the frame of the first; its points are

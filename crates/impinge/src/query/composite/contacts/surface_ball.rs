@@ -186,8 +186,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
                 reference: &Some(self.from),
                 request: &self.request,
             };
-            let exact = || Some(found);
-            let gap = PartGap::of(&found, &exact);
+            let gap = PartGap::of(&found);
             facts::finding(&scene, &scene.pair(parts), parts, &query, Some(&gap), notes)
         });
         findings.extend(found);

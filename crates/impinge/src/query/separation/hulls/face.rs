@@ -203,16 +203,23 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// The ends of the sides of the face, and the inward normals of its side planes, as long as the sides.
+    /// The ends of the sides of the face, and the inward normals of its side planes, as long as the sides. The
+    /// side of a triangle, which runs forth and back, also has planes across its ends.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
         let ring = self.own.solid.ring(self.index);
-        let last = ring[ring.len() - 1];
-        let mut from = self.own.vertices.at(last as usize);
-        ring.iter().map(move |&vertex| {
-            let to = self.own.vertices.at(vertex as usize);
+        let at = |vertex: u32| self.own.vertices.at(vertex as usize);
+        let mut from = at(ring[ring.len() - 1]);
+        let around = ring.iter().map(move |&vertex| {
+            let to = at(vertex);
             let ends = [core::mem::replace(&mut from, to), to];
             (ends, cross(&self.normal, &(ends[1] - ends[0])))
-        })
+        });
+        let caps = if ring.len() == 2 { [[0, 1], [1, 0]].as_slice() } else { &[] };
+        let across = caps.iter().map(move |&[end, other]| {
+            let end = at(ring[end]);
+            ([end; 2], at(ring[other]) - end)
+        });
+        around.chain(across)
     }
 
     /// The distance from the face of a point that does not lie over it; `None` of one that does, up
@@ -245,7 +252,10 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             return Some(point);
         }
         let corner = self.own.vertices.at(self.own.solid.ring(self.index)[0] as usize);
-        let mut faces = (0..solid.faces()).filter(|&face| solid.ring(face).iter().all(is_lowest));
+        // The side of a triangle covers nothing.
+        let has_area = |face: &usize| solid.ring(*face).len() > 2;
+        let is_low = |face: &usize| solid.ring(*face).iter().all(is_lowest);
+        let mut faces = (0..solid.faces()).filter(has_area).filter(is_low);
         faces
             .any(|face| self.is_under(face, &corner))
             .then(|| corner + self.normal * self.separation())

@@ -1,4 +1,4 @@
-//! The separating axis test between two convex polyhedra of few parts: hulls, a box and a hull, and segments
+//! The separating axis test between two convex polyhedra of few parts: triangles, boxes and hulls, and segments
 //! against triangles and hulls ([`segment`]).
 //!
 //! That of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013), with vertices,
@@ -24,55 +24,48 @@ pub(in crate::query) mod tests;
 mod vertices;
 
 use self::face::ReferenceFace;
-use self::polyhedral::{BoxFeatures, Polyhedral};
+pub(super) use self::polyhedral::{LocalFeatures, Polyhedral, THIN};
 use self::vertices::Vertices;
-use super::{general, wrong_kinds};
+use super::general;
 use crate::convex::{Separation, Units};
 use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Wide};
 use crate::query::Pair;
-use crate::shape::{Cuboid, Kind, SupportMap};
 
 /// How many vertices, faces or edges are treated at once.
 const LANES: usize = 8;
 /// Blocks for 32 vertices, and for the 60 faces that as many vertices may have.
 const BLOCKS: usize = 4;
-const PLANE_BLOCKS: usize = 8;
+pub(super) const PLANE_BLOCKS: usize = 8;
 
-/// The separation of a convex hull or a box from a convex hull.
+/// The separation of two solids with flat faces: triangles, boxes and convex hulls.
 ///
 /// Of equal faces those of the first solid come before those of the second, in their order, and all
 /// before edges; of equal pairs of edges that of the lower indices counts. Cost: the product of the
-/// numbers of vertices and faces, by eights; larger hulls fall back to the general algorithm.
+/// numbers of vertices and faces, by eights; thin triangles, flat boxes and larger hulls fall back to the
+/// general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    let Kind::Polytope(second) = pair.second else { wrong_kinds(pair) };
-    let features;
-    let first = match pair.first {
-        Kind::Polytope(first) => Polyhedral::of_polytope(first),
-        Kind::Cuboid(first) if has_volume(first, second.reach()) => {
-            features = BoxFeatures::new(first);
-            Some(features.polyhedral())
-        }
-        Kind::Cuboid(_) => None,
-        _ => wrong_kinds(pair),
-    };
-    let result = match (first, Polyhedral::of_polytope(second)) {
-        (Some(first), Some(second)) => sat(Level::new(), [&first, &second], &pair.pose12, limit),
-        _ => SatResult::Unproved,
-    };
-    match result {
+    match result(Level::new(), pair, limit) {
         SatResult::Beyond => None,
         SatResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }
 }
 
-/// Whether no side of a box is as short as rounding errors beside a solid of this reach: faces without
-/// width have sides without direction.
-fn has_volume<N: Real>(cuboid: &Cuboid<N, 3>, reach: N) -> bool {
-    let least = noise::<N>() * (cuboid.reach() + reach);
-    cuboid.half_extents().iter().all(|&half| half > least)
+/// The result of the test for a pair.
+fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
+    let features = [LocalFeatures::of(pair.first), LocalFeatures::of(pair.second)];
+    let first = Polyhedral::of(pair.first, &features[0]);
+    let second = Polyhedral::of(pair.second, &features[1]);
+    match (&first, &second) {
+        (Some(first), Some(second))
+            if first.has_width(second.reach) && second.has_width(first.reach) =>
+        {
+            sat(level, [first, second], &pair.pose12, limit)
+        }
+        _ => SatResult::Unproved,
+    }
 }
 
 /// The result of the test.

@@ -5,31 +5,43 @@ use core::array::from_fn;
 
 use super::edges::MAX_EDGES;
 use super::vertices::Vertices;
-use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::math::{Real, Vector, cross, max, max_component};
-use crate::shape::{Cuboid, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
+use super::{BLOCKS, LANES, PLANE_BLOCKS, noise};
+use crate::math::{Real, Vector, cross, max, max_component, min};
+use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
 
 /// A convex polyhedron in its own frame.
-pub(super) struct Polyhedral<'a, N: Real> {
+pub(in crate::query::separation) struct Polyhedral<'a, N: Real> {
     /// The vertices, eight at a time; the last one fills the rest.
-    pub(super) blocks: &'a [[[N; LANES]; 3]],
-    pub(super) vertices: usize,
+    pub(in crate::query::separation) blocks: &'a [[[N; LANES]; 3]],
+    pub(in crate::query::separation) vertices: usize,
     /// The planes of the faces, eight at a time; the last one fills the rest.
-    pub(super) planes: &'a [Planes<N, 3>],
-    pub(super) edges: &'a [PolytopeEdge],
+    pub(in crate::query::separation) planes: &'a [Planes<N, 3>],
+    pub(in crate::query::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,
-    pub(super) reach: N,
+    pub(in crate::query::separation) reach: N,
+    /// The least width of a box or height of a triangle.
+    thickness: N,
 }
 
 /// The vertices around the faces.
 enum Rings<'a, N: Real> {
     Polytope(&'a Polytope<N, 3>),
-    Cuboid,
-    Triangle,
+    Fixed(&'static [&'static [u32]]),
 }
 
 impl<'a, N: Real> Polyhedral<'a, N> {
-    /// `None` for a polytope with more features than the lanes hold.
+    /// Of a hull, or of a solid with these features; `None` for a polytope with more features than the lanes
+    /// hold.
+    pub(in crate::query::separation) fn of(
+        kind: Kind<'a, N, 3>,
+        features: &'a Option<LocalFeatures<N>>,
+    ) -> Option<Self> {
+        match kind {
+            Kind::Polytope(polytope) => Self::of_polytope(polytope),
+            _ => features.as_ref().map(LocalFeatures::polyhedral),
+        }
+    }
+
     pub(super) fn of_polytope(polytope: &'a Polytope<N, 3>) -> Option<Self> {
         let (blocks, planes) = (polytope.blocks(), polytope.planes());
         let fits = blocks.len() <= BLOCKS
@@ -42,24 +54,29 @@ impl<'a, N: Real> Polyhedral<'a, N> {
             edges: polytope.edges(),
             rings: Rings::Polytope(polytope),
             reach: polytope.reach(),
+            thickness: N::INFINITY,
         })
     }
 
+    /// Whether no width is as small as rounding errors beside a solid of this reach: faces without width have
+    /// sides without direction.
+    pub(super) fn has_width(&self, reach: N) -> bool {
+        self.thickness > noise::<N>() * (self.reach + reach)
+    }
+
     /// The number of faces.
-    pub(super) fn faces(&self) -> usize {
+    pub(in crate::query::separation) fn faces(&self) -> usize {
         match self.rings {
             Rings::Polytope(polytope) => polytope.faces().len(),
-            Rings::Cuboid => 6,
-            Rings::Triangle => 5,
+            Rings::Fixed(rings) => rings.len(),
         }
     }
 
     /// The vertices around a face, counter-clockwise seen from outside.
-    pub(super) fn ring(&self, face: usize) -> &[u32] {
+    pub(in crate::query::separation) fn ring(&self, face: usize) -> &[u32] {
         match self.rings {
             Rings::Polytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),
-            Rings::Cuboid => &BOX_RINGS[face],
-            Rings::Triangle => TRIANGLE_RINGS[face],
+            Rings::Fixed(rings) => rings[face],
         }
     }
 
@@ -70,9 +87,17 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         [vertices.at(from as usize), vertices.at(to as usize)]
     }
 
+    /// A vertex.
+    #[inline(always)]
+    pub(in crate::query::separation) fn vertex(&self, vertex: usize) -> Vector<N, 3> {
+        let [x, y, z] = &self.blocks[vertex / LANES];
+        let lane = vertex % LANES;
+        Vector::<N, 3>::new(x[lane], y[lane], z[lane])
+    }
+
     /// The outward unit normal of a face.
     #[inline(always)]
-    pub(super) fn normal(&self, face: usize) -> Vector<N, 3> {
+    pub(in crate::query::separation) fn normal(&self, face: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.planes[face / LANES].normals;
         let lane = face % LANES;
         Vector::<N, 3>::new(x[lane], y[lane], z[lane])
@@ -80,20 +105,33 @@ impl<'a, N: Real> Polyhedral<'a, N> {
 
     /// How far from the origin the plane of a face lies.
     #[inline(always)]
-    pub(super) fn offset(&self, face: usize) -> N {
+    pub(in crate::query::separation) fn offset(&self, face: usize) -> N {
         self.planes[face / LANES].offsets[face % LANES]
     }
 }
 
-/// The vertices and face planes of a box, in lanes.
-pub(super) struct BoxFeatures<N: Real> {
+/// The vertices and face planes, in lanes, of a box or a triangle, which do not keep them.
+pub(in crate::query::separation) struct LocalFeatures<N: Real> {
     blocks: [[[N; LANES]; 3]; 1],
     planes: [Planes<N, 3>; 1],
+    vertices: usize,
+    edges: &'static [PolytopeEdge],
+    rings: &'static [&'static [u32]],
     reach: N,
+    thickness: N,
 }
 
-impl<N: Real> BoxFeatures<N> {
-    pub(super) fn new(cuboid: &Cuboid<N, 3>) -> Self {
+impl<N: Real> LocalFeatures<N> {
+    /// `None` of other solids, and of thin triangles.
+    pub(in crate::query::separation) fn of(kind: Kind<'_, N, 3>) -> Option<Self> {
+        match kind {
+            Kind::Cuboid(cuboid) => Some(Self::of_cuboid(cuboid)),
+            Kind::Triangle(triangle) => Self::of_triangle(triangle),
+            _ => None,
+        }
+    }
+
+    fn of_cuboid(cuboid: &Cuboid<N, 3>) -> Self {
         let half = cuboid.half_extents();
         let signed = |axis: usize, bit: usize| if bit == 0 { -half[axis] } else { half[axis] };
         let vertices = from_fn(|axis| from_fn(|vertex| signed(axis, vertex >> axis & 1)));
@@ -108,32 +146,21 @@ impl<N: Real> BoxFeatures<N> {
             normals: from_fn(|axis| from_fn(|lane| along(axis, lane))),
             offsets: from_fn(|lane| half[face(lane) / 2]),
         };
-        Self { blocks: [vertices], planes: [planes], reach: cuboid.reach() }
-    }
-
-    pub(super) fn polyhedral(&self) -> Polyhedral<'_, N> {
-        Polyhedral {
-            blocks: &self.blocks,
+        Self {
+            blocks: [vertices],
+            planes: [planes],
             vertices: 8,
-            planes: &self.planes,
             edges: &BOX_EDGES,
-            rings: Rings::Cuboid,
-            reach: self.reach,
+            rings: &BOX_RINGS,
+            reach: cuboid.reach(),
+            thickness: min(min(half[0], half[1]), half[2]),
         }
     }
-}
 
-/// The vertices and face planes of a triangle, in lanes: a prism without height, whose front and back are the
-/// triangle and whose other faces are the sides, along each of which two edges lie.
-pub(super) struct TriangleFeatures<N: Real> {
-    blocks: [[[N; LANES]; 3]; 1],
-    planes: [Planes<N, 3>; 1],
-    reach: N,
-}
-
-impl<N: Real> TriangleFeatures<N> {
-    /// `None` of a triangle that is thin, whose normal would be off by more than rounding errors.
-    pub(super) fn new(triangle: &Triangle<N, 3>) -> Option<Self> {
+    /// A prism without height, whose front and back are the triangle and whose other faces are the sides, along
+    /// each of which two edges lie. `None` of a triangle that is thin, whose normal would be off by more than
+    /// rounding errors.
+    fn of_triangle(triangle: &Triangle<N, 3>) -> Option<Self> {
         let [a, b, c] = triangle.corners();
         let sides = [b - a, c - b, a - c];
         // Of length about 1, so that squares stay numbers of the type.
@@ -160,24 +187,32 @@ impl<N: Real> TriangleFeatures<N> {
             normals: from_fn(|axis| from_fn(|lane| faces[face(lane)][axis])),
             offsets: from_fn(|lane| faces[face(lane)].dot(&on[face(lane)].coords)),
         };
-        let blocks = [from_fn(|axis| from_fn(|lane| corner(lane)[axis]))];
-        Some(Self { blocks, planes: [planes], reach: triangle.reach() })
+        Some(Self {
+            blocks: [from_fn(|axis| from_fn(|lane| corner(lane)[axis]))],
+            planes: [planes],
+            vertices: 3,
+            edges: &TRIANGLE_EDGES,
+            rings: &TRIANGLE_RINGS,
+            reach: triangle.reach(),
+            thickness: scale * area / longest.sqrt(),
+        })
     }
 
-    pub(super) fn polyhedral(&self) -> Polyhedral<'_, N> {
+    fn polyhedral(&self) -> Polyhedral<'_, N> {
         Polyhedral {
             blocks: &self.blocks,
-            vertices: 3,
+            vertices: self.vertices,
             planes: &self.planes,
-            edges: &TRIANGLE_EDGES,
-            rings: Rings::Triangle,
+            edges: self.edges,
+            rings: Rings::Fixed(self.rings),
             reach: self.reach,
+            thickness: self.thickness,
         }
     }
 }
 
 /// Triangles with a smaller ratio of their height to their longest side are thin.
-const THIN: f64 = 1.0 / 256.0;
+pub(in crate::query::separation) const THIN: f64 = 1.0 / 256.0;
 
 /// The edges of a triangle: of each side that of the front and that of the back.
 const TRIANGLE_EDGES: [PolytopeEdge; 6] = [
@@ -213,20 +248,8 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
 };
 
 /// The vertices around the faces of a box by their numbers; see [`Cuboid`].
-const BOX_RINGS: [[u32; 4]; 6] = {
-    let mut rings = [[0; 4]; 6];
-    let mut face = 0_u32;
-    while face < 6 {
-        let (axis, is_negative) = (face / 2, face % 2 == 1);
-        let (next, after) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
-        let base = if is_negative { 0 } else { 1 << axis };
-        let ring = [base, base | next, base | next | after, base | after];
-        rings[face as usize] =
-            if is_negative { [ring[3], ring[2], ring[1], ring[0]] } else { ring };
-        face += 1;
-    }
-    rings
-};
+const BOX_RINGS: [&[u32]; 6] =
+    [&[1, 3, 7, 5], &[4, 6, 2, 0], &[2, 6, 7, 3], &[1, 5, 4, 0], &[4, 5, 7, 6], &[2, 3, 1, 0]];
 
 #[cfg(test)]
 mod tests {
@@ -262,16 +285,16 @@ mod tests {
 
     #[test]
     fn features_of_a_box_fit_together() {
-        let features = BoxFeatures::new(&Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0)));
-        check(&features.polyhedral());
+        let cuboid = Cuboid::new(Vector::<f64, 3>::new(1.0, 2.0, 3.0));
+        check(&LocalFeatures::of_cuboid(&cuboid).polyhedral());
     }
 
     #[test]
     fn features_of_a_triangle_fit_together() {
         let [a, b, c] = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 4.0, 1.0]].map(Point::from);
-        let features = TriangleFeatures::new(&Triangle::new(a, b, c)).expect("wide");
+        let features = LocalFeatures::of_triangle(&Triangle::new(a, b, c)).expect("wide");
         check(&features.polyhedral());
         let thin = Triangle::new(a, b, b + (c - a) * 1e-4);
-        assert!(TriangleFeatures::new(&thin).is_none(), "its normal is not accurate");
+        assert!(LocalFeatures::of_triangle(&thin).is_none(), "its normal is not accurate");
     }
 }

@@ -6,21 +6,19 @@
 //! and one that it does not, which with the segment are the faces of the Minkowski difference; where they are
 //! apart the nearest of the edges of faces that some point of the segment lies above.
 
+use super::super::general;
 use super::super::segments::core;
-use super::super::{general, wrong_kinds};
 use super::edges::{
     CandidateEdges, EdgeBlock, ReferenceEdge, nearest_points, normal_between, proved,
     squared_distances,
 };
-use super::polyhedral::{Polyhedral, TriangleFeatures};
 use super::vertices::Vertices;
-use super::{LANES, SatResult, in_first_frame, noise, out_of_reach};
+use super::{LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, noise, out_of_reach};
 use crate::convex::{Separation, Units};
 use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, max_component, min};
 use crate::query::Pair;
-use crate::shape::Kind;
 
 /// The separation of a segment or capsule from a triangle or a convex hull.
 ///
@@ -43,15 +41,10 @@ pub(in crate::query::separation) fn separation<N: Real>(
 /// The result of the test for the cores of a pair.
 pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let (ends, _) = core(pair, &pair.first);
-    let sat = |solid: &Polyhedral<'_, N>| sat(level, &ends, solid, &pair.pose12, limit);
-    match pair.second {
-        Kind::Triangle(triangle) => TriangleFeatures::new(triangle)
-            .map_or(SatResult::Unproved, |features| sat(&features.polyhedral())),
-        Kind::Polytope(hull) => Polyhedral::of_polytope(hull)
-            .filter(|solid| solid.faces() > 3)
-            .map_or(SatResult::Unproved, |solid| sat(&solid)),
-        _ => wrong_kinds(pair),
-    }
+    let features = LocalFeatures::of(pair.second);
+    Polyhedral::of(pair.second, &features)
+        .filter(|solid| solid.faces() > 3)
+        .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
 }
 
 /// The test with the vectors of an instruction set; the result does not depend on it.

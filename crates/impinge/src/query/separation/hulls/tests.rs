@@ -1,6 +1,6 @@
 //! Against the general algorithm, and on every instruction set.
 
-use super::{BoxFeatures, Polyhedral, SatResult, sat, segment};
+use super::{SatResult, result, segment};
 use crate::convex::Separation;
 use crate::math::na::{Quaternion, UnitQuaternion};
 use crate::math::simd::Level;
@@ -50,10 +50,14 @@ impl Random {
         (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
     }
 
-    /// A hull of points on a sphere, of a grid (with coplanar faces and parallel edges), or a box.
+    /// A hull of points on a sphere, of a grid (with coplanar faces and parallel edges), a box, or a triangle.
     fn solid<N: Real>(&mut self, kind: usize) -> Box<dyn Shape<N, 3>> {
         let points: Vec<Point<N, 3>> = match kind {
             0 => return Box::new(Cuboid::new(self.vector::<N>().abs())),
+            5 => {
+                let [a, b, c] = [0; 3].map(|_: i32| Point::from(self.vector::<N>()));
+                return Box::new(Triangle::new(a, b, c));
+            }
             1 => (0..12).map(|_| Point::from(self.direction())).collect(),
             2 => (0..26).map(|_| Point::from(self.direction())).collect(),
             3 => (0..14)
@@ -70,21 +74,6 @@ impl Random {
 
 fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
-}
-
-/// The result of a pair of which the second may be a box too.
-fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
-    let kinds = [pair.first, pair.second];
-    let boxes = kinds.map(|kind| match kind {
-        Kind::Cuboid(cuboid) => Some(BoxFeatures::new(cuboid)),
-        _ => None,
-    });
-    let solid = |which: usize| match (kinds[which], &boxes[which]) {
-        (Kind::Polytope(hull), _) => Polyhedral::of_polytope(hull).expect("a small hull"),
-        (_, Some(features)) => features.polyhedral(),
-        _ => unreachable!("hulls and boxes only"),
-    };
-    sat(level, [&solid(0), &solid(1)], &pair.pose12, limit)
 }
 
 /// How far off an answer is: from the distance, by its own points, and by what its normal separates.
@@ -113,7 +102,7 @@ type Twin<N> =
     (fn(&mut Random) -> [Box<dyn Shape<N, 3>>; 2], fn(Level, &Pair<'_, N, 3>, N) -> SatResult<N>);
 
 fn solids<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] {
-    let [kind1, kind2] = [random.pick(5), random.pick(5)];
+    let [kind1, kind2] = [random.pick(6), random.pick(6)];
     [random.solid(kind1), random.solid(kind2)]
 }
 
@@ -125,11 +114,10 @@ fn segment_and_solid<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] 
         1 => random.vector::<N>() * N::lit([0.0, 1e-6, 1e-3][random.pick(3)]),
         _ => random.vector::<N>(),
     };
-    let corners = [0; 3].map(|_: i32| Point::from(random.vector::<N>()));
-    let kind = 1 + random.pick(6);
+    let kind = random.pick(6).max(1);
     let mut solid = random.solid(kind);
-    if kind > 4 || matches!(solid.geometry().0, Kind::Cuboid(_)) {
-        solid = Box::new(Triangle::new(corners[0], corners[1], corners[2]));
+    if matches!(solid.geometry().0, Kind::Cuboid(_)) {
+        solid = random.solid(5);
     }
     [Box::new(Segment::new(from, from + along)), solid]
 }
