@@ -1,16 +1,12 @@
 //! Many rays in one call.
 
 use super::RayIntersection;
-use super::batch_order::order_in_space;
 use crate::bounding_volume::Ray;
 use crate::math::Real;
 
 /// Rays that one thread answers at a time; a constant, so that nothing depends on the threads.
 #[cfg(feature = "parallel")]
 const CHUNK: usize = 64;
-
-/// Fewer rays are asked in the order in which they come.
-const ORDERED_FROM: usize = 256;
 
 /// Rays that are asked about together, with what all of them have in common.
 ///
@@ -64,27 +60,6 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         }
     }
 
-    /// The same, in an order in which rays that go near each other follow each other, where there are many:
-    /// what one has fetched from memory the next ones find in the caches.
-    #[track_caller]
-    pub(crate) fn each_near<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {
-        if self.rays.len() < ORDERED_FROM || u32::try_from(self.rays.len()).is_err() {
-            return self.each(answers, answer);
-        }
-        self.check(answers.len());
-        for index in order_in_space(self.rays) {
-            answers[index] = answer(&self.rays[index]);
-        }
-    }
-
-    /// [`Self::each_in_chunks`] uses several threads.
-    pub(super) fn goes_parallel(&self) -> bool {
-        #[cfg(feature = "parallel")]
-        return self.rays.len() > CHUNK && rayon::current_num_threads() > 1;
-        #[cfg(not(feature = "parallel"))]
-        false
-    }
-
     /// [`Self::each`]; with the feature `parallel` on several threads, chunk by chunk.
     #[track_caller]
     pub(super) fn each_in_chunks(
@@ -93,7 +68,7 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         answer: impl Fn(&Ray<N, D>) -> Option<RayIntersection<N, D>> + Sync,
     ) {
         #[cfg(feature = "parallel")]
-        if self.goes_parallel() {
+        if self.rays.len() > CHUNK && rayon::current_num_threads() > 1 {
             use rayon::prelude::*;
             self.check(hits.len());
             let chunks = self.rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK));

@@ -6,7 +6,6 @@
 
 mod ball;
 mod batch;
-mod batch_order;
 mod capsule;
 mod clip;
 mod cone;
@@ -315,11 +314,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits: &mut [Option<RayIntersection<N, D>>],
     ) {
         let RayBatch { max_time, solid, .. } = *batch;
-        let answer = |ray: &Ray<N, D>| self.cast_local_ray_until(ray, max_time, solid);
-        if self.geometry().as_composite().is_some() && !batch.goes_parallel() {
-            return batch.each_near(hits, answer);
-        }
-        batch.each_in_chunks(hits, answer);
+        batch.each_in_chunks(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
     }
 
     fn local_ray_hits(

@@ -97,9 +97,6 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that
     /// `batch.rays[i]` meets first and where, to the bit. The caller keeps the places from frame to frame.
     ///
-    /// Many rays are asked in an order of space, for which a list of eight bytes for each is made, and thus
-    /// faster than one by one.
-    ///
     /// On the calling thread, whatever the features: a world may hold what is not to be shared. Those
     /// that can be shared may be asked from several threads, each with a share of the rays.
     ///
@@ -132,7 +129,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
         hits: &mut [Option<(CollisionObjectHandle, RayIntersection<N, D>)>],
     ) {
-        batch.each_near(hits, |ray| {
+        batch.each(hits, |ray| {
             let found = self.first_ray_hit(ray, batch.max_time, batch.solid, filter);
             found.map(|(object, hit)| (object.handle(), hit))
         });
