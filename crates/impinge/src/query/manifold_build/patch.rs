@@ -215,7 +215,7 @@ struct Layout {
 impl Layout {
     fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
         let pieces = merging.pieces;
-        let mut order = Order::new();
+        let mut order = Order::with_capacity(pieces.len());
         for (index, piece) in pieces.iter().enumerate() {
             if let Some(deepest) = merging.deepest_of(piece) {
                 order.push((index, deepest));
@@ -225,7 +225,8 @@ impl Layout {
             let by_value = by_depth(&merging.points[a.1], &merging.points[b.1]);
             by_value.then_with(|| pieces[a.0].parts.cmp(&pieces[b.0].parts))
         });
-        let (mut groups, mut shelves) = (SmallVec::<[Group; 8]>::new(), Shelves::of(pieces));
+        let mut groups = SmallVec::<[Group; 8]>::with_capacity(pieces.len());
+        let mut shelves = Shelves::of(pieces);
         for (index, found) in &mut order {
             let (piece, deepest) = (&pieces[*index], *found);
             let is_level = |&&group: &&usize| {

@@ -82,6 +82,8 @@ fn faces_of<N: Space<D>, const D: usize>(
     findings: &[Finding<N, D>],
 ) -> Faces<N, D> {
     let (mut faces, mut shared) = Faces::default();
+    faces.reserve(findings.len());
+    shared.reserve(3 * findings.len());
     for (finding, Finding { distance, face, piece, .. }) in findings.iter().enumerate() {
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;

@@ -172,7 +172,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         self.reference = if overlaps { reference } else { center };
         let tolerances = findings.iter().map(|found| found.tolerance);
         let tolerance = tolerances.fold(notes.rounding, max);
-        let mut pieces: SmallVec<[Piece<N, D>; 8]> = SmallVec::new();
+        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(findings.len());
         for found in findings.iter().filter(|found| found.standing != Standing::Left) {
             pieces.push(found.piece.clone());
         }
@@ -259,11 +259,19 @@ struct Query<'a, N: Real, const D: usize> {
 
 type Findings<N, const D: usize> = SmallVec<[Finding<N, D>; 8]>;
 
+/// Beside more parts than these room is made for all that may be found, so many points at each.
+const MANY_PARTS: usize = 32;
+const POINTS_AT_A_PART: usize = 4;
+
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
     fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut findings, mut slot) = (Findings::new(), None);
+        if nearby.parts.len() > MANY_PARTS {
+            findings.reserve(nearby.parts.len());
+            notes.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+        }
         if let Some(surface) = scene.surfaces[1] {
             nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
         }

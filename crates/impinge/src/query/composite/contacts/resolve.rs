@@ -81,7 +81,7 @@ fn shallowest_first<N: Real, const D: usize>(
     findings: &[Finding<N, D>],
     is_meant: impl Fn(Standing) -> bool,
 ) -> SmallVec<[usize; 16]> {
-    let mut order: SmallVec<[usize; 16]> = SmallVec::new();
+    let mut order = SmallVec::<[usize; 16]>::with_capacity(findings.len());
     order.extend((0..findings.len()).filter(|&index| is_meant(findings[index].standing)));
     // Findings come in the order of their parts.
     order.sort_by(|&a, &b| depth(&findings[a]).as_f64().total_cmp(&depth(&findings[b]).as_f64()));
