@@ -53,11 +53,16 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         (self.first, self.is_usable) = (first, 0);
         self.count = (pairs.len() - first).min(LANES);
         for lane in 0..self.count {
-            let pair = pairs.begin(first + lane);
-            self.is_usable |= u8::from(B::gather(self, lane, &pair)) << lane;
-            self.prediction[lane & (LANES - 1)] = pair.request.prediction;
-            self.max_points[lane & (LANES - 1)] = pair.request.max_points;
+            self.put::<B>(lane, &pairs.begin(first + lane));
         }
+    }
+
+    /// Puts a pair into a lane.
+    #[inline(always)]
+    pub(super) fn put<B: Batch<N, D>>(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
+        self.is_usable |= u8::from(B::gather(self, lane, pair)) << lane;
+        self.prediction[lane & (LANES - 1)] = pair.request.prediction;
+        self.max_points[lane & (LANES - 1)] = pair.request.max_points;
     }
 
     /// Where two balls are.

@@ -73,35 +73,6 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     fn end(&mut self, index: usize);
 }
 
-/// A pair that is a batch of its own.
-struct Alone<'a, N: Real, const D: usize> {
-    poses: [Pose<N, D>; 2],
-    solids: [Solid<N, D>; 2],
-    request: &'a ManifoldRequest<N>,
-    raw: &'a mut RawManifold<N, D>,
-}
-
-impl<N: Real, const D: usize> KeptPairs<N, D> for Alone<'_, N, D> {
-    fn len(&self) -> usize {
-        1
-    }
-
-    fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
-        self.parts(index).0
-    }
-
-    fn parts(&mut self, _: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
-        let (poses, solids) = (self.poses.each_ref(), self.solids.each_ref());
-        (PairQuestion { poses, solids, request: self.request }, self.raw)
-    }
-
-    fn raw(&mut self, _: usize) -> &mut RawManifold<N, D> {
-        self.raw
-    }
-
-    fn end(&mut self, _: usize) {}
-}
-
 /// An algorithm for pairs of two kinds, eight at a time.
 trait Batch<N: Real, const D: usize> {
     /// What is known of eight pairs before their manifolds are replaced.
@@ -229,8 +200,13 @@ fn build<B: Batch<N, D>, N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     raw: &mut RawManifold<N, D>,
 ) -> bool {
-    let poses = [Pose::identity(), pair.pose12];
-    update_at::<B, _, _, D>(Level::new(), &mut Alone { poses, solids, request, raw });
+    let (mut inputs, mut found) = (Inputs::new(), B::blank());
+    let poses = [&Pose::identity(), &pair.pose12];
+    inputs.put::<B>(0, &PairQuestion { poses, solids: solids.each_ref(), request });
+    find_at::<B, N, D>(Level::new(), &inputs, &mut found);
+    if !B::settle(&found, 0, request.max_points, raw) {
+        B::fall_back(pair, request, raw);
+    }
     true
 }
 
