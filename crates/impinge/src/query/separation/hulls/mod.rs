@@ -56,8 +56,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
 /// The result of the test for a pair.
 fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let features = [LocalFeatures::of(pair.first), LocalFeatures::of(pair.second)];
-    let first = Polyhedral::of(pair.first, &features[0]);
-    let second = Polyhedral::of(pair.second, &features[1]);
+    let first = Polyhedral::of(pair.first, features[0].as_ref());
+    let second = Polyhedral::of(pair.second, features[1].as_ref());
     match (&first, &second) {
         (Some(first), Some(second))
             if first.has_width(second.reach) && second.has_width(first.reach) =>

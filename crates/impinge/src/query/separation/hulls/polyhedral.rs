@@ -34,11 +34,11 @@ impl<'a, N: Real> Polyhedral<'a, N> {
     /// hold.
     pub(in crate::query::separation) fn of(
         kind: Kind<'a, N, 3>,
-        features: &'a Option<LocalFeatures<N>>,
+        features: Option<&'a LocalFeatures<N>>,
     ) -> Option<Self> {
         match kind {
             Kind::Polytope(polytope) => Self::of_polytope(polytope),
-            _ => features.as_ref().map(LocalFeatures::polyhedral),
+            _ => features.map(LocalFeatures::polyhedral),
         }
     }
 

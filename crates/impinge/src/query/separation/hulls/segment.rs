@@ -42,7 +42,7 @@ pub(in crate::query::separation) fn separation<N: Real>(
 pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let (ends, _) = core(pair, &pair.first);
     let features = LocalFeatures::of(pair.second);
-    Polyhedral::of(pair.second, &features)
+    Polyhedral::of(pair.second, features.as_ref())
         .filter(|solid| solid.faces() > 3)
         .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
 }

@@ -49,7 +49,7 @@ pub(crate) fn gaps3<N: Real>(
     visit: GapVisitor<'_, N, 3>,
 ) -> bool {
     let features = LocalFeatures::of(solid);
-    let solid = Polyhedral::of(solid, &features).filter(|solid| solid.faces() > 3);
+    let solid = Polyhedral::of(solid, features.as_ref()).filter(|solid| solid.faces() > 3);
     let Some(solid) = &solid else { return false };
     TriangleQuery { parts, solid, pose12, limit }.each(visit);
     true
