@@ -32,10 +32,10 @@ use crate::query::separation::{
 use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
     BoxJob, ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair,
-    Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness,
-    contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
-    tangents2, tangents3, time_of_pair, update_box_pairs2, update_box_pairs3, witness_feature2,
-    witness_feature3, witness_features2, witness_features3, witness_in_world,
+    Placed, PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness, between2,
+    build3, contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2,
+    on_face3, tangents2, tangents3, time_of_pair, update_box_pairs2, update_box_pairs3,
+    witness_feature2, witness_feature3, witness_features2, witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -55,6 +55,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) seen: SeenFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
+    /// The contact points of a pair whose separation is known.
+    pub(crate) between: BetweenFn<N, D>,
     /// Whether two convex solids are farther apart than a limit of less than zero.
     pub(crate) parted: PartedFn<N, D>,
     /// Two shapes are certainly farther apart than a limit.
@@ -123,6 +125,8 @@ type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
+type BetweenFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
 type NearestPartFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
@@ -254,6 +258,7 @@ struct Particular<N: Space<D>, const D: usize> {
     over: OverFn<N, D>,
     parted: PartedFn<N, D>,
     on_face: OnFaceFn<N, D>,
+    between: BetweenFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
@@ -276,6 +281,7 @@ impl<N: Real> Particular<N, 2> {
         over: over2,
         parted: parted_in_plane,
         on_face: on_face2,
+        between: between2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
@@ -299,6 +305,7 @@ impl<N: Real> Particular<N, 3> {
         over: over3,
         parted: parted_in_space,
         on_face: on_face3,
+        between: build3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
@@ -326,6 +333,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             over: particular.over,
             parted: particular.parted,
             on_face: particular.on_face,
+            between: particular.between,
             impact: impact_of_pair,
             time_of_impact: time_of_pair,
             nonlinear_impact: impact_of_flight,

@@ -110,16 +110,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The part of this name, which there must be.
-    pub(crate) fn fill_named(&self, name: FeatureId, out: &mut Feature<N, D>) {
-        let part = match name {
-            FeatureId::Vertex(vertex) => Part::Vertex(vertex as usize),
-            FeatureId::Edge(side) => Part::Side(side),
-            FeatureId::Face(face) => Part::Face(face),
-        };
-        self.fill(part, out);
-    }
-
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();

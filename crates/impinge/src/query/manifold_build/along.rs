@@ -9,7 +9,7 @@ use super::facet::{Facet, Which};
 use super::frame::Frame;
 use super::overlap::{Candidates, Overlap};
 use super::triangle_face::OnFace;
-use super::{build, choose, face};
+use super::{choose, face};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
@@ -121,7 +121,7 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
-    build((pair, [None; 2]), &frame(pair, separation, request), (request, request.max_points), out);
+    (N::tables().between)(pair, separation, request, out);
 }
 
 pub(super) fn frame<N: Space<D>, const D: usize>(

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::frame::Frame;
 use crate::math::{Point, Pose, Real, Vector, cross2, max, max_component, min};
-use crate::shape::{Feature, FeatureId, Polytope, SupportMap};
+use crate::shape::{Feature, FeatureId, SupportMap};
 
 /// Parts that lean more than 60° out of the plane of contact count as their nearest point.
 pub(super) const LEAST_COSINE: f64 = 0.5;
@@ -132,19 +132,6 @@ impl<N: Real, const D: usize> Facet<N, D> {
         if self.rounding > N::ZERO {
             self.find_top(frame);
         }
-    }
-
-    /// [`Self::face`] of a hull of which it is known what part it shows.
-    pub(super) fn part(
-        &mut self,
-        hull: &Polytope<N, D>,
-        part: FeatureId,
-        pose: Option<&Pose<N, D>>,
-        frame: &Frame<N, D>,
-    ) {
-        let mut feature = Feature::default();
-        hull.fill_named(part, &mut feature);
-        self.take(&feature, pose, frame);
     }
 
     fn take(&mut self, feature: &Feature<N, D>, pose: Option<&Pose<N, D>>, frame: &Frame<N, D>) {

@@ -16,8 +16,8 @@ mod ball;
 mod box_lanes;
 mod capsule_face;
 mod chain;
+mod clip;
 mod closed_lanes;
-mod faces;
 mod facet;
 mod fences;
 mod frame;
@@ -30,8 +30,7 @@ mod patch_line;
 mod patch_outline;
 mod patch_shelves;
 mod reduce;
-mod rod_face;
-mod segments;
+mod ring;
 mod stretch;
 #[cfg(test)]
 pub(super) mod tests;
@@ -74,8 +73,19 @@ pub(crate) fn build2<N: Real>(
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
     let limits = (request, request.max_points.min(2));
     if !stretch::build(pair, &frame, limits, out) {
-        build((pair, [None; 2]), &frame, limits, out);
+        build(pair, &frame, limits, out);
     }
+}
+
+/// As [`build2`], with as many points as are asked for.
+pub(crate) fn between2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
+    build(pair, &frame, (request, request.max_points), out);
 }
 
 /// Builds the manifold of two solids in space: at most `request.max_points` points.
@@ -89,11 +99,11 @@ pub(crate) fn build3<N: Real>(
 ) {
     let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
     let limits = (request, request.max_points);
-    if rod_face::build(pair, &frame, limits, out) {
-        return;
-    }
-    if let Err(shown) = faces::build(pair, &frame, limits, out) {
-        build((pair, shown), &frame, limits, out);
+    let distance = separation.distance;
+    let is_near = distance <= request.prediction && distance.is_finite_number();
+    let is_ball = matches!(pair.first, Kind::Ball(_));
+    if is_ball || !is_near || !clip::build(pair, &frame, request.max_points, out) {
+        build(pair, &frame, limits, out);
     }
 }
 
@@ -135,13 +145,7 @@ fn contacts_of_separation3<N: Real>(
     out: &mut RawManifold<N, 3>,
 ) {
     match separation_in_space(pair, request.prediction) {
-        Some(separation) => match segments::crossing_parts(pair, &separation, request) {
-            Some(parts) => {
-                out.normal = separation.normal;
-                names::settle_alone(&Candidate::alone(&separation, parts), out);
-            }
-            None => build3(pair, &separation, request, out),
-        },
+        Some(separation) => build3(pair, &separation, request, out),
         None => out.points.clear(),
     }
 }
@@ -173,9 +177,9 @@ fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// The manifold by facets. The parts that the solids show may be known.
+/// The manifold by facets.
 fn build<N: Real, const D: usize>(
-    (pair, shown): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
+    pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
     (request, limit): (&ManifoldRequest<N>, usize),
     out: &mut RawManifold<N, D>,
@@ -193,7 +197,7 @@ fn build<N: Real, const D: usize>(
         return names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
     }
     let mut candidates = Candidates::new();
-    fill((pair, shown), frame, &mut candidates);
+    fill(pair, frame, &mut candidates);
     choose(&mut candidates, (distance, frame.tolerance), limit, out);
 }
 
@@ -236,14 +240,14 @@ fn chosen<N: Real, const D: usize>(
 
 /// The corners of the common area, and the witness if it is none of them.
 fn fill<N: Real, const D: usize>(
-    (pair, [shown1, shown2]): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
+    pair: &Pair<'_, N, D>,
     frame: &Frame<N, D>,
     out: &mut Candidates<N, D>,
 ) {
     let mut first = Facet::boundary(Which::First);
     let mut second = Facet::boundary(Which::Second);
-    known_face(&mut first, (pair.first, shown1), None, frame);
-    known_face(&mut second, (pair.second, shown2), Some(&pair.pose12), frame);
+    face(&mut first, pair.first, None, frame);
+    face(&mut second, pair.second, Some(&pair.pose12), frame);
     if let Kind::Plane(_) = pair.second {
         half_space::candidates(pair.first, &first, frame, out);
     } else {
@@ -253,20 +257,6 @@ fn fill<N: Real, const D: usize>(
     if !out.iter().any(|candidate| candidate.distance <= limit) {
         let features = [at_witness(&first, frame), at_witness(&second, frame)];
         add_witness(frame, features, out);
-    }
-}
-
-/// [`face`], where the part that a hull shows may be known.
-#[inline]
-fn known_face<N: Real, const D: usize>(
-    facet: &mut Facet<N, D>,
-    (kind, shown): (Kind<'_, N, D>, Option<FeatureId>),
-    pose: Option<&Pose<N, D>>,
-    frame: &Frame<N, D>,
-) {
-    match (kind, shown) {
-        (Kind::Polytope(hull), Some(part)) => facet.part(hull, part, pose, frame),
-        _ => face(facet, kind, pose, frame),
     }
 }
 

@@ -342,6 +342,7 @@ impl<'a, N: Real> Kept<'a, N> {
 }
 
 /// The point of a side that lies on a line, given how far inside of that its ends are.
+#[inline]
 pub(super) fn along_side<N: Real>(ends: &[Point<N, 3>; 2], [from, to]: [N; 2]) -> Point<N, 3> {
     ends[0] + (ends[1] - ends[0]) * (from / (from - to))
 }

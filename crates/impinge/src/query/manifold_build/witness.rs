@@ -2,7 +2,8 @@
 
 use super::facet::{Facet, Which};
 use super::frame::{Frame, rounding};
-use super::{ManifoldRequest, Pair, at_witness, ball, face, segments, tangents2, tangents3};
+use super::ring::part_of;
+use super::{ManifoldRequest, Pair, at_witness, ball, face, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FeatureId, Kind};
@@ -82,10 +83,10 @@ fn by_place<N: Real, const D: usize>(
         Kind::Cuboid(cuboid) => cuboid.part_at(point, noise),
         Kind::Triangle(triangle) => triangle.part_at(point, outward, noise),
         Kind::Polytope(solid) => Some(solid.part_at(point, outward, noise)),
-        Kind::Segment(segment) => segments::part_of(segment, point, N::TWO * noise),
+        Kind::Segment(segment) => part_of(segment, point, N::TWO * noise),
         Kind::Capsule(capsule) => {
             let core = point - outward * capsule.radius();
-            segments::part_of(capsule.segment(), &core, N::TWO * noise)
+            part_of(capsule.segment(), &core, N::TWO * noise)
         }
         Kind::Rounded(solid) => {
             let core = point - outward * solid.swelling();

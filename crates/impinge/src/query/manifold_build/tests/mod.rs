@@ -1,6 +1,6 @@
 //! What every manifold must be, over random poses and in scenes worked out by hand.
 
-mod faces;
+mod clip;
 mod lasting;
 mod level_corners;
 mod overlap;

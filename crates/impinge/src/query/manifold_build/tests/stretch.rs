@@ -50,7 +50,7 @@ fn of_pair<N: Space<2>>(pair: &Pair<'_, N, 2>, round: usize) -> Option<usize> {
         if !stretch::build(pair, &frame, limits, &mut quick) {
             return None;
         }
-        build((pair, [None; 2]), &frame, limits, &mut slow);
+        build(pair, &frame, limits, &mut slow);
         if slow.points.is_empty() {
             // The normal of none says nothing.
             quick.normal = slow.normal;
