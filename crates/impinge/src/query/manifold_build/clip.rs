@@ -1,441 +1,377 @@
-//! The corners of the common area of two supporting features in space, points, segments or faces of up to eight
-//! corners.
+//! The corners of the common area of two supporting features in space: points, segments or faces.
 //!
-//! Both are seen along the normal, and how far inside of all sides of one all corners of the other are is
-//! computed in lanes. A corner of the common area is a corner of one inside the other, or a crossing of two
-//! sides: both solids are treated alike, and no reference face can flip. A segment has one side, whose line a
-//! corner must lie on. A point, and two segments that are not parallel, meet at the nearest points alone.
-//! What has short sides, no area or more corners is left to [facets](super::facet), and so are parallel
-//! segments.
+//! Both are [rings](super::ring) seen along the normal, and how far inside of the sides of one the corners of
+//! the other are is computed in lanes. A corner of the common area is a corner of one inside the other, or a
+//! crossing of two sides: both solids are treated alike, no reference face can flip, and every point has the
+//! same ids whichever solid is first. A place within the tolerance of a side lies on it, which keeps the ids
+//! still when sides or corners coincide. A segment has one side, whose line a corner must lie on. A point, and
+//! two segments that are not parallel, meet at the nearest points alone.
+//!
+//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of the other,
+//! which makes one solid the reference.
 
-use super::facet::{Which, lifted_by};
-use super::fences::{fence, placed};
-use super::frame::{Candidate, Frame};
-use super::overlap::Candidates;
-use super::ring::{SupportRing, crossing_parts};
-use super::triangle_face::along_side;
+use smallvec::SmallVec;
+
+use super::frame::{Candidate, Candidates, Frame, Which};
+use super::ring::{LANES, RingCorner, SupportRing};
 use super::{Pair, RawManifold, add_witness, choose, names};
-use crate::math::lanes::{dot, load, minus, spread, with_lanes};
+use crate::math::lanes::{load, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide, max, max_component, min};
-use crate::shape::{FaceRing, FeatureId};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component};
+use crate::shape::{FeatureId, Kind};
 
-/// How many corners or sides are side by side.
-const LANES: usize = FaceRing::<f32>::MOST;
-
-/// The row of the nearest point in [`ProjectedRing::insides`].
-const WITNESS: usize = LANES;
-
-/// Builds the manifold of two solids within the prediction whose nearest points are known; returns whether it
-/// did.
+/// Builds the manifold of two solids within the prediction whose nearest points are known.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 3>,
     frame: &Frame<N, 3>,
     limit: usize,
     out: &mut RawManifold<N, 3>,
-) -> bool {
-    let (pose, normal) = (&pair.pose12, frame.normal());
-    let [mut first, mut second] = [SupportRing::blank(), SupportRing::blank()];
-    if !(second.fill(&pair.second, Which::Second, Some(pose), frame)
-        && first.fill(&pair.first, Which::First, None, frame))
-    {
-        return false;
-    }
-    if first.is_segment() && second.is_segment() {
-        let parts = crossing_parts([&first, &second], frame);
-        return parts.is_some_and(|parts| settle_alone(parts, frame, out));
-    }
-    first.settle(Which::First, frame);
-    second.settle(Which::Second, frame);
-    let rings = [&first, &second];
-    if !(first.is_face() || second.is_face()) {
-        return settle_alone(rings.map(|ring| ring.id_at_witness(frame)), frame, out);
-    }
-    let mut both = [ProjectedRing::new(first.ring.count), ProjectedRing::new(second.ring.count)];
-    if !project(Level::new(), frame, (rings, &mut both), pose) {
-        return false;
-    }
-    let clip = RingClip { frame, rings, projected: &both };
-    if first.is_point() || second.is_point() {
-        return settle_alone([clip.id_at_witness(0), clip.id_at_witness(1)], frame, out);
-    }
+) {
+    let (rings, insides) = project(pair, frame);
+    let clip = RingClip { frame, rings: &rings, insides: &insides };
     let mut candidates = Candidates::new();
-    clip.corners(&mut candidates);
-    clip.crossings(&mut candidates);
-    let nearest = frame.witness.distance + frame.tolerance;
-    if !candidates.iter().any(|candidate| candidate.distance <= nearest) {
-        add_witness(frame, [clip.id_at_witness(0), clip.id_at_witness(1)], &mut candidates);
+    if clip.has_area_or_length() {
+        clip.candidates(&mut candidates);
     }
-    out.normal = normal;
-    choose(&mut candidates, (frame.witness.distance, frame.tolerance), limit, out);
-    true
-}
-
-/// The nearest points are all there is; returns true.
-fn settle_alone<N: Real>(
-    parts: [FeatureId; 2],
-    frame: &Frame<N, 3>,
-    out: &mut RawManifold<N, 3>,
-) -> bool {
     out.normal = frame.normal();
-    names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
-    true
+    let (nearest, tolerance) = (frame.witness.distance, frame.tolerance);
+    if !candidates.iter().any(|candidate| candidate.distance <= nearest + tolerance) {
+        let parts = [clip.part_at_witness(0), clip.part_at_witness(1)];
+        if candidates.is_empty() {
+            return names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
+        }
+        add_witness(frame, parts, &mut candidates);
+    }
+    choose(&mut candidates, nearest, tolerance, limit, out);
 }
 
-/// A ring as seen along the normal. What is beyond the corners that there are means nothing.
-struct ProjectedRing<N: Real> {
-    /// Of corners.
-    count: usize,
-    /// The corners by coordinate, in the frame of the first solid, and as seen along the normal.
-    points: [[N; LANES]; 3],
-    flats: [[N; LANES]; 2],
-    /// For each corner of the other ring, and beside a face for the nearest point, how far inside of the sides
-    /// of this one it is.
-    insides: [[N; LANES]; LANES + 1],
-    /// The same as bits: by more than the tolerance, outside by more.
-    within: [u8; LANES + 1],
-    beyond: [u8; LANES + 1],
-    /// A bit for each side.
-    sides: u8,
-    /// Of a rounded solid the corner nearest to the other: how far below the supporting plane, and where it is
-    /// seen.
-    top: (N, Vector<N, 2>),
+/// The part of one of two solids that the nearest point lies on, of those that face the other.
+pub(super) fn part_at_witness<N: Real>(
+    kind: Kind<'_, N, 3>,
+    which: Which,
+    pose: Option<&Pose<N, 3>>,
+    frame: &Frame<N, 3>,
+) -> FeatureId {
+    let mut rings = [SupportRing::new(which, kind, pose, frame)];
+    let [insides, _] = project_rings(Level::new(), &mut rings, frame);
+    let [ring] = &rings;
+    ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
-/// Two rings, and where they are seen.
-type Projecting<'a, N> = ([&'a SupportRing<N>; 2], &'a mut [ProjectedRing<N>; 2]);
+/// Adds the corners of the common area of two solids along the normal of a frame, whose witness need not be
+/// the nearest points: none where the supporting features do not lie above each other.
+pub(super) fn candidates<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    frame: &Frame<N, 3>,
+    out: &mut Candidates<N, 3>,
+) {
+    let (rings, insides) = project(pair, frame);
+    RingClip { frame, rings: &rings, insides: &insides }.candidates(out);
+}
+
+/// Both supporting features, and where the corners of each are in the other.
+fn project<'a, N: Real>(
+    pair: &'a Pair<'_, N, 3>,
+    frame: &Frame<N, 3>,
+) -> ([SupportRing<'a, N>; 2], [Insides<N>; 2]) {
+    let mut rings = [
+        SupportRing::new(Which::First, pair.first, None, frame),
+        SupportRing::new(Which::Second, pair.second, Some(&pair.pose12), frame),
+    ];
+    let insides = project_rings(Level::new(), &mut rings, frame);
+    (rings, insides)
+}
 
 /// [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
-fn project<N: Real>(
+fn project_rings<N: Real>(
     level: Level,
+    rings: &mut [SupportRing<'_, N>],
     frame: &Frame<N, 3>,
-    rings: Projecting<'_, N>,
-    pose12: &Pose<N, 3>,
-) -> bool {
-    with_lanes!(level, simd => project_in_lanes::<_, N, N::Lanes<_>>(simd, frame, rings, pose12))
+) -> [Insides<N>; 2] {
+    let mut insides = [Insides::new(), Insides::new()];
+    with_lanes!(level, simd =>
+        project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, &mut insides));
+    insides
 }
 
-/// Fills both; false if a face has no area, or a side without length.
+/// Projects one ring or two, and measures how far inside of the sides of each the corners of the other are.
 #[inline(always)]
 fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
+    rings: &mut [SupportRing<'_, N>],
     frame: &Frame<N, 3>,
-    ([first, second], [one, other]): Projecting<'_, N>,
-    pose12: &Pose<N, 3>,
-) -> bool {
-    let (points1, local2): ([V; 3], [V; 3]) =
-        (load(simd, &first.ring.corners), load(simd, &second.ring.corners));
-    let points2 = placed(simd, pose12, &local2);
-    let (flats1, flats2) = (flat(simd, frame, &points1), flat(simd, frame, &points2));
-    one.store(&points1, &flats1);
-    other.store(&points2, &flats2);
-    if first.radius > N::ZERO {
-        one.find_top(Which::First, frame);
+    insides: &mut [Insides<N>; 2],
+) {
+    for ring in rings.iter_mut() {
+        ring.project::<S, V>(simd, frame);
     }
-    if second.radius > N::ZERO {
-        other.find_top(Which::Second, frame);
+    for (which, (ring, insides)) in rings.iter().zip(insides).enumerate() {
+        let other = if which == 0 { rings.get(1) } else { rings.first() };
+        insides.measure::<S, V>(simd, ring, other, frame.tolerance);
     }
-    one.relate(simd, [&flats1, &flats2], other, frame.tolerance)
-        && other.relate(simd, [&flats2, &flats1], one, frame.tolerance)
 }
 
-/// Where points are seen along the normal of a frame.
-#[inline(always)]
-fn flat<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    frame: &Frame<N, 3>,
-    points: &[V; 3],
-) -> [V; 2] {
-    let arms = minus(points, &spread(simd, &frame.witness.point1.coords));
-    let [one, other] = frame.tangents();
-    [dot(&spread::<S, N, V, 3>(simd, one), &arms), dot(&spread::<S, N, V, 3>(simd, other), &arms)]
+/// How far a place is inside of up to eight sides of a ring, and what the numbers say as bits.
+#[derive(Clone, Copy)]
+struct SideRow<N: Real> {
+    inside: [N; LANES],
+    /// By more than the tolerance; outside by more; neither.
+    within: u8,
+    beyond: u8,
+    touched: u8,
 }
 
-impl<N: Real> ProjectedRing<N> {
-    /// Not yet seen anywhere.
-    #[inline]
-    fn new(count: usize) -> Self {
-        let (row, bits) = ([N::ZERO; LANES], [0; LANES + 1]);
-        let sides = match count {
-            1 => 0,
-            2 => 1,
-            _ => u8::MAX >> (LANES - count),
-        };
-        Self {
-            count,
-            points: [row; 3],
-            flats: [row; 2],
-            insides: [row; LANES + 1],
-            within: bits,
-            beyond: bits,
-            sides,
-            top: (N::ZERO, Vector::<N, 2>::zeros()),
-        }
+/// How far inside of the sides of a ring the corners of another one are, and at last the nearest point.
+struct Insides<N: Real> {
+    /// Each place has so many rows.
+    width: usize,
+    rows: SmallVec<[SideRow<N>; LANES + 1]>,
+}
+
+impl<N: Real> Insides<N> {
+    fn new() -> Self {
+        Self { width: 1, rows: SmallVec::new() }
     }
 
-    #[inline(always)]
-    fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, points: &[V; 3], flats: &[V; 2]) {
-        for (row, values) in self.points.iter_mut().zip(points) {
-            values.store(row);
-        }
-        for (row, values) in self.flats.iter_mut().zip(flats) {
-            values.store(row);
-        }
+    /// Of a corner, or of the nearest point after the last corner.
+    fn row(&self, place: usize) -> &[SideRow<N>] {
+        &self.rows[place * self.width..][..self.width]
     }
 
-    /// Measures how far inside of the sides of this ring the corners of the other one are; false of a face
-    /// without area.
-    #[inline(always)]
-    fn relate<S: Simd, V: Wide<S, Scalar = N>>(
-        &mut self,
-        simd: S,
-        [flats, others]: [&[V; 2]; 2],
-        other: &Self,
-        tolerance: N,
-    ) -> bool {
-        match self.count {
-            1 => {}
-            2 => self.measure_segment(simd, others, other.count, tolerance),
-            _ => {
-                let inward = fence(simd, flats, (&self.flats, self.count), tolerance);
-                let Some(inward) = inward else { return false };
-                self.measure(simd, (flats, &inward), (&other.flats, other.count), tolerance);
-            }
-        }
-        true
-    }
-
-    /// Measures how far to the left of this segment all corners of the other ring are.
-    #[inline(always)]
-    fn measure_segment<S: Simd, V: Wide<S, Scalar = N>>(
-        &mut self,
-        simd: S,
-        others: &[V; 2],
-        count: usize,
-        tolerance: N,
-    ) {
-        let (from, along) = (self.flat(0), self.flat(1) - self.flat(0));
-        let left = Vector::<N, 2>::new(-along.y, along.x) / along.norm();
-        let [x, y] = spread::<S, N, V, 2>(simd, &left);
-        let [from_x, from_y] = spread::<S, N, V, 2>(simd, &from);
-        let inside = x * (others[0] - from_x) + y * (others[1] - from_y);
-        let within = inside.simd_gt(V::all(simd, tolerance)).to_bitmask();
-        let beyond = inside.simd_lt(V::all(simd, -tolerance)).to_bitmask();
-        let mut row = [N::ZERO; LANES];
-        inside.store(&mut row);
-        for corner in 0..count {
-            self.insides[corner][0] = row[corner];
-            self.within[corner] = u8::from(within >> corner & 1 == 1);
-            self.beyond[corner] = u8::from(beyond >> corner & 1 == 1);
-        }
-    }
-
-    /// Measures how far inside of the sides of this face the corners of the other ring and the nearest point are.
     #[inline(always)]
     fn measure<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        (flats, inward): (&[V; 2], &[V; 2]),
-        ([xs, ys], count): (&[[N; LANES]; 2], usize),
+        own: &SupportRing<'_, N>,
+        other: Option<&SupportRing<'_, N>>,
         tolerance: N,
     ) {
+        let (count, sides) = (other.map_or(0, |other| other.count), own.side_count());
         let (most, least) = (V::all(simd, tolerance), V::all(simd, -tolerance));
-        let mut measure = |row: usize, x: N, y: N| {
-            let [x, y] = [V::all(simd, x), V::all(simd, y)];
-            let inside = inward[0] * (x - flats[0]) + inward[1] * (y - flats[1]);
-            inside.store(&mut self.insides[row]);
-            [self.within[row], ..] = inside.simd_gt(most).to_bitmask().to_le_bytes();
-            [self.beyond[row], ..] = inside.simd_lt(least).to_bitmask().to_le_bytes();
-        };
-        for corner in 0..count {
-            measure(corner, xs[corner], ys[corner]);
-        }
-        measure(WITNESS, N::ZERO, N::ZERO);
-    }
-
-    /// Finds the corner that is nearest to the other solid, the first of equals.
-    fn find_top(&mut self, which: Which, frame: &Frame<N, 3>) {
-        let below = |corner: usize| which.below_witness(&self.point(corner), frame);
-        let (mut best, mut least) = (0, below(0));
-        for corner in 1..self.count {
-            let other = below(corner);
-            if other < least {
-                (best, least) = (corner, other);
+        self.width = own.count.div_ceil(LANES);
+        for place in 0..=count {
+            let flat = match other {
+                Some(other) if place < count => other.flat(place),
+                _ => Vector::<N, 2>::zeros(),
+            };
+            let [x, y] = [V::all(simd, flat.x), V::all(simd, flat.y)];
+            for (at, block) in own.blocks.iter().enumerate().take(self.width) {
+                let (from, inward): ([V; 2], [V; 2]) =
+                    (load(simd, &block.flats), load(simd, &block.inward));
+                let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
+                let [within, ..] = inside.simd_gt(most).to_bitmask().to_le_bytes();
+                let [beyond, ..] = inside.simd_lt(least).to_bitmask().to_le_bytes();
+                let all = first_bits(sides - at * LANES);
+                let mut row = SideRow {
+                    inside: [N::ZERO; LANES],
+                    within: within & all,
+                    beyond: beyond & all,
+                    touched: !(within | beyond) & all,
+                };
+                inside.store(&mut row.inside);
+                self.rows.push(row);
             }
         }
-        self.top = (least, self.flat(best));
-    }
-
-    fn point(&self, corner: usize) -> Point<N, 3> {
-        let [x, y, z] = &self.points;
-        Point::<N, 3>::new(x[corner], y[corner], z[corner])
-    }
-
-    fn flat(&self, corner: usize) -> Vector<N, 2> {
-        let [x, y] = &self.flats;
-        Vector::<N, 2>::new(x[corner], y[corner])
-    }
-
-    /// The sides between whose lines and a third the corners of the other lie, neither on it.
-    const fn parted(&self, from: usize, to: usize) -> u8 {
-        (self.within[from] & self.beyond[to] | self.beyond[from] & self.within[to]) & self.sides
-    }
-
-    /// The sides whose lines a row lies on; `None` of one outside. A segment has no inside.
-    const fn touched(&self, row: usize) -> Option<u8> {
-        let is_segment = self.sides == 1;
-        let outside =
-            if is_segment { self.within[row] | self.beyond[row] } else { self.beyond[row] };
-        if outside & self.sides != 0 { None } else { Some(!self.within[row] & self.sides) }
     }
 }
 
-/// Two rings of which one is a face.
+/// So many bits, eight at most.
+const fn first_bits(count: usize) -> u8 {
+    if count < LANES { (1 << count) - 1 } else { u8::MAX }
+}
+
+/// The smallest part of a ring that has a place, of which it is known how far inside it is; `None` of a place
+/// outside. A segment has no inside.
+fn ring_part<N: Real>(
+    ring: &SupportRing<'_, N>,
+    rows: &[SideRow<N>],
+    flat: &Vector<N, 2>,
+    tolerance: N,
+) -> Option<FeatureId> {
+    let is_segment = ring.is_segment();
+    let mut found = None;
+    for (block, row) in rows.iter().enumerate() {
+        if row.beyond != 0 || is_segment && row.within != 0 {
+            return None;
+        }
+        // Of two touched sides either will do: where they meet, both answer with the corner.
+        let mut touched = row.touched;
+        while touched != 0 {
+            let side = block * LANES + touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            found = ring.on_side(side, flat, tolerance).or(found);
+        }
+    }
+    if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
+}
+
+/// The sides between whose lines and a third the two places lie, neither on it.
+const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
+    from.within & to.beyond | from.beyond & to.within
+}
+
+/// Two rings in one frame.
 struct RingClip<'a, N: Real> {
     frame: &'a Frame<N, 3>,
-    rings: [&'a SupportRing<N>; 2],
-    projected: &'a [ProjectedRing<N>; 2],
-}
-
-const fn next<N: Real>(ring: &FaceRing<N>, corner: usize) -> usize {
-    if corner + 1 < ring.count { corner + 1 } else { 0 }
+    rings: &'a [SupportRing<'a, N>; 2],
+    /// For each ring where the corners of the other are in it.
+    insides: &'a [Insides<N>; 2],
 }
 
 impl<N: Real> RingClip<'_, N> {
-    /// The id of the part of a ring that the nearest point lies on.
-    fn id_at_witness(&self, which: usize) -> FeatureId {
-        let own = self.rings[which];
-        if own.is_face() {
-            self.part(which, WITNESS, &Vector::<N, 2>::zeros()).unwrap_or(own.ring.id)
-        } else {
-            own.id_at_witness(self.frame)
+    /// False of features that meet in a point, of which the nearest points say all.
+    fn has_area_or_length(&self) -> bool {
+        let [first, second] = self.rings;
+        let are_segments = first.is_segment() && second.is_segment();
+        !(first.is_point() || second.is_point() || are_segments && !self.are_parallel())
+    }
+
+    /// Adds the corners of the common area that the request admits; of a point in the other feature the point.
+    fn candidates(&self, out: &mut Candidates<N, 3>) {
+        let [first, second] = self.rings;
+        if first.is_segment() && second.is_segment() && self.are_parallel() {
+            return self.common_stretch(out);
         }
+        if first.is_point() && second.is_point() {
+            let [corner1, corner2] = [first.corner(0), second.corner(0)];
+            if (corner1.flat - corner2.flat).norm() <= N::TWO * self.frame.tolerance {
+                self.push([corner1.point, corner2.point], [corner1.id, corner2.id], out);
+            }
+            return;
+        }
+        self.corners(out);
+        self.crossings(out);
+    }
+
+    /// The id of the part of a ring that the nearest point lies on.
+    fn part_at_witness(&self, which: usize) -> FeatureId {
+        let (ring, other) = (&self.rings[which], &self.rings[1 - which]);
+        let rows = self.insides[which].row(other.count);
+        ring_part(ring, rows, &Vector::<N, 2>::zeros(), self.frame.tolerance).unwrap_or(ring.id)
     }
 
     /// Corners of either ring within the other.
     fn corners(&self, out: &mut Candidates<N, 3>) {
-        for (which, own) in self.rings.into_iter().enumerate() {
-            let projected = &self.projected[which];
-            for (corner, &id) in own.ring.ids.iter().enumerate().take(own.ring.count) {
-                let Some(on) = self.part(1 - which, corner, &projected.flat(corner)) else {
-                    continue;
-                };
-                let point = projected.point(corner);
-                let under = self.under(1 - which, &point, &projected.flat(corner));
-                if which == 0 {
-                    self.push([point, under], [id, on], out);
-                } else {
-                    self.push([under, point], [on, id], out);
+        for (which, ring) in self.rings.iter().enumerate() {
+            let other = &self.rings[1 - which];
+            let count = if other.is_point() { 0 } else { ring.count };
+            for at in 0..count {
+                let flat = ring.flat(at);
+                let rows = self.insides[1 - which].row(at);
+                if let Some(on) = ring_part(other, rows, &flat, self.frame.tolerance) {
+                    let corner = ring.corner(at);
+                    let under = other.under(&corner.point, &flat, self.frame);
+                    self.push_corner(which, &corner, under, on, out);
                 }
             }
         }
     }
 
-    /// The smallest part of a ring that has a place, of which it is known how far inside it is; `None` of a
-    /// place outside.
-    fn part(&self, which: usize, row: usize, place: &Vector<N, 2>) -> Option<FeatureId> {
-        let (own, projected) = (self.rings[which], &self.projected[which]);
-        let (ring, mut touched) = (&own.ring, projected.touched(row)?);
-        let mut found = None;
-        while touched != 0 {
-            let from = touched.trailing_zeros() as usize;
-            touched &= touched - 1;
-            let to = next(ring, from);
-            let ids = [ring.ids[from], ring.ids[to], ring.sides[from]];
-            let ends = [projected.flat(from), projected.flat(to)];
-            found = on_side(ends, ids, place, self.frame.tolerance).or(found);
+    /// Adds a corner of one ring and the point of the other that faces it.
+    fn push_corner(
+        &self,
+        which: usize,
+        corner: &RingCorner<N>,
+        under: Point<N, 3>,
+        on: FeatureId,
+        out: &mut Candidates<N, 3>,
+    ) {
+        if which == 0 {
+            self.push([corner.point, under], [corner.id, on], out);
+        } else {
+            self.push([under, corner.point], [on, corner.id], out);
         }
-        if own.is_face() { Some(found.unwrap_or(ring.id)) } else { found }
     }
 
-    /// The point of a ring that is seen at the same place as another one.
-    fn under(&self, which: usize, point: &Point<N, 3>, place: &Vector<N, 2>) -> Point<N, 3> {
-        let (own, projected) = (self.rings[which], &self.projected[which]);
-        if own.is_face() {
-            let (normal, lean) = (self.frame.normal(), &own.normal);
-            let along = (projected.point(0) - point).dot(lean) / normal.dot(lean);
-            return point + normal * along;
-        }
-        let along = projected.flat(1) - projected.flat(0);
-        let share = (place - projected.flat(0)).dot(&along) / along.norm_squared();
-        let [from, to] = [projected.point(0), projected.point(1)];
-        from + (to - from) * min(max(share, N::ZERO), N::ONE)
-    }
-
-    /// Sides that cross well inside both.
+    /// Sides that cross well inside both: a side that ends on a line crosses nothing, its corner lies on the
+    /// other ring or outside.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
-        let (rings, [one, other]) = (self.rings.map(|own| &own.ring), self.projected);
-        for side1 in 0..one.sides.count_ones() as usize {
-            let next1 = next(rings[0], side1);
-            let mut crossed = other.parted(side1, next1);
-            while crossed != 0 {
-                let side2 = crossed.trailing_zeros() as usize;
-                crossed &= crossed - 1;
-                let next2 = next(rings[1], side2);
-                if one.parted(side2, next2) >> side1 & 1 == 0 {
-                    continue;
+        let ([one, other], [in_one, in_other]) = (self.rings, self.insides);
+        for side1 in 0..one.side_count() {
+            let ends1 = [in_other.row(side1), in_other.row(one.next(side1))];
+            for block2 in 0..in_other.width {
+                let [from1, to1] = ends1.map(|rows| &rows[block2]);
+                let mut crossed = parted(from1, to1);
+                while crossed != 0 {
+                    let lane2 = crossed.trailing_zeros() as usize;
+                    let (side2, lane1) = (block2 * LANES + lane2, side1 % LANES);
+                    crossed &= crossed - 1;
+                    let ends2 = [side2, other.next(side2)];
+                    let [from2, to2] = ends2.map(|at| &in_one.row(at)[side1 / LANES]);
+                    if parted(from2, to2) >> lane1 & 1 == 0 {
+                        continue;
+                    }
+                    let share = |from: N, to: N| from / (from - to);
+                    let share1 = share(from1.inside[lane2], to1.inside[lane2]);
+                    let share2 = share(from2.inside[lane1], to2.inside[lane1]);
+                    let cores = [one.along_side(side1, share1), other.along_side(side2, share2)];
+                    self.push(cores, [one.side_id(side1), other.side_id(side2)], out);
                 }
-                let insides1 = [side1, next1].map(|corner| other.insides[corner][side2]);
-                let insides2 = [side2, next2].map(|corner| one.insides[corner][side1]);
-                let core1 = along_side(&[side1, next1].map(|at| one.point(at)), insides1);
-                let core2 = along_side(&[side2, next2].map(|at| other.point(at)), insides2);
-                self.push([core1, core2], [rings[0].sides[side1], rings[1].sides[side2]], out);
             }
         }
     }
 
-    /// How far the rounded surface is above a point of the core; see [`super::facet::Facet::lift`].
-    fn lift(&self, which: usize, core: &Point<N, 3>) -> N {
-        let own = self.rings[which];
-        if own.radius <= N::ZERO {
-            return N::ZERO;
+    /// Two segments that a turn by the predicted angle would make parallel.
+    fn are_parallel(&self) -> bool {
+        let [a, b] = [self.rings[0].side(0), self.rings[1].side(0)];
+        let least = N::lit(16.0) * N::EPSILON;
+        cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
+    }
+
+    /// The ends of the interval that two nearly parallel segments share: each is an end of one of them and the
+    /// place beside it on the other. Half-way between the two is where they meet once turned: the points are
+    /// off their segments by half the lever arm times the sine at most.
+    fn common_stretch(&self, out: &mut Candidates<N, 3>) {
+        for (which, ring) in self.rings.iter().enumerate() {
+            let other = &self.rings[1 - which];
+            for corner in [ring.corner(0), ring.corner(1)] {
+                let Some(on) = self.beside(&corner.flat, other) else { continue };
+                let under = other.under(&corner.point, &corner.flat, self.frame);
+                let (gap, normal) = (under - corner.point, self.frame.normal());
+                let half = (gap - normal * normal.dot(&gap)) * N::HALF;
+                let corner = RingCorner { point: corner.point + half, ..corner };
+                self.push_corner(which, &corner, under - half, on, out);
+            }
         }
-        let solid = if which == 0 { Which::First } else { Which::Second };
-        let (below, (top, at)) = (solid.below_witness(core, self.frame), self.projected[which].top);
-        let away = self.frame.flat(core) - at;
-        lifted_by((own.radius, own.cosine), (below, top), away.norm_squared())
+    }
+
+    /// The part of a segment beside a place; `None` beyond the ends.
+    fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
+        let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
+        let length = side.norm();
+        let along = (flat - segment.flat(0)).dot(&side) / length;
+        if along < -tolerance || along > length + tolerance {
+            return None;
+        }
+        Some(if along >= length - tolerance {
+            segment.corner(1).id
+        } else if along <= tolerance {
+            segment.corner(0).id
+        } else {
+            segment.id
+        })
     }
 
     /// Adds the points of the surfaces over two points of the cores, once: corners that coincide in both rings
-    /// are found from both.
+    /// are found from both. Different points may share their ids, on round rims.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],
         features: [FeatureId; 2],
         out: &mut Candidates<N, 3>,
     ) {
-        let (normal, lift1) = (self.frame.normal(), self.lift(0, &core1));
-        let distance = normal.dot(&(core2 - core1)) - lift1 - self.lift(1, &core2);
-        let found = self.frame.candidate(core1 + normal * lift1, distance, features);
+        let (frame, [first, second]) = (self.frame, self.rings);
+        let (normal, lift1) = (frame.normal(), first.lift(&core1, frame));
+        let distance = normal.dot(&(core2 - core1)) - lift1 - second.lift(&core2, frame);
+        let found = frame.candidate(core1 + normal * lift1, distance, features);
         let Some(found) = found else { return };
-        let near = N::lit(4.0) * self.frame.tolerance;
-        for old in &*out {
-            if old.features == found.features {
-                let away = old.flat - found.flat;
-                if max_component(&away) <= near && away.norm() <= near {
-                    return;
-                }
-            }
+        let near = N::lit(4.0) * frame.tolerance;
+        let is_new = |old: &Candidate<N, 3>| {
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
+        };
+        if out.iter().all(is_new) {
+            out.push(found);
         }
-        out.push(found);
     }
-}
-
-/// The part of a side that contains a place on its line: one of its corners or itself.
-fn on_side<N: Real>(
-    ends: [Vector<N, 2>; 2],
-    [from, to, side]: [FeatureId; 3],
-    place: &Vector<N, 2>,
-    tolerance: N,
-) -> Option<FeatureId> {
-    let near = |end: &Vector<N, 2>| (end - place).norm() <= N::TWO * tolerance;
-    if near(&ends[0]) {
-        return Some(from);
-    }
-    if near(&ends[1]) {
-        return Some(to);
-    }
-    let along = ends[1] - ends[0];
-    let (share, length) = ((place - ends[0]).dot(&along), along.norm());
-    (share >= N::ZERO && share <= length * length).then_some(side)
 }

@@ -1,284 +1,408 @@
-//! The supporting feature of a solid in space as a ring of one to eight corners.
+//! The supporting feature of a solid in space as a ring of corners, seen along the normal of a frame.
 //!
-//! A point has one corner, a segment two and no normal, a face three or more and its outward normal. Ids are
-//! those of [`SupportMap::core_feature`]; a segment bears its own id on its side.
+//! A point has one corner, a segment two and one side, a face three or more and as many sides. Corners lie in
+//! blocks of eight lanes, of which nearly all rings need one. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
+//! Corners that coincide when seen along the normal are merged; a face without area counts as a segment, and
+//! what tilts too much as its nearest corner.
 
-use super::facet::{LEAST_COSINE, Which};
-use super::frame::Frame;
-use crate::math::{Point, Pose, Real, Vector, cross, max, max_component};
-use crate::shape::{
-    ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Geometry, Kind, Polytope, RoundPart,
-    Segment, Triangle,
-};
+use smallvec::{SmallVec, smallvec};
 
-/// The supporting feature of a core as seen along the normal of a frame, and the radius around it.
-pub(super) struct SupportRing<N: Real> {
-    /// In the frame of its own solid.
-    pub(super) ring: FaceRing<N>,
-    pub(super) radius: N,
-    /// Between the normal and that of the face; of a segment between it and the plane of contact.
-    pub(super) cosine: N,
-    /// The outward normal of a face in the frame of the first solid.
-    pub(super) normal: Vector<N, 3>,
-    /// The ends of a segment in the frame of the first solid.
-    pub(super) ends: [Point<N, 3>; 2],
+use super::frame::{Frame, MIN_COSINE, Which, lifted};
+use super::supporting::{FaceBlocks, supporting_feature};
+use crate::math::lanes::{dot, load, minus, spread};
+use crate::math::simd::Simd;
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, min};
+use crate::shape::{FaceRing, FeatureId, Kind, Segment};
+
+/// How many corners are side by side.
+pub(super) const LANES: usize = FaceRing::<f32>::MOST;
+
+/// A corner, and the side that leads from it to the next.
+#[derive(Clone, Copy)]
+pub(super) struct RingCorner<N: Real> {
+    pub(super) point: Point<N, 3>,
+    /// Where it is seen along the normal.
+    pub(super) flat: Vector<N, 2>,
+    pub(super) id: FeatureId,
+    pub(super) side: FeatureId,
 }
 
-impl<N: Real> SupportRing<N> {
-    /// No feature yet.
-    #[inline]
-    pub(super) fn blank() -> Self {
-        let (ring, normal) = (FaceRing::blank(), Vector::<N, 3>::zeros());
-        Self { ring, radius: N::ZERO, cosine: N::ONE, normal, ends: [Point::origin(); 2] }
-    }
+/// Up to eight corners by coordinate; what is beyond the last one means nothing.
+pub(super) struct RingBlock<N: Real> {
+    /// In the frame of the first solid, and seen along the normal.
+    points: [[N; LANES]; 3],
+    pub(super) flats: [[N; LANES]; 2],
+    /// The unit normals of the sides, inward.
+    pub(super) inward: [[N; LANES]; 2],
+}
 
-    /// Makes a blank ring the feature of one solid of a pair, which stands at `pose` in the frame of the first;
-    /// `None` for the first itself. False of a feature that has more corners or that tilts too much.
-    #[inline]
-    pub(super) fn fill(
-        &mut self,
-        kind: &Kind<'_, N, 3>,
+/// A supporting feature with the radius around it.
+pub(super) struct SupportRing<'a, N: Real> {
+    which: Which,
+    /// Of the solid in the frame of the first one; `None` of the first itself.
+    pose: Option<&'a Pose<N, 3>>,
+    pub(super) id: FeatureId,
+    /// Of corners.
+    pub(super) count: usize,
+    faces: FaceBlocks<N>,
+    pub(super) blocks: SmallVec<[RingBlock<N>; 1]>,
+    /// The outward normal of a face in the frame of the first solid; of others it means nothing.
+    normal: Vector<N, 3>,
+    /// By the sense of rotation, as seen along the normal, 1 or -1.
+    turn: N,
+    radius: N,
+    /// Between the normals of the frame and of a face, or between a segment and the plane of contact.
+    cosine: N,
+    /// Of a rounded solid the corner nearest to the other: how far below the supporting plane, and where it
+    /// is seen.
+    top: (N, Vector<N, 2>),
+}
+
+impl<'a, N: Real> SupportRing<'a, N> {
+    /// The feature of one solid of a pair, which is still to be [projected](Self::project).
+    pub(super) fn new(
         which: Which,
-        pose: Option<&Pose<N, 3>>,
+        kind: Kind<'_, N, 3>,
+        pose: Option<&'a Pose<N, 3>>,
         frame: &Frame<N, 3>,
-    ) -> bool {
+    ) -> Self {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
-        let Some(radius) = fill(kind, &direction, &mut self.ring) else { return false };
-        self.radius = radius;
-        if self.is_segment() {
-            let corners = [self.ring.corner(0), self.ring.corner(1)];
-            self.ends = corners.map(|corner| pose.map_or(corner, |pose| pose.point(&corner)));
-        } else if self.is_face() {
-            self.normal = pose.map_or(self.ring.normal, |pose| pose.vector(&self.ring.normal));
-            self.cosine = self.normal.dot(&outward);
+        let mut faces: FaceBlocks<N> = smallvec![FaceRing::blank()];
+        let radius = supporting_feature(kind, &direction, &mut faces);
+        Self {
+            which,
+            pose,
+            id: faces[0].id,
+            count: faces.iter().map(|face| face.count).sum(),
+            normal: pose.map_or(faces[0].normal, |pose| pose.vector(&faces[0].normal)),
+            faces,
+            blocks: SmallVec::new(),
+            turn: N::ONE,
+            radius,
+            cosine: N::ONE,
+            top: (N::ZERO, Vector::<N, 2>::zeros()),
         }
-        self.cosine >= N::lit(LEAST_COSINE)
     }
 
     #[inline]
     pub(super) const fn is_point(&self) -> bool {
-        self.ring.count < 2
+        self.count == 1
     }
 
     #[inline]
     pub(super) const fn is_segment(&self) -> bool {
-        self.ring.count == 2
+        self.count == 2
+    }
+
+    /// None of a point, one of a segment, else one for each corner.
+    #[inline]
+    pub(super) const fn side_count(&self) -> usize {
+        if self.count < 3 { self.count - 1 } else { self.count }
+    }
+
+    /// The corner after a corner.
+    #[inline]
+    pub(super) const fn next(&self, at: usize) -> usize {
+        if at + 1 < self.count { at + 1 } else { 0 }
     }
 
     #[inline]
-    pub(super) const fn is_face(&self) -> bool {
-        self.ring.count > 2
+    pub(super) fn point(&self, at: usize) -> Point<N, 3> {
+        let [x, y, z] = &self.blocks[at / LANES].points;
+        Point::<N, 3>::new(x[at % LANES], y[at % LANES], z[at % LANES])
     }
 
-    /// Makes a segment that is seen as a point, or that tilts too much, the corner that is nearest to the other
-    /// solid. One that is seen as a point keeps its id.
     #[inline]
-    pub(super) fn settle(&mut self, which: Which, frame: &Frame<N, 3>) {
-        if !self.is_segment() {
-            return;
+    pub(super) fn flat(&self, at: usize) -> Vector<N, 2> {
+        let [x, y] = &self.blocks[at / LANES].flats;
+        Vector::<N, 2>::new(x[at % LANES], y[at % LANES])
+    }
+
+    #[inline]
+    pub(super) fn corner(&self, at: usize) -> RingCorner<N> {
+        let ring = &self.faces[at / LANES];
+        let (id, side) = (ring.ids[at % LANES], ring.sides[at % LANES]);
+        RingCorner { point: self.point(at), flat: self.flat(at), id, side }
+    }
+
+    /// The id of the side from a corner to the next.
+    #[inline]
+    pub(super) fn side_id(&self, at: usize) -> FeatureId {
+        if self.is_segment() { self.id } else { self.faces[at / LANES].sides[at % LANES] }
+    }
+
+    /// From a corner to the next, seen along the normal.
+    #[inline]
+    pub(super) fn side(&self, at: usize) -> Vector<N, 2> {
+        self.flat(self.next(at)) - self.flat(at)
+    }
+
+    /// The point of a side at a share of the way between its ends.
+    #[inline]
+    pub(super) fn along_side(&self, at: usize, share: N) -> Point<N, 3> {
+        let (from, to) = (self.point(at), self.point(self.next(at)));
+        from + (to - from) * share
+    }
+
+    /// The point of a segment or face that is seen at the same place as another one.
+    pub(super) fn under(
+        &self,
+        point: &Point<N, 3>,
+        flat: &Vector<N, 2>,
+        frame: &Frame<N, 3>,
+    ) -> Point<N, 3> {
+        if self.is_segment() {
+            let side = self.side(0);
+            let share = (flat - self.flat(0)).dot(&side) / side.norm_squared();
+            return self.along_side(0, min(max(share, N::ZERO), N::ONE));
         }
-        let way = self.ends[1] - self.ends[0];
-        let along = frame.flat(&self.ends[1]) - frame.flat(&self.ends[0]);
-        self.cosine = along.norm() / way.norm();
-        let is_seen_as_point = max_component(&along) <= frame.tolerance;
-        if is_seen_as_point || self.cosine < N::lit(LEAST_COSINE) {
-            let end = usize::from(which.outward(frame).dot(&way) > N::ZERO);
-            let (id, corner) = (self.ring.ids[end], self.ring.corner(end));
-            self.ring.count = 0;
-            self.ring.push(&corner, [id; 2]);
-            self.ring.id = if is_seen_as_point { self.ring.id } else { id };
+        let along = (self.point(0) - point).dot(&self.normal) / frame.normal().dot(&self.normal);
+        point + frame.normal() * along
+    }
+
+    /// The part of a side that contains a place on its line: one of its corners or itself.
+    pub(super) fn on_side(
+        &self,
+        at: usize,
+        flat: &Vector<N, 2>,
+        tolerance: N,
+    ) -> Option<FeatureId> {
+        let (from, to) = (self.flat(at), self.flat(self.next(at)));
+        let id = |at: usize| self.faces[at / LANES].ids[at % LANES];
+        let near = |end: &Vector<N, 2>| (end - flat).norm() <= N::TWO * tolerance;
+        if near(&from) {
+            return Some(id(at));
+        }
+        if near(&to) {
+            return Some(id(self.next(at)));
+        }
+        let (side, arm) = (to - from, flat - from);
+        let share = arm.dot(&side);
+        (share >= N::ZERO && share <= side.norm_squared()).then(|| self.side_id(at))
+    }
+
+    /// How far the rounded surface is above a point of the core.
+    #[inline]
+    pub(super) fn lift(&self, core: &Point<N, 3>, frame: &Frame<N, 3>) -> N {
+        if self.radius <= N::ZERO {
+            return N::ZERO;
+        }
+        let (room, (top, at)) = (self.which.below_witness(core, frame), &self.top);
+        let away_squared = (frame.flat(core) - at).norm_squared();
+        lifted(self.radius, self.cosine, room, *top, away_squared)
+    }
+
+    /// Places the corners in a frame, simplifies what has no extent there, and computes the sides.
+    #[inline(always)]
+    pub(super) fn project<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        frame: &Frame<N, 3>,
+    ) {
+        let [u, v] = frame.tangents();
+        for face in &self.faces {
+            let local: [V; 3] = load(simd, &face.corners);
+            let points = match self.pose {
+                Some(pose) => placed(simd, pose, &local),
+                None => local,
+            };
+            let arms = minus(&points, &spread(simd, &frame.witness.point1.coords));
+            let zeros = [N::ZERO; LANES];
+            let mut block = RingBlock { points: [zeros; 3], flats: [zeros; 2], inward: [zeros; 2] };
+            for (row, values) in block.points.iter_mut().zip(&points) {
+                values.store(row);
+            }
+            dot(&spread::<S, N, V, 3>(simd, u), &arms).store(&mut block.flats[0]);
+            dot(&spread::<S, N, V, 3>(simd, v), &arms).store(&mut block.flats[1]);
+            self.blocks.push(block);
+        }
+        self.settle(frame);
+        self.find_sides::<S, V>(simd);
+    }
+
+    /// The inward normals of the sides.
+    #[inline(always)]
+    fn find_sides<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S) {
+        let (used, first) = (self.count.div_ceil(LANES), self.flat(0));
+        for at in 0..used {
+            let is_last = at + 1 == used;
+            let after = if is_last { first } else { self.flat((at + 1) * LANES) };
+            let last = if is_last { (self.count - 1) % LANES } else { LANES - 1 };
+            let block = &mut self.blocks[at];
+            let mut next = block.flats;
+            for ((next, row), after) in next.iter_mut().zip(&block.flats).zip(after.iter()) {
+                next[..LANES - 1].copy_from_slice(&row[1..]);
+                next[last] = *after;
+            }
+            let sides: [V; 2] = minus(&load(simd, &next), &load(simd, &block.flats));
+            let turn = V::all(simd, self.turn) / dot(&sides, &sides).sqrt();
+            (-sides[1] * turn).store(&mut block.inward[0]);
+            (sides[0] * turn).store(&mut block.inward[1]);
+        }
+    }
+
+    /// Simplifies what has no extent when seen along the normal.
+    fn settle(&mut self, frame: &Frame<N, 3>) {
+        let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
+        let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
+        if extent.is_none() && self.is_segment() {
+            self.end_on(&outward, tolerance);
+        } else if extent.is_none() && !self.is_point() {
+            self.merge_coincident(tolerance);
+            extent = self.extent(tolerance);
+        }
+        if let Some((area, longest)) = extent {
+            self.turn = if area < N::ZERO { -N::ONE } else { N::ONE };
+            self.cosine = self.normal.dot(&outward);
+            if self.count > 2 && area.abs() <= N::TWO * tolerance * self.side(longest).norm() {
+                self.flatten(longest);
+            }
+        }
+        if self.is_segment() {
+            self.turn = N::ONE;
+            self.cosine = self.side(0).norm() / (self.point(1) - self.point(0)).norm();
+        }
+        if self.count > 1 && self.cosine < N::lit(MIN_COSINE) {
+            self.keep_farthest(&outward);
+        }
+        if self.is_point() {
             self.cosine = N::ONE;
         }
+        if self.radius > N::ZERO {
+            self.find_top(frame);
+        }
     }
 
-    /// The id of the part of a segment or point that the nearest point, which is seen at zero, lies on.
-    pub(super) fn id_at_witness(&self, frame: &Frame<N, 3>) -> FeatureId {
-        let near = |end: &Point<N, 3>| frame.flat(end).norm() <= N::TWO * frame.tolerance;
-        let end = if self.is_segment() { self.ends.iter().position(near) } else { None };
-        end.map_or(self.ring.id, |end| self.ring.ids[end])
+    /// Twice the signed area, and the longest side; `None` where corners coincide.
+    fn extent(&self, tolerance: N) -> Option<(N, usize)> {
+        let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
+        let origin = self.flat(0);
+        let mut from = origin;
+        for at in 0..self.count {
+            let to = self.flat(self.next(at));
+            let side = to - from;
+            // Written so that NaN coincides.
+            let is_long = max_component(&side) > tolerance;
+            if !is_long {
+                return None;
+            }
+            area += cross2(&(from - origin), &side);
+            let squared = side.norm_squared();
+            if squared > most {
+                (longest, most) = (at, squared);
+            }
+            from = to;
+        }
+        Some((area, longest))
     }
 
-    /// The id of the part of a segment that a point on it lies on; `None` if both ends are near.
-    fn part_at(&self, point: &Point<N, 3>, noise: N) -> Option<FeatureId> {
-        let [from, to] = &self.ends;
-        let part = part_at(point, from, &(to - from), noise)?;
-        Some(match part {
-            FeatureId::Vertex(end) => self.ring.ids[end as usize],
-            FeatureId::Edge(_) | FeatureId::Face(_) => self.ring.id,
-        })
+    /// Merges each corner with those that follow it at the same place; the last one's side leads on.
+    fn merge_coincident(&mut self, tolerance: N) {
+        let is_apart =
+            |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
+        let mut kept: SmallVec<[RingCorner<N>; LANES]> = SmallVec::new();
+        for at in 0..self.count {
+            let corner = self.corner(at);
+            match kept.last_mut() {
+                Some(last) if !is_apart(last, &corner) => last.side = corner.side,
+                _ => kept.push(corner),
+            }
+        }
+        while kept.len() > 1 && !is_apart(&kept[0], &kept[kept.len() - 1]) {
+            kept.pop();
+        }
+        self.replace(&kept);
+    }
+
+    /// A segment that is seen as a point is its end nearest to the other solid; one without length has no ends
+    /// and keeps its id.
+    fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
+        let (id, way) = (self.id, self.point(1) - self.point(0));
+        self.keep_farthest(outward);
+        // Written so that NaN has no ends.
+        let has_ends = way.norm() > N::TWO * tolerance;
+        self.id = if has_ends { self.id } else { id };
+    }
+
+    /// Leaves the two ends of a face without width, with the id of its longest side.
+    fn flatten(&mut self, longest: usize) {
+        let (along, from) = (self.side(longest), self.flat(longest));
+        let (mut low, mut high) = (0, 0);
+        for at in 1..self.count {
+            let share = |at: usize| (self.flat(at) - from).dot(&along);
+            low = if share(at) < share(low) { at } else { low };
+            high = if share(at) > share(high) { at } else { high };
+        }
+        self.id = self.side_id(longest);
+        self.replace(&[self.corner(low), self.corner(high)]);
+    }
+
+    /// Leaves the corner nearest to the other solid.
+    fn keep_farthest(&mut self, outward: &Vector<N, 3>) {
+        let height = |at: usize| self.point(at).coords.dot(outward);
+        let higher = |best: usize, at: usize| if height(at) > height(best) { at } else { best };
+        let farthest = self.corner((1..self.count).fold(0, higher));
+        self.id = farthest.id;
+        self.replace(&[farthest]);
+    }
+
+    /// Replaces the corners by some of them.
+    fn replace(&mut self, corners: &[RingCorner<N>]) {
+        for (at, corner) in corners.iter().enumerate() {
+            let (face, lane) = (&mut self.faces[at / LANES], at % LANES);
+            (face.ids[lane], face.sides[lane]) = (corner.id, corner.side);
+            let block = &mut self.blocks[at / LANES];
+            for axis in 0..3 {
+                block.points[axis][lane] = corner.point[axis];
+            }
+            (block.flats[0][lane], block.flats[1][lane]) = (corner.flat.x, corner.flat.y);
+        }
+        self.count = corners.len();
+    }
+
+    /// Finds the corner that is nearest to the other solid, the first of equals.
+    fn find_top(&mut self, frame: &Frame<N, 3>) {
+        let below = |at: usize| self.which.below_witness(&self.point(at), frame);
+        let (mut best, mut least) = (0, below(0));
+        for at in 1..self.count {
+            let other = below(at);
+            (best, least) = if other < least { (at, other) } else { (best, least) };
+        }
+        self.top = (least, self.flat(best));
     }
 }
 
-/// The ids of the parts that the nearest points of two segments lie on; `None` of segments that are nearly
-/// parallel when seen along the normal, and of those without length.
-#[inline]
-pub(super) fn crossing_parts<N: Real>(
-    [first, second]: [&SupportRing<N>; 2],
-    frame: &Frame<N, 3>,
-) -> Option<[FeatureId; 2]> {
-    let (found, normal) = (&frame.witness, frame.normal());
-    let (along1, along2) = (first.ends[1] - first.ends[0], second.ends[1] - second.ends[0]);
-    let across = |along: &Vector<N, 3>| along.norm_squared() - normal.dot(along).powi(2);
-    // Twice the limit of the facets: which side of it rounding puts a pair on is left to them.
-    let least = N::TWO * max(frame.sine, N::lit(16.0) * N::EPSILON);
-    let turn = normal.dot(&cross(&along1, &along2));
-    if turn * turn <= least * least * across(&along1) * across(&along2) {
-        return None;
+/// Points of a frame in that which a pose leads to.
+#[inline(always)]
+fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    pose: &Pose<N, 3>,
+    local: &[V; 3],
+) -> [V; 3] {
+    let mut all = *local;
+    for (row, value) in all.iter_mut().enumerate() {
+        let turned = V::all(simd, pose.rotation[(row, 0)]) * local[0]
+            + V::all(simd, pose.rotation[(row, 1)]) * local[1]
+            + V::all(simd, pose.rotation[(row, 2)]) * local[2];
+        *value = turned + V::all(simd, pose.translation[row]);
     }
-    let noise = N::TWO * frame.tolerance;
-    let core1 = found.point1 - normal * first.radius;
-    let core2 = found.point2 + normal * second.radius;
-    Some([first.part_at(&core1, noise)?, second.part_at(&core2, noise)?])
+    all
 }
 
 /// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.
 pub(super) fn part_of<N: Real, const D: usize>(
     segment: &Segment<N, D>,
     point: &Point<N, D>,
-    noise: N,
+    tolerance: N,
 ) -> Option<FeatureId> {
-    part_at(point, segment.a(), &(segment.b() - segment.a()), noise)
-}
-
-/// [`part_of`], of a segment given by an end and the way to the other.
-fn part_at<N: Real, const D: usize>(
-    point: &Point<N, D>,
-    from: &Point<N, D>,
-    along: &Vector<N, D>,
-    noise: N,
-) -> Option<FeatureId> {
-    let (squared, reached) = (along.norm_squared(), (point - from).dot(along));
-    let is_near = |reach: N| reach <= noise * squared.sqrt();
+    let along = segment.b() - segment.a();
+    let (squared, reached) = (along.norm_squared(), (point - segment.a()).dot(&along));
+    let is_near = |reach: N| reach <= tolerance * squared.sqrt();
     match (is_near(reached), is_near(squared - reached)) {
         (true, true) => None,
         (true, false) => Some(FeatureId::Vertex(0)),
         (false, true) => Some(FeatureId::Vertex(1)),
         (false, false) => Some(FeatureId::Edge(0)),
     }
-}
-
-/// Makes a blank ring the supporting feature of a solid's core, and returns the radius around the core; `None`
-/// of more than eight corners, of polygons without a normal and of half-spaces.
-fn fill<N: Real>(
-    kind: &Kind<'_, N, 3>,
-    direction: &Vector<N, 3>,
-    ring: &mut FaceRing<N>,
-) -> Option<N> {
-    let is_filled = match kind {
-        Kind::Capsule(capsule) => {
-            return fill(&Kind::Segment(capsule.segment()), direction, ring)
-                .map(|_| capsule.radius());
-        }
-        Kind::Rounded(solid) => {
-            let inner = fill(&solid.inner().0, direction, ring);
-            return inner.map(|radius| radius + solid.swelling());
-        }
-        Kind::Segment(segment) => {
-            let ends = [(FeatureId::Vertex(0), *segment.a()), (FeatureId::Vertex(1), *segment.b())];
-            fill_segment(FeatureId::Edge(0), ends, ring)
-        }
-        Kind::Cuboid(cuboid) => fill_cuboid(cuboid, direction, ring),
-        Kind::Polytope(hull) => fill_hull(hull, direction, ring),
-        Kind::Triangle(triangle) => fill_triangle(triangle, direction, ring),
-        Kind::Cylinder(cylinder, _) => fill_round(cylinder.part_shown(direction), ring),
-        Kind::Cone(cone, _) => fill_round(cone.part_shown(direction), ring),
-        _ => false,
-    };
-    if is_filled {
-        return Some(N::ZERO);
-    }
-    let (map, mut feature) = (Geometry(*kind).as_support_map()?, Feature::default());
-    map.core_feature(direction, &mut feature);
-    fill_feature(&feature, ring).then(|| map.rounding())
-}
-
-fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, ring: &mut FaceRing<N>) -> bool {
-    ring.id = id;
-    ring.push(point, [id; 2]);
-    true
-}
-
-fn fill_segment<N: Real>(
-    id: FeatureId,
-    ends: [(FeatureId, Point<N, 3>); 2],
-    ring: &mut FaceRing<N>,
-) -> bool {
-    ring.id = id;
-    for (end, point) in &ends {
-        ring.push(point, [*end, id]);
-    }
-    true
-}
-
-/// False of a flat box, some of whose parts coincide.
-fn fill_cuboid<N: Real>(
-    cuboid: &Cuboid<N, 3>,
-    direction: &Vector<N, 3>,
-    ring: &mut FaceRing<N>,
-) -> bool {
-    let is_flat = cuboid.half_extents().iter().any(|half| *half == N::ZERO);
-    !is_flat
-        && match Cuboid::part_shown(direction) {
-            FeatureId::Face(face) => cuboid.fill_ring(face, ring),
-            edge @ FeatureId::Edge(_) => fill_segment(edge, cuboid.edge(edge), ring),
-            vertex @ FeatureId::Vertex(_) => fill_point(vertex, &cuboid.vertex(vertex), ring),
-        }
-}
-
-fn fill_hull<N: Real>(
-    hull: &Polytope<N, 3>,
-    direction: &Vector<N, 3>,
-    ring: &mut FaceRing<N>,
-) -> bool {
-    match hull.part_shown(direction) {
-        FeatureId::Face(face) => hull.fill_ring(face, ring),
-        edge @ FeatureId::Edge(_) => fill_segment(edge, hull.edge(edge), ring),
-        vertex @ FeatureId::Vertex(_) => fill_point(vertex, &hull.vertex(vertex), ring),
-    }
-}
-
-/// False of thin triangles, and where rounding decides what faces the direction.
-fn fill_triangle<N: Real>(
-    triangle: &Triangle<N, 3>,
-    direction: &Vector<N, 3>,
-    ring: &mut FaceRing<N>,
-) -> bool {
-    match triangle.part_shown(direction) {
-        Some(edge @ FeatureId::Edge(_)) => fill_segment(edge, triangle.edge(edge), ring),
-        Some(vertex @ FeatureId::Vertex(_)) => fill_point(vertex, &triangle.vertex(vertex), ring),
-        Some(FeatureId::Face(_)) => match triangle.face_ring(direction) {
-            Some(face) => {
-                *ring = face;
-                true
-            }
-            None => false,
-        },
-        None => false,
-    }
-}
-
-/// False of a cap.
-fn fill_round<N: Real>(part: Option<RoundPart<N>>, ring: &mut FaceRing<N>) -> bool {
-    match part {
-        Some(RoundPart::Point(id, point)) => fill_point(id, &point, ring),
-        Some(RoundPart::Line(id, ends)) => fill_segment(id, ends, ring),
-        None => false,
-    }
-}
-
-/// Any feature of at most eight corners; a polygon needs a normal.
-fn fill_feature<N: Real>(feature: &Feature<N, 3>, ring: &mut FaceRing<N>) -> bool {
-    let count = feature.vertices.len();
-    let is_small = (1..=FaceRing::<N>::MOST).contains(&count);
-    if !is_small || count > 2 && feature.normal.is_none() {
-        return false;
-    }
-    ring.id = feature.id;
-    ring.normal = feature.normal.unwrap_or_else(Vector::<N, 3>::zeros);
-    for (at, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
-        let side = if count > 2 { feature.side_ids.get(at).copied() } else { None };
-        ring.push(vertex, [id, side.unwrap_or(feature.id)]);
-    }
-    true
 }

@@ -1,71 +1,151 @@
-//! The clipper of rings against facets and their overlap, which build what has more corners.
+//! Faces of any number of corners in space: their contacts are the corners of the common area.
 
-use super::super::along::frame;
-use super::super::{build, clip};
-use super::scene::{Random, Scene, describe, near_pose, solids};
-use crate::math::{Real, Space, Vector, max};
-use crate::query::separation::separation_in_space;
-use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use super::super::build3;
+use super::scene::fact;
+use crate::math::{Isometry3, Point, Pose, Real, Vector};
+use crate::query::{ManifoldRequest, Pair, RawManifold};
+use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
-/// The same features, and places that differ by rounding alone.
-fn is_same<N: Real>(a: &RawPoint<N, 3>, b: &RawPoint<N, 3>, room: N) -> bool {
-    let off = max((a.point1 - b.point1).norm(), (a.distance - b.distance).abs());
-    [a.feature1, a.feature2] == [b.feature1, b.feature2] && off <= room
+type Outline = Vec<[f64; 2]>;
+
+/// A regular polygon about a place, counter-clockwise.
+fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
+    let corner = |at: usize| {
+        let angle = turn + at as f64 * core::f64::consts::TAU / count as f64;
+        let (sine, cosine) = Real::sine_cosine(angle);
+        [x + radius * cosine, y + radius * sine]
+    };
+    (0..count).map(corner).collect()
 }
 
-/// The manifolds of all pairs over a few steps; returns how many the clipper built, and their points.
-fn compare<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> [usize; 2] {
-    let (random, mut counts) = (&mut Random(seed), [0; 2]);
-    for round in 0..60 {
-        let (solids1, solids2) = (solids::<N, 3>(scale, random), solids::<N, 3>(scale, random));
-        // But for balls, which have a builder of their own, and half-spaces.
-        let count = solids1.len() - 1;
-        for (index, first) in solids1[..count].iter().enumerate().skip(1) {
-            for second in &solids2[index..count] {
-                let kinds = [first.geometry().0, second.geometry().0];
-                let mut pose12 = near_pose(kinds, (scale, -0.2, 0.02), random);
-                if round % 3 == 0 {
-                    pose12.rotation.fill_with_identity();
-                }
-                let mut pair = Pair { first: kinds[0], second: kinds[1], pose12 };
-                let sine = if round % 4 == 3 { 0.1 } else { 0.0 };
-                for _ in 0..3 {
-                    let [built, points] = check(&pair, N::lit(sine), scale);
-                    counts = [counts[0] + built, counts[1] + points];
-                    pair.pose12.translation += random.vector::<N, 3>(0.02 * scale);
-                }
+/// The prism over an outline between two heights.
+fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
+    let at = |z: f64| {
+        let point = move |&[x, y]: &[f64; 2]| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
+        outline.iter().map(point)
+    };
+    ConvexHull::from_points(&at(low).chain(at(high)).collect::<Vec<_>>())
+}
+
+/// What of one convex outline lies in another, by the method of Sutherland and Hodgman.
+fn common(one: &Outline, other: &Outline) -> Outline {
+    let mut kept = one.clone();
+    for (at, from) in other.iter().enumerate() {
+        let to = other[(at + 1) % other.len()];
+        let left = |p: &[f64; 2]| {
+            (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0])
+        };
+        let mut next = Outline::new();
+        for (at, a) in kept.iter().enumerate() {
+            let b = kept[(at + 1) % kept.len()];
+            let (in_a, in_b) = (left(a), left(&b));
+            if in_a >= 0.0 {
+                next.push(*a);
+            }
+            if in_a * in_b < 0.0 {
+                let share = in_a / (in_a - in_b);
+                next.push([a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]);
             }
         }
+        kept = next;
     }
-    counts
+    kept
 }
 
-fn check<N: Space<3>>(pair: &Pair<'_, N, 3>, sine: N, scale: f64) -> [usize; 2] {
-    let prediction = N::lit(0.05 * scale);
-    let Some(separation) = separation_in_space(pair, prediction) else { return [0; 2] };
-    let request = ManifoldRequest { prediction, sine, max_points: 64 };
-    let frame = frame(pair, &separation, &request);
-    let (mut found, mut expected) = (RawManifold::default(), RawManifold::default());
-    if !clip::build(pair, &frame, 64, &mut found) {
-        return [0; 2];
+fn manifold<N: Real>(pair: &Pair<'_, N, 3>, points: usize) -> RawManifold<N, 3> {
+    let request = ManifoldRequest { prediction: N::lit(0.05), sine: N::ZERO, max_points: points };
+    let mut out = RawManifold::default();
+    build3(pair, &fact(pair), &request, &mut out);
+    out
+}
+
+/// Each expected corner is a contact and each contact one of them.
+fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, room: f64, what: &str) {
+    let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
+        (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())
+    };
+    let places = found.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    for corner in expected {
+        assert!(
+            places.iter().any(|place| off(place, corner) <= room),
+            "{what}: {corner:?} {found:?}"
+        );
     }
-    build(pair, &frame, (&request, 64), &mut expected);
-    let what = format!("{}\n{separation:?}\n{found:?}\n{expected:?}", describe(pair));
-    assert_eq!(found.points.len(), expected.points.len(), "{what}");
-    let room = N::lit(256.0 * scale) * N::EPSILON;
-    for point in &found.points {
-        assert!(expected.points.iter().any(|other| is_same(point, other, room)), "{what}");
+    for place in &places {
+        assert!(
+            expected.iter().any(|corner| off(place, corner) <= room),
+            "{what}: {place} {found:?}"
+        );
     }
-    assert_eq!(found.points[found.deepest()].distance, separation.distance, "{what}");
-    assert_eq!(found.normal, Vector::<N, 3>::from(separation.normal), "{what}");
-    [1, found.points.len()]
+}
+
+fn prisms<N: Real>(room: f64) {
+    for (count1, count2) in
+        [(3, 3), (4, 7), (5, 8), (8, 8), (6, 9), (9, 9), (12, 17), (24, 3), (40, 33)]
+    {
+        for step in 0..8_u32 {
+            let shift = 0.17 * f64::from(step);
+            let one = regular(count1, [0.0, 0.0], 1.0, 0.1);
+            let other = regular(count2, [shift, 0.31 * shift], 0.9, 0.4 + shift);
+            let (below, above) = (prism::<N>(&one, [-1.0, 0.0]), prism::<N>(&other, [0.0, 1.0]));
+            let pose12 =
+                Pose::from_translation(Vector::<N, 3>::new(N::ZERO, N::ZERO, N::lit(0.01)));
+            let pair = Pair { first: below.geometry().0, second: above.geometry().0, pose12 };
+            let found = manifold(&pair, 128);
+            let what = format!("{count1} and {count2} corners, {shift}");
+            has_corners(&found, &common(&one, &other), room, &what);
+            assert!(
+                found.points.iter().all(|p| (p.distance.as_f64() - 0.01).abs() < room),
+                "{what}"
+            );
+            let ids = found.points.iter().map(|p| (p.feature1, p.feature2)).collect::<Vec<_>>();
+            assert!((1..ids.len()).all(|at| !ids[..at].contains(&ids[at])), "{what}: {ids:?}");
+        }
+    }
 }
 
 #[test]
-fn rings_are_clipped_as_facets_are() {
-    for (seed, scale) in [(1, 1.0), (2, 2.0_f64.powi(20)), (3, 2.0_f64.powi(-30))] {
-        for [built, points] in [compare::<f32>(seed, scale), compare::<f64>(seed + 10, scale)] {
-            assert!(built > 1000 && points > 2000, "{built} manifolds, {points} points");
-        }
+fn faces_of_any_number_of_corners_are_clipped() {
+    prisms::<f32>(1e-5);
+    prisms::<f64>(1e-13);
+}
+
+/// What has no width counts as the segment that it is, and what is a point as that.
+fn degenerate<N: Real>(room: f64) {
+    let p = |x: f64, y: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO);
+    let floor = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::ONE, N::ONE));
+    let flat = |half: [f64; 3]| Cuboid::new(Vector::<N, 3>::from(half.map(N::lit)));
+    let tiny = N::EPSILON.as_f64() * 4.0;
+    let line = vec![[-0.5, 0.0], [0.5, 0.0]];
+    let area = vec![[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+    let tip = Capsule::<N, 3>::try_from_ends(p(-0.5, 0.0), p(0.5, 0.0), N::ZERO).expect("finite");
+    let solids: [(Box<dyn Shape<N, 3>>, &Outline); 7] = [
+        (Box::new(Segment::new(p(-0.5, 0.0), p(0.5, 0.0))), &line),
+        (Box::new(tip), &line),
+        (Box::new(flat([0.5, 0.0, 0.0])), &line),
+        (Box::new(flat([0.5, tiny, tiny])), &line),
+        (Box::new(Triangle::new(p(-0.5, 0.0), p(0.5, 0.0), p(0.1, 0.0))), &line),
+        (Box::new(Triangle::new(p(-0.5, 0.0), p(0.5, 0.0), p(0.1, tiny))), &line),
+        (Box::new(flat([0.5, 0.5, 0.0])), &area),
+    ];
+    for (at, (solid, expected)) in solids.iter().enumerate() {
+        let pose12 = Pose::from_translation(Vector::<N, 3>::new(N::ZERO, N::ZERO, N::lit(1.01)));
+        let pair = Pair { first: floor.geometry().0, second: solid.geometry().0, pose12 };
+        has_corners(&manifold(&pair, 16), expected, room, &format!("solid {at}"));
+        let (first, second, pose12) = (pair.second, pair.first, pose12.inverse());
+        let swapped = manifold(&Pair { first, second, pose12 }, 16);
+        has_corners(&swapped, expected, room, &format!("solid {at} below"));
     }
+    let thin = Cylinder::new(N::HALF, N::lit(tiny));
+    let turn = Isometry3::rotation(Vector::<N, 3>::x() * N::frac_pi_2());
+    let mut pose12 = Pose::from_isometry(&turn);
+    pose12.translation.z = N::lit(1.51);
+    let pair = Pair { first: floor.geometry().0, second: thin.geometry().0, pose12 };
+    has_corners(&manifold(&pair, 16), &vec![[0.0, 0.0]], room, "a needle");
+}
+
+#[test]
+fn what_has_no_width_is_a_segment_or_a_point() {
+    degenerate::<f32>(1e-5);
+    degenerate::<f64>(1e-13);
 }
