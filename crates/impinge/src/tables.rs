@@ -32,9 +32,9 @@ use crate::query::separation::{
 use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
     ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair, Placed,
-    PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness, contact_in_world,
-    contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3, tangents2,
-    tangents3, time_of_pair, witness_feature2, witness_feature3, witness_features2,
+    PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness, between2, build3,
+    contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
+    tangents2, tangents3, time_of_pair, witness_feature2, witness_feature3, witness_features2,
     witness_features3, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
@@ -55,6 +55,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) seen: SeenFn<N, D>,
     /// Contacts along the normal of a triangle; answers false where it makes none.
     pub(crate) on_face: OnFaceFn<N, D>,
+    /// The contact points of a pair whose separation is known.
+    pub(crate) between: BetweenFn<N, D>,
     /// Two shapes are certainly farther apart than a limit.
     pub(crate) are_beyond: fn(&Apart<'_, N, D>, N) -> bool,
     pub(crate) separation_in_world: InWorldFn<N, D>,
@@ -119,6 +121,8 @@ type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &OnFace<N, D>, &mut RawManifold<N, D>) -> bool;
+type BetweenFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type FeaturesFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>) -> [FeatureId; 2];
 type NearestPartFn<N, const D: usize> =
     fn(&dyn CompositeShape<N, D>, &Point<N, D>, bool) -> Option<PartPoint<N, D>>;
@@ -248,6 +252,7 @@ struct Particular<N: Space<D>, const D: usize> {
     witness_feature: FeatureFn<N, D>,
     over: OverFn<N, D>,
     on_face: OnFaceFn<N, D>,
+    between: BetweenFn<N, D>,
     ray_span: fn(Kind<'_, N, D>, &Ray<N, D>) -> Option<Span<N, D>>,
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
@@ -268,6 +273,7 @@ impl<N: Real> Particular<N, 2> {
         witness_feature: witness_feature2,
         over: over2,
         on_face: on_face2,
+        between: between2,
         ray_span: ray2::span,
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
@@ -289,6 +295,7 @@ impl<N: Real> Particular<N, 3> {
         witness_feature: witness_feature3,
         over: over3,
         on_face: on_face3,
+        between: build3,
         ray_span: ray3::span,
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
@@ -315,6 +322,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             witness_feature: particular.witness_feature,
             over: particular.over,
             on_face: particular.on_face,
+            between: particular.between,
             impact: impact_of_pair,
             time_of_impact: time_of_pair,
             nonlinear_impact: impact_of_flight,

@@ -33,9 +33,9 @@ pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub(crate) use manifold_build::{
-    KeptPairs, OnFace, PairQuestion, Solid, contacts2, contacts3, on_face2, on_face3, tangents2,
-    tangents3, update_pairs2, update_pairs3, witness_feature2, witness_feature3, witness_features2,
-    witness_features3,
+    KeptPairs, OnFace, PairQuestion, Solid, between2, build3, contacts2, contacts3, on_face2,
+    on_face3, tangents2, tangents3, update_pairs2, update_pairs3, witness_feature2,
+    witness_feature3, witness_features2, witness_features3,
 };
 pub use manifold_view::{ContactPoint, ManifoldView};
 pub(crate) use pair::{Pair, Placed, canonical};

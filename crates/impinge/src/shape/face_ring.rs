@@ -45,37 +45,16 @@ impl<N: Real> FaceRing<N> {
         (self.ids[at], self.sides[at]) = (id, side);
         self.count += 1;
     }
-
-    /// A corner.
-    #[inline]
-    pub(crate) fn corner(&self, at: usize) -> Point<N, 3> {
-        let [x, y, z] = &self.corners;
-        Point::<N, 3>::new(x[at], y[at], z[at])
-    }
 }
 
 impl<N: Real> Cuboid<N, 3> {
-    /// The number of what [`core_feature`](super::SupportMap::core_feature) answers, if it is a face.
-    pub(crate) fn facing_face(direction: &Vector<N, 3>) -> Option<u32> {
-        match Self::part_shown(direction) {
-            FeatureId::Face(index) => Some(index),
-            FeatureId::Vertex(_) | FeatureId::Edge(_) => None,
-        }
-    }
-
     /// The name of what [`core_feature`](super::SupportMap::core_feature) answers of a box with a volume.
     #[inline]
     pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
         Part::<3>::facing(direction, Tilt::usual()).name()
     }
 
-    /// A face by its number, which there must be, if it has an area.
-    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
-        let mut ring = FaceRing::blank();
-        self.fill_ring(index, &mut ring).then_some(ring)
-    }
-
-    /// [`Self::face_ring_at`] in place of a blank ring; answers whether it is one.
+    /// Makes a blank ring the face with a number; answers whether it has an area.
     pub(crate) fn fill_ring(&self, index: u32, face: &mut FaceRing<N>) -> bool {
         let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
         if (0..3).any(|other| other != axis && self.half_extents()[other] == N::ZERO) {
@@ -96,12 +75,27 @@ mod tests {
     use super::super::{ConvexHull, Feature, Kind, Shape, SupportMap, Triangle};
     use super::*;
 
+    fn corner_of(ring: &FaceRing<f64>, at: usize) -> Point<f64, 3> {
+        let [x, y, z] = &ring.corners;
+        Point::<f64, 3>::new(x[at], y[at], z[at])
+    }
+
+    /// The ring of the part shown, if that is a face.
+    fn ring_of(
+        part: FeatureId,
+        fill: impl FnOnce(u32, &mut FaceRing<f64>) -> bool,
+    ) -> Option<FaceRing<f64>> {
+        let FeatureId::Face(face) = part else { return None };
+        let mut ring = FaceRing::blank();
+        fill(face, &mut ring).then_some(ring)
+    }
+
     /// What a solid shows of itself in a ring and as a feature.
     fn same(ring: Option<FaceRing<f64>>, feature: &Feature<f64, 3>, what: &str) -> bool {
         let is_face = feature.normal.is_some() && feature.vertices.len() > 2;
         assert_eq!(ring.is_some(), is_face, "{what}: {feature:?}");
         let Some(ring) = ring else { return false };
-        let corners: Vec<_> = (0..ring.count).map(|at| ring.corner(at)).collect();
+        let corners: Vec<_> = (0..ring.count).map(|at| corner_of(&ring, at)).collect();
         assert_eq!(corners, feature.vertices.to_vec(), "{what}");
         assert_eq!(ring.ids[..ring.count], feature.vertex_ids[..], "{what}");
         assert_eq!(ring.sides[..ring.count], feature.side_ids[..], "{what}");
@@ -128,18 +122,27 @@ mod tests {
             for half in solids {
                 let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));
                 cuboid.core_feature(&way, &mut feature);
-                let ring = Cuboid::facing_face(&way).and_then(|face| cuboid.face_ring_at(face));
+                let part = Cuboid::<f64, 3>::part_shown(&way);
+                let ring = ring_of(part, |face, ring| cuboid.fill_ring(face, ring));
                 faces += usize::from(same(ring, &feature, "a box"));
             }
             hull.core_feature(&way, &mut feature);
-            let ring = hull.facing_face(&way).and_then(|face| hull.face_ring_at(face));
+            let part = hull.part_shown(&way);
+            let ring = ring_of(part, |face, ring| hull.fill_ring(face, ring));
             faces += usize::from(same(ring, &feature, "a hull"));
             let [a, b, c] = [corners[at % 8], corners[at / 8 % 8], corners[at / 64 % 8]];
             let triangle = Triangle::new(a, b, c);
             triangle.core_feature(&way, &mut feature);
-            faces += usize::from(same(triangle.face_ring(&way), &feature, "a triangle"));
             if let Some(part) = triangle.part_shown(&way) {
                 assert_eq!(part, feature.id, "a triangle shows {feature:?} to {way}");
+                if let FeatureId::Face(_) = part {
+                    let mut ring = FaceRing::blank();
+                    triangle.fill_ring(&way, &mut ring);
+                    let normal = feature.normal.expect("of a face");
+                    assert!((ring.normal - normal).norm() < 1e-14, "{ring:?} {feature:?}");
+                    ring.normal = normal;
+                    faces += usize::from(same(Some(ring), &feature, "a triangle"));
+                }
                 parts[match part {
                     FeatureId::Vertex(_) => 0,
                     FeatureId::Edge(_) => 1,

@@ -110,16 +110,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The part of this name, which there must be.
-    pub(crate) fn fill_named(&self, name: FeatureId, out: &mut Feature<N, D>) {
-        let part = match name {
-            FeatureId::Vertex(vertex) => Part::Vertex(vertex as usize),
-            FeatureId::Edge(side) => Part::Side(side),
-            FeatureId::Face(face) => Part::Face(face),
-        };
-        self.fill(part, out);
-    }
-
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();
@@ -238,27 +228,13 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The number of what [`SupportMap::core_feature`] answers, if it is a face.
-    pub(crate) fn facing_face(&self, direction: &Vector<N, 3>) -> Option<u32> {
-        match self.part_toward(direction, Tilt::usual()) {
-            Part::Face(index) => Some(index),
-            Part::Side(_) | Part::Vertex(_) => None,
-        }
-    }
-
     /// The name of what [`SupportMap::core_feature`] answers.
     #[inline]
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
         Self::named(self.part_toward(direction, Tilt::usual()))
     }
 
-    /// A face by its number, which there must be, if it has few corners.
-    pub(crate) fn face_ring_at(&self, index: u32) -> Option<FaceRing<N>> {
-        let mut ring = FaceRing::blank();
-        self.fill_ring(index, &mut ring).then_some(ring)
-    }
-
-    /// [`Self::face_ring_at`] in place of a blank ring; answers whether it is one.
+    /// Makes a blank ring the face with a number; answers whether it has few corners.
     pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));

@@ -330,21 +330,22 @@ impl<N: Real> Triangle<N, 3> {
         is_side.then(|| side_id::<3>(side))
     }
 
-    /// What [`SupportMap::core_feature`] answers, if it is the face.
-    pub(crate) fn face_ring(&self, direction: &Vector<N, 3>) -> Option<FaceRing<N>> {
-        let span = Span::of(self.corners())?;
-        if !span.lean_squared(direction).is_some_and(|lean| Tilt::usual().admits(lean)) {
-            return None;
-        }
-        let ring = self.ring(direction);
-        let id = FeatureId::Face(u32::from(ring[1] == 2));
-        let mut face = FaceRing::blank();
-        (face.id, face.normal) = (id, span.normal_toward(direction)?);
+    /// Fills a blank ring with the face that a direction sees; of a triangle that is not thin.
+    pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
+        let [a, b, c] = self.corners();
+        let ways = [b - a, c - a];
+        // So that products are numbers.
+        let size = max(max_component(&ways[0]), max_component(&ways[1])).power_of_two_below();
+        let across = cross(&(ways[0] / size), &(ways[1] / size));
+        let is_below = across.dot(direction) < N::ZERO;
+        let normal = unit_or(&across, *direction);
+        face.normal = if is_below { -normal } else { normal };
+        face.id = FeatureId::Face(u32::from(is_below));
+        let ring = if is_below { [0, 2, 1] } else { [0, 1, 2] };
         for at in 0..3 {
-            let (name, point) = self.point(ring[at]);
-            face.push(&point, [name, side_id::<3>(side_between(ring[at], ring[(at + 1) % 3]))]);
+            let (id, point) = self.point(ring[at]);
+            face.push(&point, [id, side_id::<3>(side_between(ring[at], ring[(at + 1) % 3]))]);
         }
-        Some(face)
     }
 }
 

@@ -1,19 +1,16 @@
 //! The manifold of two solids along a normal that is given, not found: contacts with a face of a
 //! surface, whose own edges say nothing.
 //!
-//! The parts of the solids that face each other along the normal are clipped as ever, but there is
-//! no witness that must be among the points: where the parts do not lie above each other, there is
-//! no point at all.
+//! The supporting features along the normal are clipped as ever, but there is no witness that must be among the
+//! points: where the features do not lie above each other, there is no point at all.
 
-use super::facet::{Facet, Which};
-use super::frame::Frame;
-use super::overlap::{Candidates, Overlap};
-use super::triangle_face::OnFace;
-use super::{build, choose, face};
+use super::clip;
+use super::frame::{Candidates, Frame};
+use super::{SegmentPair, tangents3};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max, min};
 use crate::query::{ManifoldRequest, Pair, RawManifold};
-use crate::shape::Geometry;
+use crate::shape::{Geometry, Kind};
 
 /// What a manifold along a given normal is asked for.
 #[derive(Clone, Copy)]
@@ -30,6 +27,20 @@ where
     pub(in crate::query) tolerance: N,
 }
 
+/// What is asked of two solids, one of which is a face of a surface.
+pub(crate) struct OnFace<N: Real, const D: usize> {
+    /// That of the face, unit, from the first solid to the second.
+    pub(crate) normal: Vector<N, D>,
+    /// Points nearer than this by more than rounding are left out, others are as near as this.
+    pub(crate) least: N,
+    /// How near the nearest is, if that is known.
+    pub(crate) nearest: Option<N>,
+    /// Points farther than this are left out.
+    pub(crate) prediction: N,
+    /// Lengths below this are rounding errors of the pair.
+    pub(crate) tolerance: N,
+}
+
 /// Builds the manifold of two convex solids along a normal; empty if no points face each other along
 /// it, or if one of the solids is a half-space.
 pub(in crate::query) fn build_along<N: Space<D>, const D: usize>(
@@ -40,66 +51,11 @@ pub(in crate::query) fn build_along<N: Space<D>, const D: usize>(
 ) {
     let (Along { normal, least, tolerance }, prediction) = (*along, request.prediction);
     let on_face = OnFace { normal, least, nearest: None, prediction, tolerance };
-    if request.sine <= N::ZERO && (N::tables().on_face)(pair, &on_face, out) {
-        return;
-    }
-    build_in_general(pair, along, request, out);
+    (N::tables().on_face)(pair, &on_face, out);
 }
 
-/// [`build_along`] by facets and their overlap, for all solids.
-pub(super) fn build_in_general<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    along: &Along<N, D>,
-    request: &ManifoldRequest<N>,
-    out: &mut RawManifold<N, D>,
-) {
-    out.normal = along.normal;
-    let mut candidates = Candidates::new();
-    let tolerance = fill(pair, along, request, &mut candidates);
-    candidates.retain(|candidate| candidate.distance >= along.least - tolerance);
-    for candidate in &mut candidates {
-        candidate.distance = max(candidate.distance, along.least);
-    }
-    let lowest = candidates.iter().fold(N::INFINITY, |low, c| min(c.distance, low));
-    if candidates.is_empty() {
-        return out.points.clear();
-    }
-    choose(&mut candidates, (lowest, tolerance), request.max_points, out);
-}
-
-/// The candidates along a normal; answers what counts as rounding.
-fn fill<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    along: &Along<N, D>,
-    request: &ManifoldRequest<N>,
-    out: &mut Candidates<N, D>,
-) -> N {
-    let Some(witness) = extremes(pair, &along.normal) else { return N::ZERO };
-    let frame = frame(pair, &witness, request);
-    let (first, second) = facets(pair, &frame);
-    let overlap = Overlap { frame: &frame, first: &first, second: &second };
-    overlap.candidates(out);
-    overlap.candidates_of_points(out);
-    frame.tolerance
-}
-
-/// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
-/// of each solid, and need not face each other. `None` if there is a half-space.
-pub(super) fn extremes<N: Real, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    normal: &Vector<N, D>,
-) -> Option<Separation<N, D>> {
-    let map1 = Geometry(pair.first).as_support_map()?;
-    let map2 = Geometry(pair.second).as_support_map()?;
-    let toward_first = pair.pose12.inverse_vector(&-normal);
-    let point1 = map1.core_support(normal) + normal * map1.rounding();
-    let core2 = pair.pose12.point(&map2.core_support(&toward_first));
-    let distance = normal.dot(&(core2 - point1)) - map2.rounding();
-    Some(Separation { distance, normal: *normal, point1, point2: point1 + normal * distance })
-}
-
-/// Builds the manifold of a pair that is a distance apart along the normal of a face of a surface that is the
-/// first solid, or nearly so; answers false where that is left to [`build_between`].
+/// Builds the manifold of a pair that is a distance apart along the normal of a face of a surface that is one
+/// of the solids, or nearly so; returns false where that is left to [`build_between`].
 pub(in crate::query) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -110,8 +66,7 @@ pub(in crate::query) fn build_on_face<N: Space<D>, const D: usize>(
 ) -> bool {
     let (normal, nearest, prediction) = (*normal, Some(distance), request.prediction);
     let on_face = OnFace { normal, least: -N::INFINITY, nearest, prediction, tolerance };
-    let is_asked = request.sine <= N::ZERO && distance <= prediction;
-    is_asked && (N::tables().on_face)(pair, &on_face, out)
+    distance <= prediction && (N::tables().on_face)(pair, &on_face, out)
 }
 
 /// The manifold of a pair whose separation is known, with as many points as are asked for.
@@ -121,25 +76,80 @@ pub(in crate::query) fn build_between<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
-    build((pair, [None; 2]), &frame(pair, separation, request), (request, request.max_points), out);
+    (N::tables().between)(pair, separation, request, out);
 }
 
-pub(super) fn frame<N: Space<D>, const D: usize>(
-    pair: &Pair<'_, N, D>,
-    witness: &Separation<N, D>,
-    request: &ManifoldRequest<N>,
-) -> Frame<N, D> {
-    Frame::new(pair, witness, request, (N::tables().tangents)(&witness.normal))
+/// The contacts of two solids of the plane along a normal. Where the distance is known the nearest points are,
+/// too, and this returns false.
+pub(crate) fn on_face2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    asked: &OnFace<N, 2>,
+    out: &mut RawManifold<N, 2>,
+) -> bool {
+    let OnFace { normal, least, nearest, prediction, tolerance } = *asked;
+    if nearest.is_some() {
+        return false;
+    }
+    out.points.clear();
+    out.normal = normal;
+    let sides = SegmentPair { pair: *pair, tolerance, prediction };
+    let along = Along { normal, least, tolerance };
+    sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// What the two solids show of themselves along the normal of a frame.
-pub(super) fn facets<N: Space<D>, const D: usize>(
+/// The contacts of two solids along the normal of a face of one of them. Where the distance is known one has to
+/// be that near, else this returns false, as it does of solids whose nearest points are known besides.
+pub(crate) fn on_face3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    asked: &OnFace<N, 3>,
+    out: &mut RawManifold<N, 3>,
+) -> bool {
+    let OnFace { normal, least, nearest, prediction, tolerance } = *asked;
+    let is_served = matches!(
+        (&pair.first, &pair.second),
+        (Kind::Triangle(_), Kind::Cuboid(_) | Kind::Polytope(_))
+            | (Kind::Segment(_) | Kind::Capsule(_), Kind::Triangle(_))
+    );
+    out.points.clear();
+    out.normal = normal;
+    if nearest.is_some() && !is_served {
+        return false;
+    }
+    let Some(planes) = extremes(pair, &normal, nearest) else { return false };
+    let frame = Frame::known(&planes, tangents3(&normal), tolerance, prediction);
+    let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
+    clip::candidates(pair, &frame, &mut candidates);
+    candidates.retain(|candidate| candidate.distance >= least - tolerance);
+    for candidate in &mut candidates {
+        candidate.distance = max(candidate.distance, least);
+        lowest = min(candidate.distance, lowest);
+    }
+    if let Some(nearest) = nearest {
+        if !(lowest <= nearest + tolerance) {
+            return false;
+        }
+        if let Some(deepest) = candidates.iter_mut().find(|found| found.distance == lowest) {
+            deepest.distance = nearest;
+        }
+    }
+    out.points.extend(candidates.iter().map(|candidate| candidate.named(0)));
+    true
+}
+
+/// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
+/// of each solid, and need not face each other. `None` if there is a half-space.
+pub(super) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
-    frame: &Frame<N, D>,
-) -> (Facet<N, D>, Facet<N, D>) {
-    let mut first = Facet::boundary(Which::First);
-    let mut second = Facet::boundary(Which::Second);
-    face(&mut first, pair.first, None, frame);
-    face(&mut second, pair.second, Some(&pair.pose12), frame);
-    (first, second)
+    normal: &Vector<N, D>,
+    nearest: Option<N>,
+) -> Option<Separation<N, D>> {
+    let map1 = Geometry(pair.first).as_support_map()?;
+    let map2 = Geometry(pair.second).as_support_map()?;
+    let point1 = map1.core_support(normal) + normal * map1.rounding();
+    let distance = nearest.unwrap_or_else(|| {
+        let toward_first = pair.pose12.inverse_vector(&-normal);
+        let core2 = pair.pose12.point(&map2.core_support(&toward_first));
+        normal.dot(&(core2 - point1)) - map2.rounding()
+    });
+    Some(Separation { distance, normal: *normal, point1, point2: point1 + normal * distance })
 }

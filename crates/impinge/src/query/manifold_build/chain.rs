@@ -4,11 +4,10 @@
 //! them, bit for bit.
 
 use super::along::extremes;
-use super::facet::Which;
-use super::frame::{Candidate, Frame};
-use super::overlap::Candidates;
+use super::frame::{Candidate, Candidates, Frame, Which};
 use super::stretch::{Shared, Stretch};
-use super::{Along, Pair, add_witness, ball, deepest, tangents2};
+use super::witness::beside_ball;
+use super::{Along, Pair, add_witness, deepest, tangents2};
 use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::query::RawPoint;
@@ -27,7 +26,7 @@ impl<N: Real> SegmentPair<'_, N> {
     /// The part of the chain's segment that a separation's point lies on.
     pub(in crate::query) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
-            return ball::known_part(&self.pair, found);
+            return beside_ball(&self.pair, found);
         }
         let frame = self.frame(found);
         let own = match self.pair.second {
@@ -47,7 +46,7 @@ impl<N: Real> SegmentPair<'_, N> {
             return Some(());
         }
         if let Kind::Ball(_) = self.pair.first {
-            let touched = ball::known_part(&self.pair, witness)?;
+            let touched = beside_ball(&self.pair, witness)?;
             visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).named(0));
             return Some(());
         }
@@ -77,7 +76,7 @@ impl<N: Real> SegmentPair<'_, N> {
     where
         N: Space<2>,
     {
-        let frame = self.frame(&extremes(&self.pair, &along.normal)?);
+        let frame = self.frame(&extremes(&self.pair, &along.normal, None)?);
         let (first, second) = (self.first(&frame)?, self.second(&frame)?);
         let shared = Shared { frame: &frame, first: &first, second: &second };
         let (mut candidates, tolerance) = (Candidates::new(), self.tolerance);
@@ -112,7 +111,7 @@ impl<N: Real> SegmentPair<'_, N> {
     }
 
     fn frame(&self, witness: &Separation<N, 2>) -> Frame<N, 2> {
-        Frame::known(witness, tangents2(&witness.normal), (self.tolerance, self.prediction))
+        Frame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
     }
 
     #[inline]

@@ -1,12 +1,70 @@
 //! The plane of contact: what all points of one manifold are measured against.
 
+use smallvec::SmallVec;
+
 use super::super::{ManifoldRequest, Pair, RawPoint};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, max};
+use crate::math::{Point, Real, Vector, max, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
 /// How many rounding errors of the pair's size are told from nothing.
 pub(super) const ROUNDING_ERRORS: f64 = 16.0;
+
+/// Supporting features that tilt more than 60° out of the plane of contact count as their nearest point.
+pub(super) const MIN_COSINE: f64 = 0.5;
+
+/// What a manifold is chosen from.
+pub(super) type Candidates<N, const D: usize> = SmallVec<[Candidate<N, D>; 8]>;
+
+/// Which of the two solids of a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Which {
+    First,
+    Second,
+}
+
+impl Which {
+    /// The direction in which this solid faces the other.
+    #[inline(always)]
+    pub(super) fn outward<N: Real, const D: usize>(self, frame: &Frame<N, D>) -> Vector<N, D> {
+        match self {
+            Self::First => frame.normal(),
+            Self::Second => -frame.normal(),
+        }
+    }
+
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    #[inline]
+    pub(super) fn below_witness<N: Real, const D: usize>(
+        self,
+        point: &Point<N, D>,
+        frame: &Frame<N, D>,
+    ) -> N {
+        let height = frame.height(point);
+        match self {
+            Self::First => -height,
+            Self::Second => height - frame.witness.distance,
+        }
+    }
+}
+
+/// How far the surface at a radius around a flat feature is above a point of the feature, along the normal.
+///
+/// `cosine` is that of the angle by which the feature tilts, `room` and `top` how far the point and the
+/// feature's corner nearest to the other solid are below the supporting plane, `away_squared` the square of
+/// the way from that corner to the point across the normal. Above the flat part that is `radius / cosine`,
+/// above the corner the ball around it; nothing rises above the supporting plane. Exact for capsules, and
+/// where the surface is parallel to the feature; between the two a rounded polygon may lie a little lower.
+#[inline]
+pub(super) fn lifted<N: Real>(radius: N, cosine: N, room: N, top: N, away_squared: N) -> N {
+    let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+    let lift = if away_squared < turns_squared {
+        room - top + (radius * radius - away_squared).sqrt()
+    } else {
+        radius / cosine
+    };
+    max(min(lift, room), N::ZERO)
+}
 
 /// The plane through the witness perpendicular to the normal, and what the request admits.
 ///
@@ -69,7 +127,8 @@ impl<N: Real, const D: usize> Frame<N, D> {
     pub(super) fn known(
         witness: &Separation<N, D>,
         tangents: [Vector<N, D>; 2],
-        (tolerance, prediction): (N, N),
+        tolerance: N,
+        prediction: N,
     ) -> Self {
         Self { witness: *witness, tangents, tolerance, prediction, sine: N::ZERO }
     }

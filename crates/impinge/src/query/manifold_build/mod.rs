@@ -1,53 +1,39 @@
 //! From the one fact about a pair to a manifold: the points that delimit the area of contact.
 //!
 //! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
-//! with the part of their core that faces the other; seen along the normal these are points, segments
-//! and convex polygons of the plane (module [`mod@facet`]), and the corners of what they have in common
-//! ([`overlap`]) are the candidates. [`half_space`] is the case of a face without end. The witness is
+//! with their supporting features; seen along the normal these are points, segments and convex polygons of the
+//! plane ([`ring`]), and the corners of what they have in common ([`clip`]) are the candidates. In the plane
+//! that is an interval ([`stretch`]), and over a [`half_space`] every corner counts. The witness is
 //! always represented, so the smallest distance of a manifold is that of the separation exactly; with
 //! a ball it is all there is.
 //! At last [`reduce`] chooses a few candidates and [`names`] numbers them.
-//!
-//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of
-//! the other, which makes one solid the reference; here both are treated alike, see [`overlap`].
 
 mod along;
-mod ball;
 mod batch;
-mod capsule_face;
 mod chain;
-mod faces;
-mod facet;
-mod fences;
+mod clip;
 mod frame;
 mod half_space;
-mod level_corners;
 mod names;
-mod overlap;
 mod patch;
 mod patch_line;
 mod patch_outline;
 mod patch_shelves;
 mod reduce;
-mod rod_face;
-mod segments;
+mod ring;
 mod stretch;
+mod supporting;
 #[cfg(test)]
 pub(super) mod tests;
-mod triangle_face;
-#[cfg(test)]
-mod triangle_face_tests;
 mod witness;
 
 pub(super) use self::along::{Along, build_along, build_between, build_on_face};
+pub(crate) use self::along::{OnFace, on_face2, on_face3};
 pub(crate) use self::batch::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
 pub(super) use self::chain::SegmentPair;
-use self::facet::{Facet, Which};
-use self::frame::{Candidate, Frame};
-use self::overlap::{Candidates, Overlap};
+use self::frame::{Candidate, Candidates, Frame};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
 pub(super) use self::patch_line::merge_in_plane;
-pub(crate) use self::triangle_face::{OnFace, on_face2, on_face3};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
@@ -55,8 +41,8 @@ pub(crate) use self::witness::{
 use super::separation::{separation_in_plane, separation_in_space};
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
-use crate::math::{Pose, Real, Space, Vector, orthonormal_basis, perp};
-use crate::shape::{FeatureId, Geometry, Kind};
+use crate::math::{Real, Space, Vector, orthonormal_basis, perp};
+use crate::shape::{FeatureId, Kind};
 
 /// Builds the manifold of two solids in the plane: at most two points.
 ///
@@ -69,10 +55,33 @@ pub(crate) fn build2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
+    build_in_plane(pair, separation, request, request.max_points.min(2), out);
+}
+
+/// As [`build2`], with as many points as are asked for.
+pub(crate) fn between2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    build_in_plane(pair, separation, request, request.max_points, out);
+}
+
+fn build_in_plane<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    limit: usize,
+    out: &mut RawManifold<N, 2>,
+) {
+    if build_one_sided(pair, separation, request, limit, out) {
+        return;
+    }
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
-    let limits = (request, request.max_points.min(2));
-    if !stretch::build(pair, &frame, limits, out) {
-        build((pair, [None; 2]), &frame, limits, out);
+    if !stretch::build(pair, &frame, (request, limit), out) {
+        // A user's solid with a supporting feature that is neither a point nor a side.
+        settle_witness(pair, separation, out);
     }
 }
 
@@ -85,14 +94,46 @@ pub(crate) fn build3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
-    let limits = (request, request.max_points);
-    if rod_face::build(pair, &frame, limits, out) {
-        return;
+    if !build_one_sided(pair, separation, request, request.max_points, out) {
+        let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
+        clip::build(pair, &frame, request.max_points, out);
     }
-    if let Err(shown) = faces::build(pair, &frame, limits, out) {
-        build((pair, shown), &frame, limits, out);
+}
+
+/// Builds the manifold of a pair that is too far apart, of a ball, the first solid, or of a half-space, the
+/// second; false of others.
+fn build_one_sided<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    request: &ManifoldRequest<N>,
+    limit: usize,
+    out: &mut RawManifold<N, D>,
+) -> bool {
+    let distance = separation.distance;
+    // Written so that NaN is too far.
+    let is_near = distance <= request.prediction && distance.is_finite_number();
+    if !is_near {
+        out.points.clear();
+    } else if let Kind::Ball(_) = pair.first {
+        settle_witness(pair, separation, out);
+    } else if let Kind::Plane(_) = pair.second {
+        let tangents = (N::tables().tangents)(&separation.normal);
+        half_space::build(pair, &Frame::new(pair, separation, request, tangents), limit, out);
+    } else {
+        return false;
     }
+    true
+}
+
+/// The nearest points are all there is.
+fn settle_witness<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    out: &mut RawManifold<N, D>,
+) {
+    out.normal = separation.normal;
+    let parts = (N::tables().witness_features)(pair, separation);
+    names::settle_alone(&Candidate::alone(separation, parts), out);
 }
 
 /// Two directions that complete a normal of space to a right-handed basis.
@@ -114,13 +155,9 @@ pub(crate) fn contacts3<N: Space<3>>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    if let Kind::Ball(_) = pair.first {
-        return ball::build(pair, separation_in_space(pair, request.prediction), out);
+    if !batch::build3(pair, request, out) {
+        contacts_of_separation3(pair, request, out);
     }
-    if batch::build3(pair, request, out) || level_corners::build(pair, request, out) {
-        return;
-    }
-    contacts_of_separation3(pair, request, out);
 }
 
 /// The manifold of a pair in space from its separation.
@@ -130,13 +167,7 @@ fn contacts_of_separation3<N: Real>(
     out: &mut RawManifold<N, 3>,
 ) {
     match separation_in_space(pair, request.prediction) {
-        Some(separation) => match segments::crossing_parts(pair, &separation, request) {
-            Some(parts) => {
-                out.normal = separation.normal;
-                names::settle_alone(&Candidate::alone(&separation, parts), out);
-            }
-            None => build3(pair, &separation, request, out),
-        },
+        Some(separation) => build3(pair, &separation, request, out),
         None => out.points.clear(),
     }
 }
@@ -147,9 +178,6 @@ pub(crate) fn contacts2<N: Space<2>>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    if let Kind::Ball(_) = pair.first {
-        return ball::build(pair, separation_in_plane(pair, request.prediction), out);
-    }
     if !batch::build2(pair, request, out) {
         contacts_of_separation2(pair, request, out);
     }
@@ -167,36 +195,13 @@ fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// The manifold by facets. The parts that the solids show may be known.
-fn build<N: Real, const D: usize>(
-    (pair, shown): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
-    frame: &Frame<N, D>,
-    (request, limit): (&ManifoldRequest<N>, usize),
-    out: &mut RawManifold<N, D>,
-) {
-    let distance = frame.witness.distance;
-    if !(distance <= request.prediction && distance.is_finite_number()) {
-        out.points.clear();
-        return;
-    }
-    out.normal = frame.normal();
-    if let Kind::Ball(_) = pair.first {
-        let touched = ball::known_part(pair, &frame.witness)
-            .unwrap_or_else(|| ball::shown_at_witness(pair, frame));
-        let parts = [FeatureId::Face(0), touched];
-        return names::settle_alone(&Candidate::alone(&frame.witness, parts), out);
-    }
-    let mut candidates = Candidates::new();
-    fill((pair, shown), frame, &mut candidates);
-    choose(&mut candidates, (distance, frame.tolerance), limit, out);
-}
-
 /// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. The
 /// nearest stands for the witness and takes the separation's `distance`, which it has but for
 /// rounding.
 fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
-    (distance, tolerance): (N, N),
+    distance: N,
+    tolerance: N,
     limit: usize,
     out: &mut RawManifold<N, D>,
 ) {
@@ -205,7 +210,7 @@ fn choose<N: Real, const D: usize>(
     }
     names::inherit(&out.points, candidates);
     let level = distance + tolerance;
-    let chosen = chosen(candidates, (level, tolerance), limit.max(1));
+    let chosen = chosen(candidates, level, tolerance, limit.max(1));
     let deepest = deepest_of(chosen.len(), level, |at| {
         let candidate = &candidates[chosen[at]];
         (candidate.kept_id.is_some(), candidate.distance)
@@ -218,7 +223,8 @@ fn choose<N: Real, const D: usize>(
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
-    (level, tolerance): (N, N),
+    level: N,
+    tolerance: N,
     limit: usize,
 ) -> reduce::Indices {
     if candidates.len() <= limit {
@@ -226,60 +232,6 @@ fn chosen<N: Real, const D: usize>(
     }
     let seen = candidates.iter().map(|c| (c.flat, c.distance, c.kept_id.is_some()));
     reduce::chosen(&mut reduce::projected(seen, level), limit, tolerance)
-}
-
-/// The corners of the common area, and the witness if it is none of them.
-fn fill<N: Real, const D: usize>(
-    (pair, [shown1, shown2]): (&Pair<'_, N, D>, [Option<FeatureId>; 2]),
-    frame: &Frame<N, D>,
-    out: &mut Candidates<N, D>,
-) {
-    let mut first = Facet::boundary(Which::First);
-    let mut second = Facet::boundary(Which::Second);
-    known_face(&mut first, (pair.first, shown1), None, frame);
-    known_face(&mut second, (pair.second, shown2), Some(&pair.pose12), frame);
-    if let Kind::Plane(_) = pair.second {
-        half_space::candidates(pair.first, &first, frame, out);
-    } else {
-        Overlap { frame, first: &first, second: &second }.candidates(out);
-    }
-    let limit = frame.witness.distance + frame.tolerance;
-    if !out.iter().any(|candidate| candidate.distance <= limit) {
-        let features = [at_witness(&first, frame), at_witness(&second, frame)];
-        add_witness(frame, features, out);
-    }
-}
-
-/// [`face`], where the part that a hull shows may be known.
-#[inline]
-fn known_face<N: Real, const D: usize>(
-    facet: &mut Facet<N, D>,
-    (kind, shown): (Kind<'_, N, D>, Option<FeatureId>),
-    pose: Option<&Pose<N, D>>,
-    frame: &Frame<N, D>,
-) {
-    match (kind, shown) {
-        (Kind::Polytope(hull), Some(part)) => facet.part(hull, part, pose, frame),
-        _ => face(facet, kind, pose, frame),
-    }
-}
-
-/// Makes a facet what a solid shows of itself; that of a half-space stays its boundary.
-#[inline]
-fn face<N: Real, const D: usize>(
-    facet: &mut Facet<N, D>,
-    kind: Kind<'_, N, D>,
-    pose: Option<&Pose<N, D>>,
-    frame: &Frame<N, D>,
-) {
-    if let Some(map) = Geometry(kind).as_support_map() {
-        facet.face(map, pose, frame);
-    }
-}
-
-/// The part of a solid that the witness lies on.
-fn at_witness<N: Real, const D: usize>(facet: &Facet<N, D>, frame: &Frame<N, D>) -> FeatureId {
-    facet.locate(&Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(facet.id)
 }
 
 /// Adds the witness, in place of any candidate with the same name unless the name is that of two

@@ -14,12 +14,9 @@
 //! ```
 //!
 //! The contacts are the ends of the overlap that the request admits, an angle being a number in that test
-//! ([`Frame::admit`]), and the witness where none of them is as near. Composites have the same from
-//! [`Facet`](super::facet::Facet) and [`Overlap`](super::overlap::Overlap), bit for bit.
+//! ([`Frame::admit`]), and the witness where none of them is as near.
 
-use super::facet::{Corner, Which, lifted};
-use super::frame::{Candidate, Frame};
-use super::overlap::Candidates;
+use super::frame::{Candidate, Candidates, Frame, Which, lifted};
 use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
@@ -54,8 +51,16 @@ pub(super) fn build<N: Real>(
     if !candidates.iter().any(|candidate| candidate.distance <= level) {
         add_witness(frame, [first.at_witness(frame), second.at_witness(frame)], &mut candidates);
     }
-    choose(&mut candidates, (distance, frame.tolerance), limit, out);
+    choose(&mut candidates, distance, frame.tolerance, limit, out);
     true
+}
+
+/// An end of a side.
+#[derive(Clone, Copy)]
+pub(super) struct Corner<N: Real, const D: usize> {
+    pub(super) point: Point<N, D>,
+    pub(super) flat: Vector<N, 2>,
+    pub(super) id: FeatureId,
 }
 
 /// What a solid shows of itself: a side, or a point.
@@ -103,7 +108,7 @@ impl<N: Real> Stretch<N> {
     ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
             let point = pose.map_or(vertex, |pose| placed(pose, &vertex));
-            Corner { point, flat: frame.flat(&point), id, side: shown.id }
+            Corner { point, flat: frame.flat(&point), id }
         };
         let mut stretch = Self {
             which,
@@ -187,7 +192,7 @@ impl<N: Real> Stretch<N> {
         Some(end.map_or(self.id, |end: usize| self.corners[end].id))
     }
 
-    /// The part that contains a place, as a facet's [`locate`](super::facet::Facet::locate).
+    /// The part that contains a place: an end or the side; `None` beyond the ends.
     pub(super) fn locate(&self, place: N, tolerance: N) -> Option<FeatureId> {
         let [from, to] = &self.corners;
         let near = |corner: &Corner<N, 2>| (corner.flat.x - place).abs() <= N::TWO * tolerance;
@@ -206,7 +211,7 @@ impl<N: Real> Stretch<N> {
         }
         let room = self.which.below_witness(core, frame);
         let (radius, away) = (self.rounding, frame.flat(core) - self.top.1);
-        lifted((radius, self.cosine), (room, self.top.0), &away)
+        lifted(radius, self.cosine, room, self.top.0, away.norm_squared())
     }
 }
 

@@ -175,7 +175,7 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
             features: features[which],
             kept_id: None,
         });
-        choose(&mut candidates, (self.gap[lane], self.tolerance[lane]), 2, raw);
+        choose(&mut candidates, self.gap[lane], self.tolerance[lane], 2, raw);
     }
 }
 

@@ -1,12 +1,10 @@
 //! What every manifold must be, over random poses and in scenes worked out by hand.
 
-mod faces;
+mod clip;
+mod half_space;
 mod lasting;
-mod level_corners;
-mod overlap;
 mod properties;
 mod resting;
 mod rods;
 pub(in crate::query) mod scene;
 mod side_pairs;
-mod stretch;

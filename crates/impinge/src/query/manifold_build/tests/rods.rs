@@ -1,16 +1,13 @@
-//! Segments and capsules against solids with flat faces, cylinders and cones: closed forms and faces in one go
-//! against the general algorithm and the general builder.
+//! Segments and capsules against solids with flat faces, cylinders and cones: closed forms against the general
+//! algorithm.
 
-use super::super::along::frame;
-use super::super::{build, rod_face};
-use super::scene::{Random, Scene, describe, request};
+use super::scene::{Random, Scene, describe};
 use crate::convex::{self, Separation};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::query::Pair;
 use crate::query::separation::separation_in_space;
-use crate::query::{Pair, RawManifold};
 use crate::shape::{
-    Capsule, Cone, ConvexHull, Cuboid, Cylinder, FeatureId, Geometry, Kind, Rounded, Segment,
-    Shape, Triangle,
+    Capsule, Cone, ConvexHull, Cuboid, Cylinder, Geometry, Kind, Rounded, Segment, Shape, Triangle,
 };
 
 type Solid<N> = Box<dyn Shape<N, 3>>;
@@ -128,86 +125,6 @@ fn separations_are_those_of_the_general_algorithm() {
     for (seed, scale) in [(1, 1.0), (2, 2.0_f64.powi(20)), (3, 2.0_f64.powi(-30))] {
         separations::<f32>(seed, scale);
         separations::<f64>(seed + 10, scale);
-    }
-}
-
-/// A point by its names, its place and its distance.
-type Told<N> = ([FeatureId; 2], Point<N, 3>, N);
-
-fn told<N: Real>(raw: &RawManifold<N, 3>) -> Vec<Told<N>> {
-    let point = |point: &crate::query::RawPoint<N, 3>| {
-        ([point.feature1, point.feature2], point.point1, point.distance)
-    };
-    raw.points.iter().map(point).collect()
-}
-
-fn is_same<N: Real>(a: &Told<N>, b: &Told<N>, room: N) -> bool {
-    a.0 == b.0 && max((a.1 - b.1).norm(), (a.2 - b.2).abs()) <= room
-}
-
-/// The one point of a manifold is among those of another, of which the rest are nearly the same: the witness of
-/// two curved solids is known to the root of the rounding, so that the general builder may put another beside it.
-fn is_witness_of<N: Real>(quick: &[Told<N>], general: &[Told<N>], scale: f64) -> bool {
-    let near = N::lit(4.0 * scale) * N::EPSILON.sqrt();
-    let [witness] = quick else { return false };
-    general.iter().any(|point| is_same(witness, point, near))
-        && general.iter().all(|point| (point.1 - witness.1).norm() <= near)
-}
-
-/// The second of a pair is a triangle that plainly shows no face.
-fn is_beside_triangle<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>) -> bool {
-    let Kind::Triangle(triangle) = pair.second else { return false };
-    let toward = pair.pose12.inverse_vector(&-found.normal);
-    let part = triangle.part_shown(&toward);
-    part.is_some_and(|part| !matches!(part, FeatureId::Face(_)))
-}
-
-/// From the same separation; answers how often there was a manifold in one go, and how many points.
-fn manifolds<N: Scene<3> + Space<3>>(seed: u64, scale: f64) -> (usize, usize) {
-    let (mut built, mut points) = (0, 0);
-    let asked = request::<N>(0.05 * scale, 0.0);
-    visit::<N>((seed, scale), |pair, round, random| {
-        let (mut quick, mut general) = (RawManifold::default(), RawManifold::default());
-        for _ in 0..3 {
-            let Some(found) = separation_in_space(pair, asked.prediction) else { return };
-            let frame = frame(pair, &found, &asked);
-            build((pair, [None; 2]), &frame, (&asked, 4), &mut general);
-            if !rod_face::build(pair, &frame, (&asked, 4), &mut quick) {
-                quick = general.clone();
-                continue;
-            }
-            built += 1;
-            points += quick.points.len();
-            let ids = |raw: &RawManifold<N, 3>| raw.points.iter().map(|p| p.id).collect::<Vec<_>>();
-            let are_alike = if is_round(pair) {
-                is_witness_of(&told(&quick), &told(&general), scale)
-            } else {
-                quick.points.len() == general.points.len()
-                    && ids(&quick) == ids(&general)
-                    && told(&quick)
-                        .iter()
-                        .zip(&told(&general))
-                        .all(|(a, b)| is_same(a, b, room(pair, scale)))
-            };
-            let what = describe(pair);
-            assert!(are_alike, "round {round}, {what}\n{found:?}\n{quick:?}\n{general:?}");
-            if is_beside_triangle(pair, &found) {
-                // Nothing is drawn, so that each seed has the same pairs as ever.
-                continue;
-            }
-            pair.pose12.translation += random.vector::<N, 3>(0.01 * scale);
-        }
-    });
-    (built, points)
-}
-
-#[test]
-fn points_are_those_of_the_general_builder() {
-    for (seed, scale) in [(4, 1.0), (5, 2.0_f64.powi(20)), (6, 2.0_f64.powi(-30))] {
-        let counts = [manifolds::<f32>(seed, scale), manifolds::<f64>(seed + 10, scale)];
-        for (built, points) in counts {
-            assert!(built > 2500 && points > 3000, "{built} manifolds, {points} points");
-        }
     }
 }
 

@@ -1,0 +1,408 @@
+//! The supporting feature of a solid in space as a ring of corners, seen along the normal of a frame.
+//!
+//! A point has one corner, a segment two and one side, a face three or more and as many sides. Corners lie in
+//! blocks of eight lanes, of which nearly all rings need one. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
+//! Corners that coincide when seen along the normal are merged; a face without area counts as a segment, and
+//! what tilts too much as its nearest corner.
+
+use smallvec::{SmallVec, smallvec};
+
+use super::frame::{Frame, MIN_COSINE, Which, lifted};
+use super::supporting::{FaceBlocks, supporting_feature};
+use crate::math::lanes::{dot, load, minus, spread};
+use crate::math::simd::Simd;
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, min};
+use crate::shape::{FaceRing, FeatureId, Kind, Segment};
+
+/// How many corners are side by side.
+pub(super) const LANES: usize = FaceRing::<f32>::MOST;
+
+/// A corner, and the side that leads from it to the next.
+#[derive(Clone, Copy)]
+pub(super) struct RingCorner<N: Real> {
+    pub(super) point: Point<N, 3>,
+    /// Where it is seen along the normal.
+    pub(super) flat: Vector<N, 2>,
+    pub(super) id: FeatureId,
+    pub(super) side: FeatureId,
+}
+
+/// Up to eight corners by coordinate; what is beyond the last one means nothing.
+pub(super) struct RingBlock<N: Real> {
+    /// In the frame of the first solid, and seen along the normal.
+    points: [[N; LANES]; 3],
+    pub(super) flats: [[N; LANES]; 2],
+    /// The unit normals of the sides, inward.
+    pub(super) inward: [[N; LANES]; 2],
+}
+
+/// A supporting feature with the radius around it.
+pub(super) struct SupportRing<'a, N: Real> {
+    which: Which,
+    /// Of the solid in the frame of the first one; `None` of the first itself.
+    pose: Option<&'a Pose<N, 3>>,
+    pub(super) id: FeatureId,
+    /// Of corners.
+    pub(super) count: usize,
+    faces: FaceBlocks<N>,
+    pub(super) blocks: SmallVec<[RingBlock<N>; 1]>,
+    /// The outward normal of a face in the frame of the first solid; of others it means nothing.
+    normal: Vector<N, 3>,
+    /// By the sense of rotation, as seen along the normal, 1 or -1.
+    turn: N,
+    radius: N,
+    /// Between the normals of the frame and of a face, or between a segment and the plane of contact.
+    cosine: N,
+    /// Of a rounded solid the corner nearest to the other: how far below the supporting plane, and where it
+    /// is seen.
+    top: (N, Vector<N, 2>),
+}
+
+impl<'a, N: Real> SupportRing<'a, N> {
+    /// The feature of one solid of a pair, which is still to be [projected](Self::project).
+    pub(super) fn new(
+        which: Which,
+        kind: Kind<'_, N, 3>,
+        pose: Option<&'a Pose<N, 3>>,
+        frame: &Frame<N, 3>,
+    ) -> Self {
+        let outward = which.outward(frame);
+        let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
+        let mut faces: FaceBlocks<N> = smallvec![FaceRing::blank()];
+        let radius = supporting_feature(kind, &direction, &mut faces);
+        Self {
+            which,
+            pose,
+            id: faces[0].id,
+            count: faces.iter().map(|face| face.count).sum(),
+            normal: pose.map_or(faces[0].normal, |pose| pose.vector(&faces[0].normal)),
+            faces,
+            blocks: SmallVec::new(),
+            turn: N::ONE,
+            radius,
+            cosine: N::ONE,
+            top: (N::ZERO, Vector::<N, 2>::zeros()),
+        }
+    }
+
+    #[inline]
+    pub(super) const fn is_point(&self) -> bool {
+        self.count == 1
+    }
+
+    #[inline]
+    pub(super) const fn is_segment(&self) -> bool {
+        self.count == 2
+    }
+
+    /// None of a point, one of a segment, else one for each corner.
+    #[inline]
+    pub(super) const fn side_count(&self) -> usize {
+        if self.count < 3 { self.count - 1 } else { self.count }
+    }
+
+    /// The corner after a corner.
+    #[inline]
+    pub(super) const fn next(&self, at: usize) -> usize {
+        if at + 1 < self.count { at + 1 } else { 0 }
+    }
+
+    #[inline]
+    pub(super) fn point(&self, at: usize) -> Point<N, 3> {
+        let [x, y, z] = &self.blocks[at / LANES].points;
+        Point::<N, 3>::new(x[at % LANES], y[at % LANES], z[at % LANES])
+    }
+
+    #[inline]
+    pub(super) fn flat(&self, at: usize) -> Vector<N, 2> {
+        let [x, y] = &self.blocks[at / LANES].flats;
+        Vector::<N, 2>::new(x[at % LANES], y[at % LANES])
+    }
+
+    #[inline]
+    pub(super) fn corner(&self, at: usize) -> RingCorner<N> {
+        let ring = &self.faces[at / LANES];
+        let (id, side) = (ring.ids[at % LANES], ring.sides[at % LANES]);
+        RingCorner { point: self.point(at), flat: self.flat(at), id, side }
+    }
+
+    /// The id of the side from a corner to the next.
+    #[inline]
+    pub(super) fn side_id(&self, at: usize) -> FeatureId {
+        if self.is_segment() { self.id } else { self.faces[at / LANES].sides[at % LANES] }
+    }
+
+    /// From a corner to the next, seen along the normal.
+    #[inline]
+    pub(super) fn side(&self, at: usize) -> Vector<N, 2> {
+        self.flat(self.next(at)) - self.flat(at)
+    }
+
+    /// The point of a side at a share of the way between its ends.
+    #[inline]
+    pub(super) fn along_side(&self, at: usize, share: N) -> Point<N, 3> {
+        let (from, to) = (self.point(at), self.point(self.next(at)));
+        from + (to - from) * share
+    }
+
+    /// The point of a segment or face that is seen at the same place as another one.
+    pub(super) fn under(
+        &self,
+        point: &Point<N, 3>,
+        flat: &Vector<N, 2>,
+        frame: &Frame<N, 3>,
+    ) -> Point<N, 3> {
+        if self.is_segment() {
+            let side = self.side(0);
+            let share = (flat - self.flat(0)).dot(&side) / side.norm_squared();
+            return self.along_side(0, min(max(share, N::ZERO), N::ONE));
+        }
+        let along = (self.point(0) - point).dot(&self.normal) / frame.normal().dot(&self.normal);
+        point + frame.normal() * along
+    }
+
+    /// The part of a side that contains a place on its line: one of its corners or itself.
+    pub(super) fn on_side(
+        &self,
+        at: usize,
+        flat: &Vector<N, 2>,
+        tolerance: N,
+    ) -> Option<FeatureId> {
+        let (from, to) = (self.flat(at), self.flat(self.next(at)));
+        let id = |at: usize| self.faces[at / LANES].ids[at % LANES];
+        let near = |end: &Vector<N, 2>| (end - flat).norm() <= N::TWO * tolerance;
+        if near(&from) {
+            return Some(id(at));
+        }
+        if near(&to) {
+            return Some(id(self.next(at)));
+        }
+        let (side, arm) = (to - from, flat - from);
+        let share = arm.dot(&side);
+        (share >= N::ZERO && share <= side.norm_squared()).then(|| self.side_id(at))
+    }
+
+    /// How far the rounded surface is above a point of the core.
+    #[inline]
+    pub(super) fn lift(&self, core: &Point<N, 3>, frame: &Frame<N, 3>) -> N {
+        if self.radius <= N::ZERO {
+            return N::ZERO;
+        }
+        let (room, (top, at)) = (self.which.below_witness(core, frame), &self.top);
+        let away_squared = (frame.flat(core) - at).norm_squared();
+        lifted(self.radius, self.cosine, room, *top, away_squared)
+    }
+
+    /// Places the corners in a frame, simplifies what has no extent there, and computes the sides.
+    #[inline(always)]
+    pub(super) fn project<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        frame: &Frame<N, 3>,
+    ) {
+        let [u, v] = frame.tangents();
+        for face in &self.faces {
+            let local: [V; 3] = load(simd, &face.corners);
+            let points = match self.pose {
+                Some(pose) => placed(simd, pose, &local),
+                None => local,
+            };
+            let arms = minus(&points, &spread(simd, &frame.witness.point1.coords));
+            let zeros = [N::ZERO; LANES];
+            let mut block = RingBlock { points: [zeros; 3], flats: [zeros; 2], inward: [zeros; 2] };
+            for (row, values) in block.points.iter_mut().zip(&points) {
+                values.store(row);
+            }
+            dot(&spread::<S, N, V, 3>(simd, u), &arms).store(&mut block.flats[0]);
+            dot(&spread::<S, N, V, 3>(simd, v), &arms).store(&mut block.flats[1]);
+            self.blocks.push(block);
+        }
+        self.settle(frame);
+        self.find_sides::<S, V>(simd);
+    }
+
+    /// The inward normals of the sides.
+    #[inline(always)]
+    fn find_sides<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S) {
+        let (used, first) = (self.count.div_ceil(LANES), self.flat(0));
+        for at in 0..used {
+            let is_last = at + 1 == used;
+            let after = if is_last { first } else { self.flat((at + 1) * LANES) };
+            let last = if is_last { (self.count - 1) % LANES } else { LANES - 1 };
+            let block = &mut self.blocks[at];
+            let mut next = block.flats;
+            for ((next, row), after) in next.iter_mut().zip(&block.flats).zip(after.iter()) {
+                next[..LANES - 1].copy_from_slice(&row[1..]);
+                next[last] = *after;
+            }
+            let sides: [V; 2] = minus(&load(simd, &next), &load(simd, &block.flats));
+            let turn = V::all(simd, self.turn) / dot(&sides, &sides).sqrt();
+            (-sides[1] * turn).store(&mut block.inward[0]);
+            (sides[0] * turn).store(&mut block.inward[1]);
+        }
+    }
+
+    /// Simplifies what has no extent when seen along the normal.
+    fn settle(&mut self, frame: &Frame<N, 3>) {
+        let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
+        let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
+        if extent.is_none() && self.is_segment() {
+            self.end_on(&outward, tolerance);
+        } else if extent.is_none() && !self.is_point() {
+            self.merge_coincident(tolerance);
+            extent = self.extent(tolerance);
+        }
+        if let Some((area, longest)) = extent {
+            self.turn = if area < N::ZERO { -N::ONE } else { N::ONE };
+            self.cosine = self.normal.dot(&outward);
+            if self.count > 2 && area.abs() <= N::TWO * tolerance * self.side(longest).norm() {
+                self.flatten(longest);
+            }
+        }
+        if self.is_segment() {
+            self.turn = N::ONE;
+            self.cosine = self.side(0).norm() / (self.point(1) - self.point(0)).norm();
+        }
+        if self.count > 1 && self.cosine < N::lit(MIN_COSINE) {
+            self.keep_farthest(&outward);
+        }
+        if self.is_point() {
+            self.cosine = N::ONE;
+        }
+        if self.radius > N::ZERO {
+            self.find_top(frame);
+        }
+    }
+
+    /// Twice the signed area, and the longest side; `None` where corners coincide.
+    fn extent(&self, tolerance: N) -> Option<(N, usize)> {
+        let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
+        let origin = self.flat(0);
+        let mut from = origin;
+        for at in 0..self.count {
+            let to = self.flat(self.next(at));
+            let side = to - from;
+            // Written so that NaN coincides.
+            let is_long = max_component(&side) > tolerance;
+            if !is_long {
+                return None;
+            }
+            area += cross2(&(from - origin), &side);
+            let squared = side.norm_squared();
+            if squared > most {
+                (longest, most) = (at, squared);
+            }
+            from = to;
+        }
+        Some((area, longest))
+    }
+
+    /// Merges each corner with those that follow it at the same place; the last one's side leads on.
+    fn merge_coincident(&mut self, tolerance: N) {
+        let is_apart =
+            |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
+        let mut kept: SmallVec<[RingCorner<N>; LANES]> = SmallVec::new();
+        for at in 0..self.count {
+            let corner = self.corner(at);
+            match kept.last_mut() {
+                Some(last) if !is_apart(last, &corner) => last.side = corner.side,
+                _ => kept.push(corner),
+            }
+        }
+        while kept.len() > 1 && !is_apart(&kept[0], &kept[kept.len() - 1]) {
+            kept.pop();
+        }
+        self.replace(&kept);
+    }
+
+    /// A segment that is seen as a point is its end nearest to the other solid; one without length has no ends
+    /// and keeps its id.
+    fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
+        let (id, way) = (self.id, self.point(1) - self.point(0));
+        self.keep_farthest(outward);
+        // Written so that NaN has no ends.
+        let has_ends = way.norm() > N::TWO * tolerance;
+        self.id = if has_ends { self.id } else { id };
+    }
+
+    /// Leaves the two ends of a face without width, with the id of its longest side.
+    fn flatten(&mut self, longest: usize) {
+        let (along, from) = (self.side(longest), self.flat(longest));
+        let (mut low, mut high) = (0, 0);
+        for at in 1..self.count {
+            let share = |at: usize| (self.flat(at) - from).dot(&along);
+            low = if share(at) < share(low) { at } else { low };
+            high = if share(at) > share(high) { at } else { high };
+        }
+        self.id = self.side_id(longest);
+        self.replace(&[self.corner(low), self.corner(high)]);
+    }
+
+    /// Leaves the corner nearest to the other solid.
+    fn keep_farthest(&mut self, outward: &Vector<N, 3>) {
+        let height = |at: usize| self.point(at).coords.dot(outward);
+        let higher = |best: usize, at: usize| if height(at) > height(best) { at } else { best };
+        let farthest = self.corner((1..self.count).fold(0, higher));
+        self.id = farthest.id;
+        self.replace(&[farthest]);
+    }
+
+    /// Replaces the corners by some of them.
+    fn replace(&mut self, corners: &[RingCorner<N>]) {
+        for (at, corner) in corners.iter().enumerate() {
+            let (face, lane) = (&mut self.faces[at / LANES], at % LANES);
+            (face.ids[lane], face.sides[lane]) = (corner.id, corner.side);
+            let block = &mut self.blocks[at / LANES];
+            for axis in 0..3 {
+                block.points[axis][lane] = corner.point[axis];
+            }
+            (block.flats[0][lane], block.flats[1][lane]) = (corner.flat.x, corner.flat.y);
+        }
+        self.count = corners.len();
+    }
+
+    /// Finds the corner that is nearest to the other solid, the first of equals.
+    fn find_top(&mut self, frame: &Frame<N, 3>) {
+        let below = |at: usize| self.which.below_witness(&self.point(at), frame);
+        let (mut best, mut least) = (0, below(0));
+        for at in 1..self.count {
+            let other = below(at);
+            (best, least) = if other < least { (at, other) } else { (best, least) };
+        }
+        self.top = (least, self.flat(best));
+    }
+}
+
+/// Points of a frame in that which a pose leads to.
+#[inline(always)]
+fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    pose: &Pose<N, 3>,
+    local: &[V; 3],
+) -> [V; 3] {
+    let mut all = *local;
+    for (row, value) in all.iter_mut().enumerate() {
+        let turned = V::all(simd, pose.rotation[(row, 0)]) * local[0]
+            + V::all(simd, pose.rotation[(row, 1)]) * local[1]
+            + V::all(simd, pose.rotation[(row, 2)]) * local[2];
+        *value = turned + V::all(simd, pose.translation[row]);
+    }
+    all
+}
+
+/// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.
+pub(super) fn part_of<N: Real, const D: usize>(
+    segment: &Segment<N, D>,
+    point: &Point<N, D>,
+    tolerance: N,
+) -> Option<FeatureId> {
+    let along = segment.b() - segment.a();
+    let (squared, reached) = (along.norm_squared(), (point - segment.a()).dot(&along));
+    let is_near = |reach: N| reach <= tolerance * squared.sqrt();
+    match (is_near(reached), is_near(squared - reached)) {
+        (true, true) => None,
+        (true, false) => Some(FeatureId::Vertex(0)),
+        (false, true) => Some(FeatureId::Vertex(1)),
+        (false, false) => Some(FeatureId::Edge(0)),
+    }
+}
