@@ -125,7 +125,8 @@ pub(crate) fn on_face3<N: Real>(
         lowest = min(candidate.distance, lowest);
     }
     if let Some(nearest) = nearest {
-        if !(lowest <= nearest + tolerance) {
+        // Infinite where there is none.
+        if lowest > nearest + tolerance {
             return false;
         }
         if let Some(deepest) = candidates.iter_mut().find(|found| found.distance == lowest) {

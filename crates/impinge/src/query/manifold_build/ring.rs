@@ -353,8 +353,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
             let (face, lane) = (&mut self.faces[at / LANES], at % LANES);
             (face.ids[lane], face.sides[lane]) = (corner.id, corner.side);
             let block = &mut self.blocks[at / LANES];
-            for axis in 0..3 {
-                block.points[axis][lane] = corner.point[axis];
+            for (row, value) in block.points.iter_mut().zip(corner.point.iter()) {
+                row[lane] = *value;
             }
             (block.flats[0][lane], block.flats[1][lane]) = (corner.flat.x, corner.flat.y);
         }

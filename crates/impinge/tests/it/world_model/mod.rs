@@ -1,0 +1,56 @@
+//! Random operations on a world and on the naive world of the reference, which must agree on every
+//! event, pair, status and query.
+//!
+//! All numbers are multiples of 1/8 and all rotations permute the axes, so that touching is exact and
+//! rounding excuses no difference.
+
+mod both;
+mod draw;
+mod twins;
+
+use both::Both;
+use draw::Grid;
+
+/// Runs so many operations and checks that the run reached what it claims to test.
+fn run<N: Grid<D>, const D: usize>(seed: u64, operations: usize) {
+    let mut both = Both::<N, D>::new(seed);
+    for _ in 0..operations {
+        both.operate();
+    }
+    both.finish();
+    let tally = both.tally;
+    assert!(tally.updates > operations / 8, "updates: {tally:?}");
+    assert!(tally.started > operations / 100, "contacts start: {tally:?}");
+    assert!(tally.transitions > operations / 50, "proximities change: {tally:?}");
+    assert!(tally.removal_events > operations / 500, "removals end pairs: {tally:?}");
+    assert!(tally.exchanges > 10 && tally.refusals > 100, "rare operations: {tally:?}");
+    let share = |count: usize, of: usize| count as f64 / of as f64;
+    let touching = share(tally.touching, tally.near);
+    assert!((0.2..0.8).contains(&touching), "near pairs that touch: {touching} {tally:?}");
+    let hits = share(tally.hits, tally.queries);
+    assert!((0.2..0.8).contains(&hits), "queries that hit: {hits} {tally:?}");
+}
+
+#[test]
+fn plane_f32() {
+    run::<f32, 2>(1, 12_000);
+    run::<f32, 2>(2, 12_000);
+}
+
+#[test]
+fn plane_f64() {
+    run::<f64, 2>(3, 12_000);
+    run::<f64, 2>(4, 12_000);
+}
+
+#[test]
+fn space_f32() {
+    run::<f32, 3>(5, 12_000);
+    run::<f32, 3>(6, 12_000);
+}
+
+#[test]
+fn space_f64() {
+    run::<f64, 3>(7, 12_000);
+    run::<f64, 3>(8, 12_000);
+}
