@@ -230,13 +230,15 @@ mod tests {
                 let mut found = pairs.found;
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
-                for (id1, one) in (0..).zip(&all[0]) {
-                    for (id2, other) in (0..).zip(&all[1]) {
-                        let distance = moved(one, -shift).distance_to_aabb(other);
-                        let is_found = found.binary_search(&[id1, id2]).is_ok();
-                        assert!(is_found || distance > limit, "{id1} and {id2}: {distance}");
-                        assert!(!is_found || distance < limit + 0.01, "not that far: {distance}");
-                    }
+                let second =
+                    |id1: u32| (0..).zip(&all[1]).map(move |(id2, other)| (id1, id2, other));
+                let pairs =
+                    (0..).zip(&all[0]).flat_map(|(id1, one)| second(id1).map(move |of| (one, of)));
+                for (one, (id1, id2, other)) in pairs {
+                    let distance = moved(one, -shift).distance_to_aabb(other);
+                    let is_found = found.binary_search(&[id1, id2]).is_ok();
+                    assert!(is_found || distance > limit, "{id1} and {id2}: {distance}");
+                    assert!(!is_found || distance < limit + 0.01, "not that far: {distance}");
                 }
             }
         }

@@ -210,6 +210,11 @@ const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
     from.within & to.beyond | from.beyond & to.within
 }
 
+/// Where on the way from one place to another a line is crossed, both heights over which are given.
+fn share<N: Real>(from: N, to: N) -> N {
+    from / (from - to)
+}
+
 /// Two rings in one frame.
 struct RingClip<'a, N: Real> {
     frame: &'a Frame<N, 3>,
@@ -286,7 +291,7 @@ impl<N: Real> RingClip<'_, N> {
     /// Sides that cross well inside both: a side that ends on a line crosses nothing, its corner lies on the
     /// other ring or outside.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
-        let ([one, other], [in_one, in_other]) = (self.rings, self.insides);
+        let (one, in_other) = (&self.rings[0], &self.insides[1]);
         for side1 in 0..one.side_count() {
             let ends1 = [in_other.row(side1), in_other.row(one.next(side1))];
             for block2 in 0..in_other.width {
@@ -294,20 +299,24 @@ impl<N: Real> RingClip<'_, N> {
                 let mut crossed = parted(from1, to1);
                 while crossed != 0 {
                     let lane2 = crossed.trailing_zeros() as usize;
-                    let (side2, lane1) = (block2 * LANES + lane2, side1 % LANES);
                     crossed &= crossed - 1;
-                    let ends2 = [side2, other.next(side2)];
-                    let [from2, to2] = ends2.map(|at| &in_one.row(at)[side1 / LANES]);
-                    if parted(from2, to2) >> lane1 & 1 == 0 {
-                        continue;
-                    }
-                    let share = |from: N, to: N| from / (from - to);
                     let share1 = share(from1.inside[lane2], to1.inside[lane2]);
-                    let share2 = share(from2.inside[lane1], to2.inside[lane1]);
-                    let cores = [one.along_side(side1, share1), other.along_side(side2, share2)];
-                    self.push(cores, [one.side_id(side1), other.side_id(side2)], out);
+                    self.push_crossing(side1, block2 * LANES + lane2, share1, out);
                 }
             }
+        }
+    }
+
+    /// Adds where two sides cross, of which the first crosses the line of the second at a share of its length, if
+    /// the second crosses the first's.
+    fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
+        let ([one, other], in_one) = (self.rings, &self.insides[0]);
+        let (block1, lane1) = (side1 / LANES, side1 % LANES);
+        let [from2, to2] = [side2, other.next(side2)].map(|at| &in_one.row(at)[block1]);
+        if parted(from2, to2) >> lane1 & 1 == 1 {
+            let share2 = share(from2.inside[lane1], to2.inside[lane1]);
+            let cores = [one.along_side(side1, share1), other.along_side(side2, share2)];
+            self.push(cores, [one.side_id(side1), other.side_id(side2)], out);
         }
     }
 
