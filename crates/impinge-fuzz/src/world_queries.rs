@@ -129,6 +129,8 @@ fn near<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     let found: Vec<_> =
         world.objects_overlapping(&place, &*shape, &filter).map(Object::handle).collect();
     check(world, &found, &expected, (bytes.is_moderate(), &question));
+    let any = world.overlaps_any(&place, &*shape, &filter);
+    assert_eq!(any, !found.is_empty(), "one of them");
     let expected = ranked(world, |object| Some((distance(object), ())));
     let expected: Vec<_> = expected
         .into_iter()

@@ -1,7 +1,7 @@
 //! The boxes that trees hold: `f32`, rounded outwards.
 
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, Vector};
 
 /// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
 ///
@@ -121,6 +121,13 @@ impl<const D: usize> Bounds<D> {
         let face =
             |across: usize| -> f64 { (0..D).filter(|&axis| axis != across).map(extent).product() };
         (0..D).map(face).sum()
+    }
+
+    /// The same box of another scalar, exactly. It must not be empty.
+    pub(super) fn as_aabb<N: Real>(&self) -> Aabb<N, D> {
+        let corner =
+            |faces: &[f32; D]| Point::from(Vector::from_fn(|axis, _| N::lit(faces[axis].into())));
+        Aabb::new(corner(&self.lo), corner(&self.hi))
     }
 
     /// The middle; halves are added, so that no finite box overflows.

@@ -224,7 +224,7 @@ impl<const D: usize> Tree<D> {
 
     /// Without the lanes that have no block below them.
     #[inline(always)]
-    fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
+    pub(super) fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };
         let left = self.layers[below].blocks.len() - first as usize;
         if left < LANES { mask & ((1 << left) - 1) } else { mask }

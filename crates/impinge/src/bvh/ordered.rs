@@ -12,7 +12,7 @@ use super::kernel::with_kernel;
 use super::tree::small;
 use super::{Block, LANES, Lanes, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector, max, min};
+use crate::math::{Real, Vector, max, min};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
@@ -221,16 +221,8 @@ fn distance_of_block<N: Real, const D: usize>(
     for (lane, distance) in distances.iter_mut().enumerate() {
         let is_used = mask >> lane & 1 == 1;
         if is_used && !distance.is_finite_number() {
-            *distance = aabb_in(block, lane).distance_to_aabb(aabb);
+            *distance = block.lane(lane).as_aabb().distance_to_aabb(aabb);
         }
     }
     (mask, distances)
-}
-
-/// The box in a lane that is in use.
-fn aabb_in<N: Real, const D: usize>(block: &Block<D>, lane: usize) -> Aabb<N, D> {
-    let corner = |faces: &[[f32; LANES]; D]| {
-        Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(faces[axis][lane]))))
-    };
-    Aabb::new(corner(&block.lo), corner(&block.hi))
 }

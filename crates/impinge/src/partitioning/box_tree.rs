@@ -455,6 +455,11 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         &self.tree
     }
 
+    /// The packed tree, if it holds all boxes.
+    pub(crate) fn packed_whole(&self) -> Option<&Tree<D>> {
+        self.unbounded.is_empty().then_some(&self.tree)
+    }
+
     pub(crate) fn unbounded(&self) -> &[u32] {
         &self.unbounded
     }

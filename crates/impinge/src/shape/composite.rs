@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 use super::{FeatureId, Geometry, Segment, Shape, Siding, Triangle};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
+use crate::partitioning::BoxTree;
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
@@ -174,6 +175,13 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     /// other part by part of the smaller one, however far apart they are.
     fn bounds(&self) -> Aabb<N, D> {
         Aabb::unbounded()
+    }
+
+    /// The tree that the search is, where its boxes are those of the parts in the order of their numbers: two
+    /// composites that have one each are searched together, which is many times as fast as part by part. `None`,
+    /// the default, of all but [`BoxTree`].
+    fn as_tree(&self) -> Option<&BoxTree<N, D>> {
+        None
     }
 
     /// Calls `visit` with each part whose box meets or touches `aabb`.

@@ -10,6 +10,10 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
         Self::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
     }
 
+    fn as_tree(&self) -> Option<&BoxTree<N, D>> {
+        Some(self)
+    }
+
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
         self.visit_overlapping(aabb, |index| visit(number(index)));
     }

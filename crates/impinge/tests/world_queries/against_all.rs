@@ -246,6 +246,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
             expected.iter().filter(|row| row.1.0 == N::ZERO).map(|row| row.0).collect();
         let found = self.world.objects_overlapping(&pose, &*shape, &choice.filter);
         assert_eq!(found.map(Object::handle).collect::<Vec<_>>(), overlapped, "{shape:?}");
+        let any = self.world.overlaps_any(&pose, &*shape, &choice.filter);
+        assert_eq!(any, !overlapped.is_empty(), "{shape:?}");
         self.answers.overlaps += overlapped.len();
     }
 

@@ -66,6 +66,9 @@ fn neighbors_in_order<N: Stage<D>, const D: usize>() {
         assert_eq!(within.len(), 3, "the limit counts");
         let overlapping = world.objects_overlapping(&here, &*own, &all);
         assert_eq!(handles_of(overlapping), [handles[3]], "the one");
+        assert!(world.overlaps_any(&here, &*own, &all), "the same");
+        let others = Filter::new().exclude(handles[3]);
+        assert!(!world.overlaps_any(&here, &*own, &others), "there is no other");
         let at = point(on_x(3.0));
         let found = world.nearest_to_point(&at, 2, N::INFINITY, &all);
         let distances: Vec<_> = found.iter().map(|near| near.distance.as_f64()).collect();
@@ -188,6 +191,7 @@ fn nothing_to_find<N: Stage<D>, const D: usize>() {
     assert!(empty.cast_shape(&here, &v, &*own, &options, &all).is_none(), "no object");
     assert_eq!(empty.objects_containing(&Point::origin(), &all).count(), 0, "no object");
     assert_eq!(empty.objects_overlapping(&here, &*own, &all).count(), 0, "no object");
+    assert!(!empty.overlaps_any(&here, &*own, &all), "no object");
     assert_eq!(empty.objects_in_aabb(&Aabb::unbounded(), &all).count(), 0, "no object");
 
     let (mut world, _) = row::<N, D>(&[0.0, 1.0]);
@@ -222,6 +226,7 @@ fn not_finite<N: Stage<D>, const D: usize>(world: &World<N, D>, bad: f64) {
     let nowhere = N::pose_at(on_x(bad), 0.0);
     assert!(world.objects_within(&nowhere, &*own, N::INFINITY, &all).is_empty(), "{bad}");
     assert_eq!(world.objects_overlapping(&nowhere, &*own, &all).count(), 0, "{bad}");
+    assert!(!world.overlaps_any(&nowhere, &*own, &all), "{bad}");
     let v = vector(on_x(1.0));
     assert!(world.cast_shape(&nowhere, &v, &*own, &options, &all).is_none(), "from {bad}");
     assert!(world.cast_shape(&here, &p.coords, &*own, &options, &all).is_none(), "at {bad}");

@@ -116,6 +116,13 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         enclosing(&aabb_of(kind, pose), pose)
     }
 
+    /// A box in the frame of the first shape (0) or the second (1) as one in the frame of the other, around all that
+    /// it holds.
+    pub(super) fn box_in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        let pose = self.seen_by_other(which).1;
+        enclosing(&aabb.transformed_by(pose), pose)
+    }
+
     /// A box around a part of the first shape (0) or the second (1), in the frame of the other; all of a
     /// convex solid is its part.
     pub(super) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {

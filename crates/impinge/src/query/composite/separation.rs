@@ -4,6 +4,8 @@ use super::between::{Between, by_number};
 use super::bounds::loosened;
 use super::slabs::Slabs;
 use super::sweep::Sweep;
+use crate::bounding_volume::Aabb;
+use crate::bvh::{TreePair, visit_pairs};
 use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::query::Pair;
@@ -75,10 +77,10 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
 
 /// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
 ///
-/// Cost: a convex solid searches the parts near it. Of two composites that of fewer parts is gone
-/// through, near ones first, and each part searches the other: at most n log m, where n is the smaller
-/// number, as long as parts do not all overlap. Half-spaces that do not lie along an axis have no box:
-/// they are held against every part.
+/// Cost: a convex solid searches the parts near it. Two composites that are searched by trees are descended
+/// together, as far as their boxes are near each other. Of others that of fewer parts is gone through, near ones
+/// first, and each part searches the other: at most n log m, where n is the smaller number, as long as parts do not
+/// all overlap. Half-spaces that do not lie along an axis have no box: they are held against every part.
 pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     visitor: &mut dyn PairVisitor<N, D>,
@@ -93,7 +95,62 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
             }
             _ => search.of_one(0, 0, parts2),
         },
-        [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
+        [Some(parts1), Some(parts2)] => {
+            let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
+            let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
+            let Search { visitor, .. } = search;
+            let mut pairs = TreeParts { between, visitor, seconds: parts2, slabs: None };
+            visit_pairs([tree1, tree2], &mut pairs);
+        }
+    }
+}
+
+/// Two composites that are searched by trees.
+struct TreeParts<'a, 'q, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    visitor: &'q mut dyn PairVisitor<N, D>,
+    seconds: &'a dyn CompositeShape<N, D>,
+    /// Those of the part of the first composite that was asked about last.
+    slabs: Option<PartSlabs<N, D>>,
+}
+
+struct PartSlabs<N: Real, const D: usize> {
+    part: u32,
+    slabs: Slabs<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    /// A box in the frame of the other composite around where the parts in it go.
+    fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
+        self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
+    }
+}
+
+impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
+    fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        self.swept(which, self.between.box_in_other(which, aabb))
+    }
+
+    fn object_in_second(&self, id: u32) -> Aabb<N, D> {
+        self.swept(0, self.between.aabb_in_other(0, id))
+    }
+
+    fn bound(&self) -> N {
+        self.visitor.bound()
+    }
+
+    fn visit(&mut self, parts: [u32; 2]) {
+        let Self { between, visitor, seconds, slabs } = self;
+        // A sweep only gets shorter, so that slabs made before are wide enough.
+        let of_first = || PartSlabs {
+            part: parts[0],
+            slabs: Slabs::of_part(between, 0, parts[0], visitor.sweep(0).as_ref()),
+        };
+        let kept = slabs.take().filter(|kept| kept.part == parts[0]).unwrap_or_else(of_first);
+        if !kept.slabs.are_beyond(&seconds.part(parts[1]), visitor.limit()) {
+            visitor.visit(parts);
+        }
+        *slabs = Some(kept);
     }
 }
 

@@ -98,23 +98,39 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; FEW]> = SmallVec::new();
-        if aabb.holds_finite_point() {
-            self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
-                let settled = proposals.iter().filter_map(|one| self.settled_proposal(one));
-                settled.for_each(|object| objects.push(object));
-                N::ZERO
-            });
-        } else {
-            // No search goes to infinity, where none but unbounded volumes are met.
-            let mut found = Vec::new();
-            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
-            objects.extend(found.into_iter().filter_map(|&handle| self.settled(handle)));
-        }
-        let astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
-        objects.extend(astray.map(|(object, _)| object));
+        self.any_meeting(aabb, |object| {
+            objects.push(object);
+            false
+        });
         objects.retain(|object| self.allows(object, filter));
         objects.sort_unstable_by_key(|object| object.body.handle);
         objects.into_iter()
+    }
+
+    /// One of the objects whose volumes meet `aabb`, or of few others, passes a test; none is asked after it, and
+    /// each once at most.
+    fn any_meeting<'a>(
+        &'a self,
+        aabb: &Aabb<N, D>,
+        mut passes: impl FnMut(&'a CollisionObject<N, D, T>) -> bool,
+    ) -> bool {
+        let mut astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
+        if astray.any(|(object, _)| passes(object)) {
+            return true;
+        }
+        if !aabb.holds_finite_point() {
+            // No search goes to infinity, where none but unbounded volumes are met.
+            let mut found = Vec::new();
+            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
+            return found.into_iter().filter_map(|&handle| self.settled(handle)).any(passes);
+        }
+        let mut is_found = false;
+        self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
+            let mut settled = proposals.iter().filter_map(|one| self.settled_proposal(one));
+            is_found = is_found || settled.any(&mut passes);
+            if is_found { -N::ONE } else { N::ZERO }
+        });
+        is_found
     }
 
     /// The object of a handle of the broad phase, if it lives and is where it was at the last update.

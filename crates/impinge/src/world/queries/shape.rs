@@ -76,6 +76,42 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| touches(&placed, &object.body))
     }
 
+    /// An object touches or overlaps a solid: whether [`Self::objects_overlapping`] has any. The search ends at the
+    /// first one found.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Isometry, Vector};
+    /// use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle};
+    /// use impinge::dim3::world::{
+    ///     CollisionGroups, CollisionWorld, GeometricQueryType, QueryFilter,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (tree, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    /// let position = Isometry::translation(3.0, 0.0, 0.0);
+    /// let tree = world.add(position, tree, CollisionGroups::new(), query, "tree");
+    ///
+    /// let car = Cuboid::new(Vector::new(2.0, 1.0, 1.0));
+    /// let at = |x| Isometry::translation(x, 0.0, 0.0);
+    /// assert!(world.overlaps_any(&at(0.0), &car, &QueryFilter::new()), "touching counts");
+    /// assert!(!world.overlaps_any(&at(-1.0), &car, &QueryFilter::new()));
+    /// assert!(!world.overlaps_any(&at(0.0), &car, &QueryFilter::new().exclude(tree)));
+    /// ```
+    #[must_use]
+    pub fn overlaps_any(
+        &self,
+        position: &N::Isometry,
+        shape: &dyn Shape<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> bool {
+        let placed = Placed::of_isometry(position, shape.geometry());
+        around(position, shape).is_some_and(|aabb| {
+            self.any_meeting(&aabb, |object| {
+                self.allows(object, filter) && touches(&placed, &object.body)
+            })
+        })
+    }
+
     /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes
     /// first. The first of [`Self::nearest_objects`].
     #[must_use]

@@ -1,0 +1,244 @@
+//! Pairs of objects of two trees, each in a frame of its own, near ones first.
+//!
+//! Best first over pairs of blocks, one of each tree (Hjaltason and Samet, "Incremental distance join algorithms
+//! for spatial databases", 1998): of the nearest pair the wider block is opened and its lanes are held against the
+//! other block's box, seen from the frame of the lanes. So the axes of both frames part blocks in turn. Of two leaf
+//! blocks each object of the first that is near the second block is held against the objects of that one.
+
+use core::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use smallvec::SmallVec;
+
+use super::gaps::Gaps;
+use super::kernel::{Kernel, Lanes, with_kernel};
+use super::tree::small;
+use super::{Block, Bounds, LANES, Tree};
+use crate::bounding_volume::Aabb;
+use crate::math::{Real, max};
+
+/// Entries made room for at the start: enough for most searches.
+const EXPECTED: usize = 64;
+
+/// How the trees lie to each other, and what is asked about pairs of their objects.
+pub(crate) trait TreePair<N: Real, const D: usize> {
+    /// A box in the frame of the first (0) or the second (1) tree as one in the frame of the other, around all that
+    /// it holds.
+    fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D>;
+
+    /// A box around an object of the first tree, in the frame of the second.
+    fn object_in_second(&self, id: u32) -> Aabb<N, D>;
+
+    /// The largest distance at which boxes still matter, negative to end the search; never grows.
+    fn bound(&self) -> N;
+
+    /// Gets each pair whose boxes are within the bound.
+    fn visit(&mut self, ids: [u32; 2]);
+}
+
+/// A block of each tree. Of pairs at one distance those in low layers come first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct BlockPair {
+    /// The bits of a distance that the boxes have at least: zero or more, so that they order as it does.
+    distance: u64,
+    layers: [u8; 2],
+    blocks: [u32; 2],
+}
+
+struct PairSearch<'a, 'q, N: Real, const D: usize> {
+    trees: [&'a Tree<D>; 2],
+    queue: BinaryHeap<Reverse<BlockPair>>,
+    question: &'q mut dyn TreePair<N, D>,
+}
+
+/// Lanes by their distances, as slots or numbers of blocks below.
+type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
+
+/// Visits the pairs of objects of two trees that are within the bound of the question, near ones first but in no
+/// exact order.
+pub(crate) fn visit_pairs<N: Real, const D: usize>(
+    trees: [&Tree<D>; 2],
+    question: &mut dyn TreePair<N, D>,
+) {
+    if trees.iter().any(|tree| tree.is_empty()) {
+        return;
+    }
+    debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
+    let mut search = PairSearch { trees, queue: BinaryHeap::with_capacity(EXPECTED), question };
+    let (distance, layers) = (N::ZERO.bits(), trees.map(Tree::top_layer));
+    search.queue.push(Reverse(BlockPair { distance, layers, blocks: [0, 0] }));
+    search.run();
+}
+
+impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
+    fn run(&mut self) {
+        while let Some(Reverse(pair)) = self.queue.pop() {
+            let bound = self.question.bound();
+            // Also false for NaN, which ends the search.
+            let is_within = bound >= N::ZERO && pair.distance <= (bound + N::ZERO).bits();
+            if !is_within {
+                return;
+            }
+            match self.wider(&pair) {
+                Some(which) => self.open(which, &pair),
+                None => self.meet(pair.blocks),
+            }
+        }
+    }
+
+    /// Which of the blocks is opened next: the wider one above the lowest layer; `None` for leaf blocks.
+    fn wider(&self, pair: &BlockPair) -> Option<usize> {
+        match pair.layers {
+            [0, 0] => None,
+            [_, 0] => Some(0),
+            [0, _] => Some(1),
+            _ => {
+                let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
+                Some(usize::from(widths[1] > widths[0]))
+            }
+        }
+    }
+
+    fn bounds(&self, which: usize, pair: &BlockPair) -> Bounds<D> {
+        let layer = &self.trees[which].layers[usize::from(pair.layers[which])];
+        layer.bounds[pair.blocks[which] as usize]
+    }
+
+    /// Puts the blocks below one of two into the queue, each with the other.
+    fn open(&mut self, which: usize, pair: &BlockPair) {
+        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
+        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
+            let (mut layers, mut blocks) = (pair.layers, pair.blocks);
+            (layers[which], blocks[which]) = (layers[which] - 1, block);
+            let distance = distance.bits().max(pair.distance);
+            self.queue.push(Reverse(BlockPair { distance, layers, blocks }));
+        }
+    }
+
+    /// Visits the near pairs of objects of two leaf blocks.
+    fn meet(&mut self, [first, second]: [u32; 2]) {
+        let aabb = self.trees[1].layers[0].bounds[second as usize].as_aabb();
+        let aabb = self.question.in_other(1, &aabb);
+        for (distance, slot) in self.near(0, 0, first, &aabb) {
+            let Some(id1) = self.trees[0].id_in(slot) else { continue };
+            if distance > self.question.bound() {
+                return;
+            }
+            let aabb = self.question.object_in_second(id1);
+            for (distance, slot) in self.near(1, 0, second, &aabb) {
+                let Some(id2) = self.trees[1].id_in(slot) else { continue };
+                if distance > self.question.bound() {
+                    break;
+                }
+                self.question.visit([id1, id2]);
+            }
+        }
+    }
+
+    /// The lanes of a block of one tree that are within the bound of a box in its frame, near ones first, of several
+    /// at one distance the first. A distance is a little less than the exact one.
+    fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
+        let (tree, layer, first) = (self.trees[which], usize::from(layer), block * small(LANES));
+        let (gaps, mut keys) = (Gaps::new(aabb, tree.size()), [0.0; LANES]);
+        let limit = gaps.limit(self.question.bound());
+        let asked = &tree.layers[layer].blocks[block as usize];
+        let mask = tree.lanes.apart(asked, &gaps, limit, &mut keys);
+        let mut mask = tree.lanes_in_use(layer, first, mask);
+        let mut near = NearLanes::new();
+        while mask != 0 {
+            let lane = mask.trailing_zeros();
+            mask &= mask - 1;
+            let distance = max(gaps.distance(keys[lane as usize]), N::ZERO);
+            near.push((distance, first + lane));
+        }
+        near.sort_unstable_by_key(|(distance, at)| (distance.bits(), *at));
+        near
+    }
+}
+
+impl Lanes {
+    /// See [`Kernel::apart`].
+    fn apart<const D: usize>(
+        self,
+        block: &Block<D>,
+        gaps: &Gaps<D>,
+        limit: f32,
+        keys: &mut [f32; LANES],
+    ) -> u32 {
+        with_kernel!(self, kernel => kernel.apart(block, gaps, limit, keys))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounding_volume::BoundingVolume;
+    use crate::math::noise::Noise;
+    use crate::math::{Point, Vector};
+
+    /// The second tree lies farther along the first axis.
+    struct Shifted<'a> {
+        firsts: &'a [Aabb<f64, 3>],
+        shift: f64,
+        limit: f64,
+        found: Vec<[u32; 2]>,
+    }
+
+    fn moved(aabb: &Aabb<f64, 3>, by: f64) -> Aabb<f64, 3> {
+        let by = Vector::<f64, 3>::new(by, 0.0, 0.0);
+        Aabb::new(aabb.mins() + by, aabb.maxs() + by).loosened(1e-9)
+    }
+
+    impl TreePair<f64, 3> for Shifted<'_> {
+        fn in_other(&self, which: usize, aabb: &Aabb<f64, 3>) -> Aabb<f64, 3> {
+            moved(aabb, if which == 0 { -self.shift } else { self.shift })
+        }
+
+        fn object_in_second(&self, id: u32) -> Aabb<f64, 3> {
+            moved(&self.firsts[id as usize], -self.shift)
+        }
+
+        fn bound(&self) -> f64 {
+            self.limit
+        }
+
+        fn visit(&mut self, ids: [u32; 2]) {
+            self.found.push(ids);
+        }
+    }
+
+    fn boxes(noise: &mut Noise, count: usize) -> Vec<Aabb<f64, 3>> {
+        let each = |_| {
+            let corner = Point::from(noise.vector::<f64>(20.0));
+            Aabb::new(corner, corner + noise.vector::<f64>(1.0).abs())
+        };
+        (0..count).map(each).collect()
+    }
+
+    #[test]
+    fn no_near_pair_is_missed() {
+        let noise = &mut Noise(4);
+        for (count1, count2) in [(0, 9), (1, 1), (5, 300), (700, 12), (400, 900)] {
+            let all = [boxes(noise, count1), boxes(noise, count2)];
+            let tree = |boxes: &[Aabb<f64, 3>]| {
+                Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().map(Bounds::enclosing)))
+            };
+            let trees = [tree(&all[0]), tree(&all[1])];
+            for (shift, limit) in [(0.0, 0.0), (7.0, 0.5), (45.0, 6.0), (0.0, -1.0)] {
+                let mut pairs = Shifted { firsts: &all[0], shift, limit, found: Vec::new() };
+                visit_pairs(trees.each_ref(), &mut pairs);
+                let mut found = pairs.found;
+                found.sort_unstable();
+                assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+                for (id1, one) in (0..).zip(&all[0]) {
+                    for (id2, other) in (0..).zip(&all[1]) {
+                        let distance = moved(one, -shift).distance_to_aabb(other);
+                        let is_found = found.binary_search(&[id1, id2]).is_ok();
+                        assert!(is_found || distance > limit, "{id1} and {id2}: {distance}");
+                        assert!(!is_found || distance < limit + 0.01, "not that far: {distance}");
+                    }
+                }
+            }
+        }
+    }
+}
