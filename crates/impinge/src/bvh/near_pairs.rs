@@ -3,7 +3,7 @@
 //! Best first over pairs of blocks, one of each tree (Hjaltason and Samet, "Incremental distance join algorithms
 //! for spatial databases", 1998): of the nearest pair the wider block is opened and its lanes are held against the
 //! other block's box, seen from the frame of the lanes. So the axes of both frames part blocks in turn. Of two leaf
-//! blocks each object of the first that is near the second block is held against the objects of that one.
+//! blocks each object of the narrower one that is near the other is held against the objects of that one.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -26,14 +26,15 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// it holds.
     fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D>;
 
-    /// A box around an object of the first tree, in the frame of the second.
-    fn object_in_second(&self, id: u32) -> Aabb<N, D>;
+    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other.
+    fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// The largest distance at which boxes still matter, negative to end the search; never grows.
     fn bound(&self) -> N;
 
-    /// Gets each pair whose boxes are within the bound.
-    fn visit(&mut self, ids: [u32; 2]);
+    /// Gets each pair whose boxes are within the bound: an object of the first (0) or the second (1) tree and one
+    /// of the other.
+    fn visit(&mut self, which: usize, own: u32, other: u32);
 }
 
 /// A block of each tree. Of pairs at one distance those in low layers come first.
@@ -81,7 +82,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
             }
             match self.wider(&pair) {
                 Some(which) => self.open(which, &pair),
-                None => self.meet(pair.blocks),
+                None => self.meet(&pair),
             }
         }
     }
@@ -115,22 +116,25 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the near pairs of objects of two leaf blocks.
-    fn meet(&mut self, [first, second]: [u32; 2]) {
-        let aabb = self.trees[1].layers[0].bounds[second as usize].as_aabb();
-        let aabb = self.question.in_other(1, &aabb);
-        for (distance, slot) in self.near(0, 0, first, &aabb) {
-            let Some(id1) = self.trees[0].id_in(slot) else { continue };
+    /// Visits the near pairs of objects of two leaf blocks: each object of the narrower block with those of the other.
+    fn meet(&mut self, pair: &BlockPair) {
+        let bounds = [0, 1].map(|which| self.bounds(which, pair));
+        let which = usize::from(bounds[1].half_surface() < bounds[0].half_surface());
+        let trees = [self.trees[which], self.trees[1 - which]];
+        let [own, other] = [pair.blocks[which], pair.blocks[1 - which]];
+        let aabb = self.question.in_other(1 - which, &bounds[1 - which].as_aabb());
+        for (distance, slot) in self.near(which, 0, own, &aabb) {
+            let Some(id) = trees[0].id_in(slot) else { continue };
             if distance > self.question.bound() {
                 return;
             }
-            let aabb = self.question.object_in_second(id1);
-            for (distance, slot) in self.near(1, 0, second, &aabb) {
-                let Some(id2) = self.trees[1].id_in(slot) else { continue };
+            let aabb = self.question.object_in_other(which, id);
+            for (distance, slot) in self.near(1 - which, 0, other, &aabb) {
+                let Some(other) = trees[1].id_in(slot) else { continue };
                 if distance > self.question.bound() {
                     break;
                 }
-                self.question.visit([id1, id2]);
+                self.question.visit(which, id, other);
             }
         }
     }
@@ -178,7 +182,7 @@ mod tests {
 
     /// The second tree lies farther along the first axis.
     struct Shifted<'a> {
-        firsts: &'a [Aabb<f64, 3>],
+        boxes: &'a [Vec<Aabb<f64, 3>>; 2],
         shift: f64,
         limit: f64,
         found: Vec<[u32; 2]>,
@@ -194,16 +198,16 @@ mod tests {
             moved(aabb, if which == 0 { -self.shift } else { self.shift })
         }
 
-        fn object_in_second(&self, id: u32) -> Aabb<f64, 3> {
-            moved(&self.firsts[id as usize], -self.shift)
+        fn object_in_other(&self, which: usize, id: u32) -> Aabb<f64, 3> {
+            self.in_other(which, &self.boxes[which][id as usize])
         }
 
         fn bound(&self) -> f64 {
             self.limit
         }
 
-        fn visit(&mut self, ids: [u32; 2]) {
-            self.found.push(ids);
+        fn visit(&mut self, which: usize, own: u32, other: u32) {
+            self.found.push(if which == 0 { [own, other] } else { [other, own] });
         }
     }
 
@@ -225,7 +229,7 @@ mod tests {
             };
             let trees = [tree(&all[0]), tree(&all[1])];
             for (shift, limit) in [(0.0, 0.0), (7.0, 0.5), (45.0, 6.0), (0.0, -1.0)] {
-                let mut pairs = Shifted { firsts: &all[0], shift, limit, found: Vec::new() };
+                let mut pairs = Shifted { boxes: &all, shift, limit, found: Vec::new() };
                 visit_pairs(trees.each_ref(), &mut pairs);
                 let mut found = pairs.found;
                 found.sort_unstable();

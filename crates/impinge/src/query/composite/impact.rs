@@ -1,12 +1,16 @@
 //! When a moving composite first touches another shape: when the first of its parts does.
 
+use core::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
 use super::between::{Between, PartPair, by_number};
 use super::bounds::loosened;
+use super::mover::Mover;
 use super::separation::{Wanted, nearest_between};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
-use crate::query::impact::{Arrival, Path, advance};
+use crate::query::impact::{Arrival, Path, advance_from};
 use crate::shape::{CompositeShape, FeatureId};
 
 /// The arrival of one part at another, in the frame of the first part, and which parts they are.
@@ -27,13 +31,20 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
 ) -> Option<PartArrival<N, D>> {
     let mut search = Search { between, path, first: None };
     match between.composites() {
-        [None, None] => search.hold([0, 0]),
+        [None, None] => search.hold([0, 0], N::ZERO),
         [Some(parts1), None] => search.each_on_way(1, 0, parts1),
         [None, Some(parts2)] if between.is_half_space_first() => search.of_half_space(parts2),
         [None, Some(parts2)] => search.each_on_way(0, 0, parts2),
         [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
     }
     search.first
+}
+
+/// Two parts that are not at each other before a time, zero or more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LaterPair<N> {
+    earliest: N,
+    parts: [u32; 2],
 }
 
 struct Search<'a, N: Real, const D: usize> {
@@ -58,32 +69,58 @@ impl<N: Space<D>, const D: usize> Search<'_, N, D> {
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
         let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
-        self.hold(nearest.parts);
+        self.hold(nearest.parts, N::ZERO);
         if self.first.is_some_and(|first| first.arrival.along <= N::ZERO) {
             self.each_on_way(0, 0, others);
         }
     }
 
-    /// One part of one shape and those of the other that its box meets.
+    /// One part of one shape and those of the other that its box meets: those that it can be at earlier first, as
+    /// far as the boxes' times tell that there are no others.
     fn each_on_way(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
-        others.search().cast(&aabb, &velocity, end, &mut |other, _| {
-            self.hold(if which == 0 { [part, other] } else { [other, part] });
+        let mover = if which == 0 {
+            Mover::of_first(self.between, velocity, self.path.target)
+        } else {
+            None
+        };
+        let mut waiting = BinaryHeap::new();
+        let by_number = |other| if which == 0 { [part, other] } else { [other, part] };
+        others.search().cast(&aabb, &velocity, end, &mut |other, time| {
+            let earliest =
+                mover.as_ref().map(|mover| mover.earliest(&others.part(other), self.end()));
+            if let Some(earliest) = earliest.unwrap_or(Some(N::ZERO)) {
+                waiting.push(Reverse(LaterPair { earliest, parts: by_number(other) }));
+            }
+            self.hold_until(time, &mut waiting);
             self.end()
         });
+        self.hold_until(N::INFINITY, &mut waiting);
     }
 
-    /// The convex algorithm for two parts. Parts of indistinguishable shapes are so themselves if their
-    /// numbers agree.
-    fn hold(&mut self, parts: [u32; 2]) {
+    /// Holds what waits and can meet by a time.
+    fn hold_until(&mut self, time: N, waiting: &mut BinaryHeap<Reverse<LaterPair<N>>>) {
+        while let Some(Reverse(next)) = waiting.peek().copied()
+            && next.earliest <= time
+        {
+            waiting.pop();
+            if next.earliest <= self.end() {
+                self.hold(next.parts, next.earliest);
+            }
+        }
+    }
+
+    /// The convex algorithm for two parts, which are not at each other before a time. Parts of indistinguishable
+    /// shapes are so themselves if their numbers agree.
+    fn hold(&mut self, parts: [u32; 2], earliest: N) {
         let placed = self.between.parts(parts);
         let path = Path {
             end: self.first.map_or(self.path.end, |first| first.arrival.along),
             mirrored: self.path.mirrored && parts[0] == parts[1],
             ..seen_by(&placed, self.path)
         };
-        let Some(arrival) = advance(&placed.pair(), &path) else { return };
+        let Some(arrival) = advance_from(&placed.pair(), &path, earliest) else { return };
         let found = PartArrival { arrival, parts };
         if self.first.is_none_or(|first| found.is_before(&first)) {
             self.first = Some(found);
@@ -133,3 +170,18 @@ impl<N: Real, const D: usize> PartArrival<N, D> {
         along < others || (along == others && self.parts < other.parts)
     }
 }
+
+impl<N: Real> Ord for LaterPair<N> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let key = |of: &Self| ((of.earliest + N::ZERO).bits(), of.parts);
+        key(self).cmp(&key(other))
+    }
+}
+
+impl<N: Real> PartialOrd for LaterPair<N> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<N: Real> Eq for LaterPair<N> {}

@@ -9,6 +9,7 @@ mod between;
 mod bounds;
 mod contacts;
 mod impact;
+mod mover;
 mod point;
 mod ray;
 mod separation;

@@ -99,7 +99,7 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
             let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
             let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
             let Search { visitor, .. } = search;
-            let mut pairs = TreeParts { between, visitor, seconds: parts2, slabs: None };
+            let mut pairs = TreeParts { between, visitor, parts: [parts1, parts2], slabs: None };
             visit_pairs([tree1, tree2], &mut pairs);
         }
     }
@@ -109,12 +109,13 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
 struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
-    seconds: &'a dyn CompositeShape<N, D>,
-    /// Those of the part of the first composite that was asked about last.
+    parts: [&'a dyn CompositeShape<N, D>; 2],
+    /// Those of the part that was gone through last.
     slabs: Option<PartSlabs<N, D>>,
 }
 
 struct PartSlabs<N: Real, const D: usize> {
+    which: usize,
     part: u32,
     slabs: Slabs<N, D>,
 }
@@ -131,24 +132,26 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.swept(which, self.between.box_in_other(which, aabb))
     }
 
-    fn object_in_second(&self, id: u32) -> Aabb<N, D> {
-        self.swept(0, self.between.aabb_in_other(0, id))
+    fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D> {
+        self.swept(which, self.between.aabb_in_other(which, id))
     }
 
     fn bound(&self) -> N {
         self.visitor.bound()
     }
 
-    fn visit(&mut self, parts: [u32; 2]) {
-        let Self { between, visitor, seconds, slabs } = self;
+    fn visit(&mut self, which: usize, own: u32, other: u32) {
+        let Self { between, visitor, parts, slabs } = self;
         // A sweep only gets shorter, so that slabs made before are wide enough.
-        let of_first = || PartSlabs {
-            part: parts[0],
-            slabs: Slabs::of_part(between, 0, parts[0], visitor.sweep(0).as_ref()),
+        let of_own = || PartSlabs {
+            which,
+            part: own,
+            slabs: Slabs::of_part(between, which, own, visitor.sweep(which).as_ref()),
         };
-        let kept = slabs.take().filter(|kept| kept.part == parts[0]).unwrap_or_else(of_first);
-        if !kept.slabs.are_beyond(&seconds.part(parts[1]), visitor.limit()) {
-            visitor.visit(parts);
+        let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == own;
+        let kept = slabs.take().filter(is_own).unwrap_or_else(of_own);
+        if !kept.slabs.are_beyond(&parts[1 - which].part(other), visitor.limit()) {
+            visitor.visit(if which == 0 { [own, other] } else { [other, own] });
         }
         *slabs = Some(kept);
     }

@@ -66,10 +66,7 @@ impl<N: Space<D>, const D: usize> Slabs<N, D> {
 
     /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
-        let [_, one, other] = corners;
-        let across_sides = [without(other, one), without(one, other), without(one, &(other - one))];
-        for direction in across_sides.into_iter().chain([normal_to(one, other)]) {
-            let Some((along, _)) = unit(&direction) else { continue };
+        for along in across(corners) {
             let (start, end) = (range(corners, &along), range(ends, &along));
             let (lowest, highest) = (min(start.0, end.0) - spread, max(start.1, end.1) + spread);
             self.slabs.push(Slab { along, lowest, highest });
@@ -94,8 +91,17 @@ impl<N: Space<D>, const D: usize> Slabs<N, D> {
     }
 }
 
+/// Unit vectors across each side of a triangle whose first corner is the origin and, in space, across its plane.
+pub(super) fn across<N: Real, const D: usize>(
+    [_, one, other]: &[Vector<N, D>; 3],
+) -> impl Iterator<Item = Vector<N, D>> {
+    let sides = [without(other, one), without(one, other), without(one, &(other - one))];
+    let all = sides.into_iter().chain([normal_to(one, other)]);
+    all.filter_map(|direction| Some(unit(&direction)?.0))
+}
+
 /// The placed corners of a part that is given by them; those of a segment begin and end at the same.
-fn corners<N: Real, const D: usize>(
+pub(super) fn corners<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     pose: &Pose<N, D>,
 ) -> Option<[Vector<N, D>; 3]> {
@@ -108,7 +114,10 @@ fn corners<N: Real, const D: usize>(
 }
 
 /// How low and how high the corners lie along a direction.
-fn range<N: Real, const D: usize>(corners: &[Vector<N, D>; 3], along: &Vector<N, D>) -> (N, N) {
+pub(super) fn range<N: Real, const D: usize>(
+    corners: &[Vector<N, D>; 3],
+    along: &Vector<N, D>,
+) -> (N, N) {
     let [a, b, c] = [0, 1, 2].map(|index| corners[index].dot(along));
     (min(min(a, b), c), max(max(a, b), c))
 }
@@ -121,14 +130,16 @@ fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> V
 /// What is left of the axis of which most is left when what two vectors span is taken from it; zero where they
 /// span all.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
-    let other = without(other, one);
+    let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
+    let spans = [along(one), along(&without(other, one))];
     let (mut most, mut squared) = (Vector::<N, D>::zeros(), N::lit(0.0625));
     for index in 0..D {
-        let mut axis = Vector::<N, D>::zeros();
-        axis[index] = N::ONE;
-        let left = without(&without(&axis, one), &other);
-        if left.norm_squared() > squared {
-            (most, squared) = (left, left.norm_squared());
+        let [a, b] = spans.each_ref().map(|span| span[index]);
+        let left = N::ONE - a * a - b * b;
+        if left > squared {
+            let mut axis = Vector::<N, D>::zeros();
+            axis[index] = N::ONE;
+            (most, squared) = (axis - spans[0] * a - spans[1] * b, left);
         }
     }
     most

@@ -42,6 +42,14 @@ impl<N: Real, const D: usize> Path<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
+    /// The largest distance at a time from which the solids may still come as near as the target.
+    fn limit(&self, along: N, tolerance: N) -> N {
+        if !self.end.is_finite_number() {
+            return N::INFINITY;
+        }
+        self.target + self.velocity.norm() * (self.end - along) + tolerance
+    }
+
     /// How fast the solids approach along a normal.
     fn closing(&self, normal: &Vector<N, D>) -> N {
         let closing = -normal.dot(&self.velocity);
@@ -91,10 +99,24 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
 ) -> Option<Arrival<N, D>> {
+    advance_from(start, path, N::ZERO)
+}
+
+/// [`advance`] of solids that certainly do not meet before a time.
+pub(crate) fn advance_from<N: Space<D>, const D: usize>(
+    start: &Pair<'_, N, D>,
+    path: &Path<N, D>,
+    earliest: N,
+) -> Option<Arrival<N, D>> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    let found = separation(start, N::INFINITY).filter(|_| path.end >= N::ZERO)?;
+    // What is apart by rounding alone says nothing of a contact at the start.
+    let is_apart = earliest * max_component(&path.velocity) > tolerance;
+    let from = if is_apart { earliest - earliest * N::lit(8.0) * N::EPSILON } else { N::ZERO };
+    let pose12 = Pose { translation: path.place(start, from), ..start.pose12 };
+    let limit = path.limit(from, tolerance);
+    let found = separation(&Pair { pose12, ..*start }, limit).filter(|_| path.end >= N::ZERO)?;
     let gap = found.distance - path.target;
-    if gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
+    if !is_apart && gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
         return None;
     }
     if gap > tolerance
@@ -102,17 +124,18 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     {
         return Some(arrival);
     }
-    by_steps(start, path, found, tolerance)
+    by_steps(start, path, from, found, tolerance)
 }
 
-/// The arrival by steps from where the solids lie as they do at the start.
+/// The arrival by steps from where the solids lie at a time.
 fn by_steps<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
+    mut along: N,
     mut found: Separation<N, D>,
     tolerance: N,
 ) -> Option<Arrival<N, D>> {
-    let (mut pair, mut along) = (*start, N::ZERO);
+    let mut pair = *start;
     for _ in 0..MAX_STEPS {
         let (gap, closing) = (found.distance - path.target, path.closing(&found.normal));
         if gap <= tolerance {
@@ -132,7 +155,7 @@ fn by_steps<N: Space<D>, const D: usize>(
         if let Some(touch) = touching(&pair, &found, &step, path.target, tolerance) {
             return Some(Arrival::reached(along, touch));
         }
-        found = separation(&pair, N::INFINITY)?;
+        found = separation(&pair, path.limit(along, tolerance))?;
     }
     Some(Arrival { along, separation: found, status: ImpactStatus::StepsSpent })
 }
@@ -255,7 +278,7 @@ mod tests {
             if found.distance - target <= tolerance {
                 continue;
             }
-            let expected = by_steps(&start, &path, found, tolerance);
+            let expected = by_steps(&start, &path, N::ZERO, found, tolerance);
             count += usize::from(expected.is_some());
             let Some(arrival) = meeting_of_balls(&start, &path, tolerance) else { continue };
             met += 1;

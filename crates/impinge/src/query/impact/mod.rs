@@ -10,8 +10,9 @@ mod linear;
 mod motion;
 mod nonlinear;
 
+use linear::advance;
 use linear::is_hit_at_start;
-pub(crate) use linear::{Arrival, Path, advance};
+pub(crate) use linear::{Arrival, Path, advance_from};
 pub use motion::{ConstantVelocities, RigidMotion};
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
