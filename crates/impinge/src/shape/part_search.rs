@@ -10,7 +10,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
         Self::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    fn as_tree(&self) -> Option<&BoxTree<N, D>> {
+    fn as_tree(&self) -> Option<&Self> {
         Some(self)
     }
 
