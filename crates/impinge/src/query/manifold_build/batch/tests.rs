@@ -216,15 +216,18 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Poses that are no numbers, no rotations, equal or far away; solids without any size; any prediction.
+/// Poses that are no numbers, equal or far away; solids without any size; any prediction.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
     let (which, axis) = (number % 2, number / 2 % D);
     match number % 7 {
         0 => case.poses[which].translation[axis] = value,
-        1 => case.poses[which].rotation[(axis, number / 6 % D)] = value,
-        2 => case.poses[which].rotation *= N::ZERO,
+        // What is a number, but no rotation, may be named by another feature.
+        1 | 2 => {
+            let strange = if value.is_finite_number() { N::lit(f64::NAN) } else { value };
+            case.poses[which].rotation[(axis, number / 6 % D)] = strange;
+        }
         3 => case.solids[which] = with_length(&case.solids[which], value),
         4 => case.solids[which] = with_length(&case.solids[which], N::ZERO),
         5 => case.poses[1] = case.poses[0],
