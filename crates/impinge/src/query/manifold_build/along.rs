@@ -125,8 +125,9 @@ pub(crate) fn on_face3<N: Real>(
         lowest = min(candidate.distance, lowest);
     }
     if let Some(nearest) = nearest {
-        // Infinite where there is none.
-        if lowest > nearest + tolerance {
+        // Infinite where there is none; what is no number is not near.
+        let is_reached = lowest <= nearest + tolerance;
+        if !is_reached {
             return false;
         }
         if let Some(deepest) = candidates.iter_mut().find(|found| found.distance == lowest) {
