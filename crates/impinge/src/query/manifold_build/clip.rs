@@ -27,8 +27,8 @@ pub(super) fn build<N: Real>(
     limit: usize,
     out: &mut RawManifold<N, 3>,
 ) {
-    let (rings, insides) = project(pair, frame);
-    let clip = RingClip { frame, rings: &rings, insides: &insides };
+    let mut clip = RingClip::blank(pair, frame);
+    clip.project(pair);
     let mut candidates = Candidates::new();
     if clip.has_area_or_length() {
         clip.candidates(&mut candidates);
@@ -52,9 +52,10 @@ pub(super) fn part_at_witness<N: Real>(
     pose: Option<&Pose<N, 3>>,
     frame: &Frame<N, 3>,
 ) -> FeatureId {
-    let mut rings = [SupportRing::new(which, kind, pose, frame)];
-    let [insides, _] = project_rings(Level::new(), &mut rings, frame);
-    let [ring] = &rings;
+    let (mut rings, mut insides) = ([SupportRing::blank(which, pose)], [Insides::new()]);
+    rings[0].fill(kind, frame);
+    project_rings(Level::new(), &mut rings, frame, &mut insides);
+    let ([ring], [insides]) = (&rings, &insides);
     ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
@@ -65,21 +66,9 @@ pub(super) fn candidates<N: Real>(
     frame: &Frame<N, 3>,
     out: &mut Candidates<N, 3>,
 ) {
-    let (rings, insides) = project(pair, frame);
-    RingClip { frame, rings: &rings, insides: &insides }.candidates(out);
-}
-
-/// Both supporting features, and where the corners of each are in the other.
-fn project<'a, N: Real>(
-    pair: &'a Pair<'_, N, 3>,
-    frame: &Frame<N, 3>,
-) -> ([SupportRing<'a, N>; 2], [Insides<N>; 2]) {
-    let mut rings = [
-        SupportRing::new(Which::First, pair.first, None, frame),
-        SupportRing::new(Which::Second, pair.second, Some(&pair.pose12), frame),
-    ];
-    let insides = project_rings(Level::new(), &mut rings, frame);
-    (rings, insides)
+    let mut clip = RingClip::blank(pair, frame);
+    clip.project(pair);
+    clip.candidates(out);
 }
 
 /// [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
@@ -87,11 +76,10 @@ fn project_rings<N: Real>(
     level: Level,
     rings: &mut [SupportRing<'_, N>],
     frame: &Frame<N, 3>,
-) -> [Insides<N>; 2] {
-    let mut insides = [Insides::new(), Insides::new()];
+    insides: &mut [Insides<N>],
+) {
     with_lanes!(level, simd =>
-        project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, &mut insides));
-    insides
+        project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, insides));
 }
 
 /// Projects one ring or two, and measures how far inside of the sides of each the corners of the other are.
@@ -100,7 +88,7 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     rings: &mut [SupportRing<'_, N>],
     frame: &Frame<N, 3>,
-    insides: &mut [Insides<N>; 2],
+    insides: &mut [Insides<N>],
 ) {
     for ring in rings.iter_mut() {
         ring.project::<S, V>(simd, frame);
@@ -218,22 +206,39 @@ fn share<N: Real>(from: N, to: N) -> N {
 /// Two rings in one frame.
 struct RingClip<'a, N: Real> {
     frame: &'a Frame<N, 3>,
-    rings: &'a [SupportRing<'a, N>; 2],
+    rings: [SupportRing<'a, N>; 2],
     /// For each ring where the corners of the other are in it.
-    insides: &'a [Insides<N>; 2],
+    insides: [Insides<N>; 2],
 }
 
-impl<N: Real> RingClip<'_, N> {
+impl<'a, N: Real> RingClip<'a, N> {
+    #[inline(always)]
+    fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a Frame<N, 3>) -> Self {
+        let rings = [
+            SupportRing::blank(Which::First, None),
+            SupportRing::blank(Which::Second, Some(&pair.pose12)),
+        ];
+        Self { frame, rings, insides: [Insides::new(), Insides::new()] }
+    }
+
+    /// Fills the rings with the supporting features of a pair, and measures where the corners of each are in the
+    /// other.
+    fn project(&mut self, pair: &Pair<'_, N, 3>) {
+        self.rings[0].fill(pair.first, self.frame);
+        self.rings[1].fill(pair.second, self.frame);
+        project_rings(Level::new(), &mut self.rings, self.frame, &mut self.insides);
+    }
+
     /// False of features that meet in a point, of which the nearest points say all.
     fn has_area_or_length(&self) -> bool {
-        let [first, second] = self.rings;
+        let [first, second] = &self.rings;
         let are_segments = first.is_segment() && second.is_segment();
         !(first.is_point() || second.is_point() || are_segments && !self.are_parallel())
     }
 
     /// Adds the corners of the common area that the request admits; of a point in the other feature the point.
     fn candidates(&self, out: &mut Candidates<N, 3>) {
-        let [first, second] = self.rings;
+        let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
             return self.common_stretch(out);
         }
@@ -310,7 +315,7 @@ impl<N: Real> RingClip<'_, N> {
     /// Adds where two sides cross, of which the first crosses the line of the second at a share of its length, if
     /// the second crosses the first's.
     fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
-        let ([one, other], in_one) = (self.rings, &self.insides[0]);
+        let ([one, other], in_one) = (&self.rings, &self.insides[0]);
         let (block1, lane1) = (side1 / LANES, side1 % LANES);
         let [from2, to2] = [side2, other.next(side2)].map(|at| &in_one.row(at)[block1]);
         if parted(from2, to2) >> lane1 & 1 == 1 {
@@ -369,7 +374,7 @@ impl<N: Real> RingClip<'_, N> {
         features: [FeatureId; 2],
         out: &mut Candidates<N, 3>,
     ) {
-        let (frame, [first, second]) = (self.frame, self.rings);
+        let (frame, [first, second]) = (self.frame, &self.rings);
         let (normal, lift1) = (frame.normal(), first.lift(&core1, frame));
         let distance = normal.dot(&(core2 - core1)) - lift1 - second.lift(&core2, frame);
         let found = frame.candidate(core1 + normal * lift1, distance, features);

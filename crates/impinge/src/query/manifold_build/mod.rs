@@ -16,9 +16,8 @@ mod frame;
 mod half_space;
 mod names;
 mod patch;
-mod patch_line;
-mod patch_outline;
-mod patch_shelves;
+mod patch_groups;
+mod patch_points;
 mod reduce;
 mod ring;
 mod stretch;
@@ -33,7 +32,6 @@ pub(crate) use self::batch::{KeptPairs, PairQuestion, Solid, update_pairs2, upda
 pub(super) use self::chain::SegmentPair;
 use self::frame::{Candidate, Candidates, Frame};
 pub(super) use self::patch::{Merging, Patch, PatchPoint, Piece, Points, merge};
-pub(super) use self::patch_line::merge_in_plane;
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,

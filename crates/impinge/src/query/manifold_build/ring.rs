@@ -59,30 +59,34 @@ pub(super) struct SupportRing<'a, N: Real> {
 }
 
 impl<'a, N: Real> SupportRing<'a, N> {
-    /// The feature of one solid of a pair, which is still to be [projected](Self::project).
-    pub(super) fn new(
-        which: Which,
-        kind: Kind<'_, N, 3>,
-        pose: Option<&'a Pose<N, 3>>,
-        frame: &Frame<N, 3>,
-    ) -> Self {
-        let outward = which.outward(frame);
-        let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
-        let mut faces: FaceBlocks<N> = smallvec![FaceRing::blank()];
-        let radius = supporting_feature(kind, &direction, &mut faces);
+    /// A ring without corners for one solid of a pair.
+    #[inline(always)]
+    pub(super) fn blank(which: Which, pose: Option<&'a Pose<N, 3>>) -> Self {
         Self {
             which,
             pose,
-            id: faces[0].id,
-            count: faces.iter().map(|face| face.count).sum(),
-            normal: pose.map_or(faces[0].normal, |pose| pose.vector(&faces[0].normal)),
-            faces,
+            id: FeatureId::Face(0),
+            count: 0,
+            faces: smallvec![FaceRing::blank()],
             blocks: SmallVec::new(),
+            normal: Vector::<N, 3>::zeros(),
             turn: N::ONE,
-            radius,
+            radius: N::ZERO,
             cosine: N::ONE,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         }
+    }
+
+    /// Fills a blank ring with the supporting feature, which is still to be [projected](Self::project). A ring is
+    /// some hundred bytes long, so it is filled where it lies.
+    pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &Frame<N, 3>) {
+        let outward = self.which.outward(frame);
+        let direction = self.pose.map_or(outward, |pose| pose.inverse_vector(&outward));
+        self.radius = supporting_feature(kind, &direction, &mut self.faces);
+        let normal = self.faces[0].normal;
+        self.normal = self.pose.map_or(normal, |pose| pose.vector(&normal));
+        self.id = self.faces[0].id;
+        self.count = self.faces.iter().map(|face| face.count).sum();
     }
 
     #[inline]

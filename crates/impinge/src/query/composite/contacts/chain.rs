@@ -15,7 +15,7 @@ use super::{
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
-use crate::query::manifold_build::{Along, Piece, SegmentPair, merge_in_plane};
+use crate::query::manifold_build::{Along, Piece, SegmentPair};
 use crate::query::separation::{ChainQuestion, Links, links};
 use crate::query::tiles::{LANES, Tiles};
 use crate::query::{ManifoldRequest, Pair, RawPoint};
@@ -51,7 +51,7 @@ pub(crate) fn update_chain<N: Real>(
     if !is_settled(&findings) {
         query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
     }
-    contacts.conclude(request, merge_in_plane, reference, center, &findings, &notes);
+    contacts.conclude(request, reference, center, &findings, &notes);
     true
 }
 

@@ -154,7 +154,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
         let findings = query.findings(&nearby, &mut notes);
-        self.conclude(request, merge, reference, center, &findings, &notes);
+        self.conclude(request, reference, center, &findings, &notes);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
@@ -162,7 +162,6 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     fn conclude(
         &mut self,
         request: &ManifoldRequest<N>,
-        merge: MergeFn<N, D>,
         reference: Reference<N, D>,
         center: Reference<N, D>,
         findings: &[Finding<N, D>],
@@ -202,9 +201,6 @@ fn is_settled<N: Real, const D: usize>(findings: &[Finding<N, D>]) -> bool {
     }
     findings.is_empty() || lowest <= max(distance, N::ZERO)
 }
-
-/// Merges pieces into patches.
-type MergeFn<N, const D: usize> = fn(&Merging<'_, N, D>, &mut Vec<Patch<N, D>>, &mut PairIds);
 
 /// The middle of a convex first shape, in the frame of the second.
 fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {

@@ -14,7 +14,7 @@ use super::{
 use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, max, min};
-use crate::query::manifold_build::{Piece, merge};
+use crate::query::manifold_build::Piece;
 use crate::query::separation::{BallQuestion, Sighted, ball_triangle, sighted};
 use crate::query::tiles::{LANES, PartGap};
 use crate::query::{ManifoldRequest, Pair};
@@ -42,7 +42,7 @@ pub(crate) fn update_on_surface<N: Real>(
         let query = Query { between, around, reference: &reference, request: &rolling.request };
         query.settle(&Scene::new(between, around), &mut findings, &mut notes);
     }
-    contacts.conclude(request, merge, reference, center, &findings, &notes);
+    contacts.conclude(request, reference, center, &findings, &notes);
     true
 }
 

@@ -1,4 +1,5 @@
-//! The few points that stand for a patch: of those of all its pieces the ones on the outline.
+//! The few points that stand for a patch: those of its only piece, or of the points of all its pieces the ones on
+//! the outline.
 //!
 //! A patch has few points, most often those of one piece. So all is done in place, in lists that the
 //! patches of a shape share.
@@ -7,7 +8,8 @@ use smallvec::SmallVec;
 
 use super::super::{PairIds, RawPoint};
 use super::patch::{Kept, Merging, PatchPoint, ordering};
-use super::reduce::{self, Indices};
+use super::patch_groups::Lead;
+use super::reduce::{self, Projections, a_deepest, projected};
 use crate::math::{Real, Space, Vector};
 
 /// So many points need no memory for their outline but that of the function.
@@ -32,68 +34,64 @@ pub(super) struct Choosing<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// Fills a patch, given the piece with the deepest point, that point and all pieces, with at most as many
-    /// points as are asked for: the deepest and, of the outline, those that span most. The list of members is
-    /// used again and again.
+    /// Fills a patch, given the piece with the deepest point and all pieces, with at most as many
+    /// points as are asked for: the deepest and those that span most. The list of members is used again and again.
     pub(super) fn fill(
         &self,
-        (lead, deepest): (usize, usize),
-        pieces: impl Iterator<Item = usize> + Clone,
+        lead: Lead,
+        pieces: &[usize],
         members: &mut Members<N>,
-        (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
+        out: &mut SmallVec<[PatchPoint<N, D>; 4]>,
+        ids: &mut PairIds,
     ) {
-        let piece = &self.merging.pieces[lead];
-        if piece.points.len() == 1 && pieces.clone().count() == 1 {
-            let id = self.kept[deepest].unwrap_or_else(|| ids.next());
-            let raw = RawPoint { id, code: 0, ..self.merging.points[deepest] };
-            return out.push(PatchPoint { raw, parts: piece.parts });
-        }
-        let mut tangents = (N::tables().tangents)(&piece.normal);
-        let count: usize =
-            pieces.clone().map(|piece| self.merging.pieces[piece].points.len()).sum();
-        if count > FEW {
+        let mut tangents = (N::tables().tangents)(&self.merging.pieces[lead.piece].normal);
+        let count = |piece: &usize| self.merging.pieces[*piece].points.len();
+        if pieces.iter().map(count).sum::<usize>() > FEW {
             tangents = askew(&tangents);
         }
-        self.gather((lead, deepest), pieces, &tangents, members);
-        let count = self.drop_copies(members);
-        let members = &members[..count];
+        self.gather(lead, pieces, &tangents, members);
         // In the plane two points delimit all there is.
         let is_line = tangents[1] == Vector::<N, D>::zeros();
         let most = self.merging.request.max_points.max(1);
         let limit = if is_line { most.min(2) } else { most };
-        let lowest = self.merging.points[deepest].distance;
+        let lowest = self.merging.points[lead.deepest].distance;
         let level = lowest + self.merging.tolerance;
-        let chosen = self.chosen(members, level, limit);
-        self.points(members, &chosen, lowest, (out, ids));
+        // The points of one piece are the corners of an area already.
+        if !(pieces.len() == 1 && members.len() <= limit) {
+            self.drop_copies(members);
+            *members = self.chosen(members, level, limit, is_line);
+        }
+        self.points(members, lowest, out, ids);
     }
 
-    /// The indices of at most `limit` members, one of the deepest among them.
-    fn chosen(&self, members: &[Member<N>], level: N, limit: usize) -> Indices {
-        // Two points are their own outline.
-        if members.len() <= 2 && members.len() <= limit {
-            return (0..members.len()).collect();
-        }
+    /// At most `limit` members, one of the deepest among them.
+    fn chosen(&self, members: &[Member<N>], level: N, limit: usize, is_line: bool) -> Members<N> {
         let seen = members
             .iter()
             .map(|member| (member.flat, self.distance(member), self.kept[member.point].is_some()));
-        reduce::spanning(&mut reduce::projected(seen, level), limit, self.merging.tolerance)
+        let (mut points, tolerance) = (projected(seen, level), self.merging.tolerance);
+        let indices = if is_line {
+            keep_ends(&mut points);
+            reduce::chosen(&mut points, limit, tolerance)
+        } else {
+            reduce::spanning(&mut points, limit, tolerance)
+        };
+        indices.iter().map(|&index| members[index]).collect()
     }
 
     /// Appends the chosen points in the order of their numbers; one of them has the distance of the deepest.
     fn points(
         &self,
-        members: &[Member<N>],
-        chosen: &[usize],
+        chosen: &[Member<N>],
         lowest: N,
-        (out, ids): (&mut SmallVec<[PatchPoint<N, D>; 4]>, &mut PairIds),
+        out: &mut SmallVec<[PatchPoint<N, D>; 4]>,
+        ids: &mut PairIds,
     ) {
         let level = lowest + self.merging.tolerance;
         let deepest = super::deepest_of(chosen.len(), level, |at| {
-            let member = &members[chosen[at]];
-            (self.kept[member.point].is_some(), self.distance(member))
+            (self.kept[chosen[at].point].is_some(), self.distance(&chosen[at]))
         });
-        for (place, &index) in chosen.iter().enumerate() {
-            let Member { piece, point, .. } = members[index];
+        for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
             let id = self.kept[point].unwrap_or_else(|| ids.next());
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
             if place == deepest {
@@ -116,8 +114,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// where its coordinates are no numbers.
     fn gather(
         &self,
-        (lead, deepest): (usize, usize),
-        pieces: impl Iterator<Item = usize>,
+        Lead { piece: lead, deepest }: Lead,
+        pieces: &[usize],
         tangents: &[Vector<N, D>; 2],
         members: &mut Members<N>,
     ) {
@@ -125,7 +123,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let origin = points[deepest].point1;
         members.clear();
         members.push(Member { flat: Vector::<N, 2>::zeros(), piece: lead, point: deepest });
-        for piece in pieces {
+        for &piece in pieces {
             for point in self.merging.pieces[piece].points.clone() {
                 if point == deepest {
                     continue;
@@ -143,8 +141,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 
     /// Sorts the points along the first tangent, then along the second; of points at one place, which
     /// the parts around it all have, one stays: one with a number, the deepest, or that of the first
-    /// parts. Answers how many stay, which are the first.
-    fn drop_copies(&self, members: &mut [Member<N>]) -> usize {
+    /// parts.
+    fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
         sort(members);
         // The first ones are those kept.
@@ -166,11 +164,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
                 }
             }
         }
+        members.truncate(count);
         if is_exchanged {
             // An exchange may have taken a point past its neighbours.
-            sort(&mut members[..count]);
+            sort(members);
         }
-        count
     }
 
     fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
@@ -181,6 +179,15 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let lower = self.distance(old) - self.distance(new);
         lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
     }
+}
+
+/// Leaves of sorted points on a line the two ends and, if neither is as deep, a deepest one.
+fn keep_ends<N: Real>(points: &mut Projections<N>) {
+    let (last, deepest) = (points.len() - 1, a_deepest(points));
+    let is_inner = !(points[0].is_deepest || points[last].is_deepest);
+    points.retain(|point| {
+        point.index == 0 || point.index == last || is_inner && point.index == deepest
+    });
 }
 
 /// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.

@@ -1,0 +1,288 @@
+//! Which pieces make one patch: those with one normal in one plane.
+//!
+//! On rough ground each piece has a normal of its own, and is a patch. Elsewhere pieces are taken deepest first,
+//! and each is compared with the deepest piece of the patches before whose normals may be the same. The normals
+//! of many pieces lie in cells along one axis, so that few are compared.
+
+use core::ops::Range;
+
+use smallvec::SmallVec;
+
+use super::super::RawPoint;
+use super::patch::{Merging, Piece, by_depth};
+use crate::math::{Real, Vector, min};
+
+/// Normals that differ by more than this, as vectors, are those of different patches; points that
+/// lie farther from a plane than this part of their distance lie in different planes.
+const SAME: f64 = 1.0 / 1024.0;
+/// The normals of so many pieces are in one cell.
+const FEW_PIECES: usize = 12;
+/// How long a cell is: longer by rounding than what the normals of one patch differ by.
+const CELL: f64 = SAME * (1.0 + 1.0 / 16.0);
+/// The axis of the cells, a unit vector. It is askew to the axes of space, along which most faces of what people
+/// build lie.
+const AXIS: [f64; 3] = [0.36, 0.48, 0.8];
+/// Of the patches in a cell so many are compared: the deepest.
+const MAX_COMPARED: usize = 32;
+/// So many normals for each piece are compared to find that all differ.
+const MAX_ALIKE: usize = 4;
+
+/// A piece, and its deepest point.
+#[derive(Clone, Copy)]
+pub(super) struct Lead {
+    pub(super) piece: usize,
+    pub(super) deepest: usize,
+}
+
+/// The pieces of one patch.
+pub(super) struct Group {
+    /// The piece whose point is the deepest.
+    pub(super) lead: Lead,
+    /// The first of the parts.
+    first: [u32; 2],
+    /// Where in the order of all they are.
+    pieces: Range<usize>,
+}
+
+/// The patches that some pieces make.
+pub(super) struct Groups {
+    /// Those within the prediction, in the order of their first parts.
+    pub(super) groups: SmallVec<[Group; 8]>,
+    /// The pieces of each group together.
+    order: SmallVec<[usize; 16]>,
+}
+
+impl Groups {
+    /// Cost: O(n log n) in the number of pieces.
+    pub(super) fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
+        let pieces = merging.pieces;
+        let mut leads = SmallVec::<[Lead; 16]>::with_capacity(pieces.len());
+        for (piece, own) in pieces.iter().enumerate() {
+            leads.extend(merging.deepest_of(own).map(|deepest| Lead { piece, deepest }));
+        }
+        let mut cells = Cells::of(pieces);
+        let mut all = if cells.have_own_normals(pieces) {
+            Self::of_one_each(merging, &leads)
+        } else {
+            leads.sort_by(|a, b| {
+                let by_value = by_depth(&merging.points[a.deepest], &merging.points[b.deepest]);
+                by_value.then_with(|| a.piece.cmp(&b.piece))
+            });
+            Self::of_level(merging, &leads, &mut cells)
+        };
+        let is_near =
+            |lead: &Lead| merging.points[lead.deepest].distance <= merging.request.prediction;
+        all.groups.retain(|group| is_near(&group.lead));
+        all
+    }
+
+    /// Each piece is a patch of its own.
+    fn of_one_each<N: Real, const D: usize>(merging: &Merging<'_, N, D>, leads: &[Lead]) -> Self {
+        let group = |(at, lead): (usize, &Lead)| Group {
+            lead: *lead,
+            first: merging.pieces[lead.piece].parts,
+            pieces: at..at + 1,
+        };
+        let order = leads.iter().map(|lead| lead.piece).collect();
+        Self { groups: leads.iter().enumerate().map(group).collect(), order }
+    }
+
+    /// Of pieces, deepest first: those are one patch that are level with its first.
+    fn of_level<N: Real, const D: usize>(
+        merging: &Merging<'_, N, D>,
+        leads: &[Lead],
+        cells: &mut Cells,
+    ) -> Self {
+        let (mut groups, pieces) = (SmallVec::<[Group; 8]>::new(), merging.pieces);
+        let mut of_leads = SmallVec::<[(usize, usize); 16]>::with_capacity(leads.len());
+        for lead in leads {
+            let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
+            let known = cells.near(lead.piece).find(is_level);
+            let group = known.unwrap_or(groups.len());
+            let parts = pieces[lead.piece].parts;
+            if known.is_none() {
+                cells.put(group, lead.piece);
+                groups.push(Group { lead: *lead, first: parts, pieces: 0..0 });
+            }
+            groups[group].first = groups[group].first.min(parts);
+            of_leads.push((group, lead.piece));
+        }
+        of_leads.sort_by_key(|&(group, _)| group);
+        let mut end = 0;
+        for own in of_leads.chunk_by(|a, b| a.0 == b.0) {
+            groups[own[0].0].pieces = end..end + own.len();
+            end += own.len();
+        }
+        groups.sort_by_key(|group| group.first);
+        Self { groups, order: of_leads.iter().map(|&(_, piece)| piece).collect() }
+    }
+
+    /// The pieces of one of the groups.
+    pub(super) fn pieces(&self, group: &Group) -> &[usize] {
+        &self.order[group.pieces.clone()]
+    }
+}
+
+/// Two pieces, of which the first is the deeper, have one normal and lie in one plane: that of
+/// the points of the first shape or that of those of the second.
+fn are_level<N: Real, const D: usize>(
+    merging: &Merging<'_, N, D>,
+    lead1: &Lead,
+    lead2: &Lead,
+) -> bool {
+    let [normal1, normal2] = [lead1, lead2].map(|lead| &merging.pieces[lead.piece].normal);
+    let [point1, point2] =
+        [lead1, lead2].map(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
+    // Written so that NaN differs.
+    let is_same = (normal1 - normal2).norm_squared() <= square_of_same();
+    let arm = point2.point1 - point1.point1;
+    let room = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
+    let rise1 = normal1.dot(&arm);
+    let rise2 = rise1 + point2.distance - point1.distance;
+    is_same && min(rise1.abs(), rise2.abs()) <= room
+}
+
+fn square_of_same<N: Real>() -> N {
+    N::lit(SAME) * N::lit(SAME)
+}
+
+/// A stretch of the axis, in which the normals of some pieces end.
+struct Cell {
+    number: i32,
+    /// The patches whose first pieces are here, the deepest first.
+    patches: SmallVec<[usize; 2]>,
+}
+
+/// The normals of many pieces in cells; those of few in one.
+struct Cells {
+    /// In ascending order.
+    cells: SmallVec<[Cell; 1]>,
+    /// The place of the cell of each of many pieces.
+    of_pieces: Vec<usize>,
+    /// Many pieces in the order of their cells.
+    order: Vec<(i32, usize)>,
+}
+
+impl Cells {
+    fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
+        let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
+        let empty = |number| Cell { number, patches: SmallVec::new() };
+        if pieces.len() <= FEW_PIECES {
+            cells.push(empty(0));
+            return Self { cells, of_pieces, order };
+        }
+        order.extend(pieces.iter().map(|piece| cell_of(&piece.normal)).zip(0..));
+        order.sort_unstable();
+        of_pieces.resize(pieces.len(), 0);
+        for &(number, piece) in &order {
+            if cells.last().is_none_or(|last: &Cell| last.number != number) {
+                cells.push(empty(number));
+            }
+            of_pieces[piece] = cells.len() - 1;
+        }
+        Self { cells, of_pieces, order }
+    }
+
+    /// No two pieces have one normal; false, too, where many would have to be compared.
+    fn have_own_normals<N: Real, const D: usize>(&self, pieces: &[Piece<N, D>]) -> bool {
+        let are_apart = |a: usize, b: usize| {
+            (pieces[a].normal - pieces[b].normal).norm_squared() > square_of_same()
+        };
+        if pieces.len() <= FEW_PIECES {
+            return (1..pieces.len()).all(|at| (0..at).all(|before| are_apart(before, at)));
+        }
+        let mut rest = MAX_ALIKE * pieces.len();
+        self.order.iter().enumerate().all(|(at, &(number, piece))| {
+            let close = self.order[at + 1..].iter().take_while(|(other, _)| other - number <= 1);
+            close.into_iter().all(|&(_, other)| {
+                rest = rest.saturating_sub(1);
+                rest > 0 && are_apart(piece, other)
+            })
+        })
+    }
+
+    /// The patches whose normals may be the same as that of a piece.
+    fn near(&self, piece: usize) -> impl Iterator<Item = usize> {
+        let own = self.of_pieces.get(piece).copied().unwrap_or(0);
+        let number = self.cells[own].number;
+        let close = &self.cells[own.saturating_sub(1)..self.cells.len().min(own + 2)];
+        let close = close.iter().filter(move |cell| (cell.number - number).abs() <= 1);
+        close.flat_map(|cell| cell.patches.iter().take(MAX_COMPARED).copied())
+    }
+
+    /// Puts a patch into the cell of its first piece.
+    fn put(&mut self, patch: usize, piece: usize) {
+        let own = self.of_pieces.get(piece).copied().unwrap_or(0);
+        self.cells[own].patches.push(patch);
+    }
+}
+
+/// The number of the cell of a unit vector.
+#[expect(clippy::cast_possible_truncation, reason = "a unit vector is in some thousands of cells")]
+fn cell_of<N: Real, const D: usize>(normal: &Vector<N, D>) -> i32 {
+    let along = |sum: f64, (own, axis): (&N, f64)| sum + own.as_f64() * axis;
+    (normal.iter().zip(AXIS).fold(0.0, along) / CELL).floor() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+
+    /// Pieces without points, with normals all over, of which some are nearly equal.
+    fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
+        let mut noise = Noise(3);
+        let mut pieces: Vec<Piece<f64, D>> = Vec::new();
+        for at in 0..count {
+            let is_near = has_equal && at % 4 == 3;
+            let near = if is_near { pieces[at - 1].normal } else { Vector::<f64, D>::zeros() };
+            let scale = if is_near { 0.4 * SAME } else { 1.0 };
+            let aside = Vector::<f64, D>::from_fn(|_, _| scale * noise.next());
+            let normal = (near + aside).normalize();
+            pieces.push(Piece { normal, parts: [0; 2], points: 0..0 });
+        }
+        pieces
+    }
+
+    /// All patches with the same normal are near, and few others: their number does not grow with that of all.
+    fn check<const D: usize>(count: usize, most: usize) {
+        let pieces = pieces::<D>(count, true);
+        let (mut cells, mut compared, mut same) = (Cells::of(&pieces), 0, 0);
+        assert!(!cells.have_own_normals(&pieces), "of {count} pieces some have one normal");
+        for (at, piece) in pieces.iter().enumerate() {
+            let near: Vec<usize> = cells.near(at).collect();
+            compared += near.len();
+            if near.len() < MAX_COMPARED {
+                for (other, before) in pieces[..at].iter().enumerate() {
+                    let is_same = (before.normal - piece.normal).norm() <= SAME;
+                    assert!(!is_same || near.contains(&other), "{at} and {other}");
+                    same += usize::from(is_same);
+                }
+            }
+            cells.put(at, at);
+        }
+        assert!(same * 10 > count, "{same} have the same normal as another");
+        assert!(compared <= most * count, "{compared} patches are compared with {count} pieces");
+    }
+
+    #[test]
+    fn few_patches_are_near() {
+        check::<3>(10, 10);
+        for count in [100, 1000, 3000] {
+            check::<3>(count, 4);
+            check::<2>(count, MAX_COMPARED);
+        }
+    }
+
+    #[test]
+    fn normals_that_all_differ_are_found_to() {
+        for count in [5, 40, 100] {
+            let pieces = pieces::<3>(count, false);
+            let are_apart = |at: usize, before: usize| {
+                (pieces[at].normal - pieces[before].normal).norm() > SAME
+            };
+            assert!((1..count).all(|at| (0..at).all(|before| are_apart(at, before))));
+            assert!(Cells::of(&pieces).have_own_normals(&pieces), "{count} normals");
+        }
+    }
+}
