@@ -119,7 +119,11 @@ fn is_explained<N: Space<D>, const D: usize>(
         return false;
     }
     let is_beyond = finding.standing == Standing::Beyond;
-    let is_asked = |way: &&Way<N, D>| is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
+    // A way that is shorter than the parts are deep in each other does not part them.
+    let least = -finding.distance - finding.tolerance;
+    let is_asked = |way: &&Way<N, D>| {
+        way.depth >= least && (is_beyond || way.normal.dot(&normal) < N::lit(ALIKE))
+    };
     // The plane that is known to part the two best may do so well enough once they are moved.
     let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
     let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -finding.tolerance);
