@@ -8,7 +8,7 @@
 //! from the last query rather than from step to step, so that what is kept cannot drift.
 //!
 //! Signed distances change by no more than their solids move. Those that are handed on are therefore at
-//! most twice the tolerance off those of a query.
+//! most twice the tolerance off those of a query, and as far beyond the prediction; the nearest is within it.
 
 use core::fmt;
 
@@ -87,7 +87,8 @@ impl<N: Real, const D: usize> Reference<N, D> {
     }
 
     /// Measures the distance of each contact, whose points are fixed to the solids, along its normal in
-    /// the first of them. Answers whether none has come to be farther than `limit`.
+    /// the first of them. Answers whether one is within `limit`, or there is none: of many contacts one or the
+    /// other leaves the prediction at every step, which ends nothing.
     ///
     /// With x ↦ R x + t for `pose21` and R' and t' for that of the reference, a point p of the first solid
     /// and the one opposite, by d n, were at R' p + t' and R' (p + d n) + t'. Of the second one's way to the
@@ -96,17 +97,17 @@ impl<N: Real, const D: usize> Reference<N, D> {
     fn measure<S: KeptContacts<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
         let turned = self.pose21.rotation - pose21.rotation;
         let moved = self.pose21.translation - pose21.translation;
-        let (mut index, mut are_near) = (0, true);
+        let (mut index, mut is_near) = (0, false);
         state.each_point(|normal, distance, point| {
             let outer = pose21.rotation * normal;
             let (slope, shift) = (turned.tr_mul(&outer), outer.dot(&moved));
             let scale = outer.dot(&(self.pose21.rotation * normal));
             let before = self.distances[index];
             *distance = slope.dot(&point.coords) + shift + scale * before;
-            are_near &= *distance <= max(limit, before);
+            is_near |= *distance <= max(limit, before);
             index += 1;
         });
-        are_near
+        is_near || index == 0
     }
 }
 
