@@ -79,7 +79,7 @@ fn build_in_plane<N: Real>(
         return;
     }
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
-    if !stretch::build(pair, &frame, (request, limit), out) {
+    if !stretch::build(pair, &frame, limit, out) {
         // A user's solid with a supporting feature that is neither a point nor a side.
         settle_witness(pair, separation, out);
     }
