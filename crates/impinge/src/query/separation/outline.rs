@@ -3,9 +3,9 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::segment_lanes::is_usual;
-use crate::math::lanes::{dot, either, highest_lane, load, spread};
+use crate::math::lanes::{LanePose, dot, either, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
 /// How many vertices are looked at side by side.
@@ -156,11 +156,10 @@ impl<N: Real> Outline<N> {
         simd: S,
         pose: &Pose<N, 2>,
     ) -> Self {
-        let at = &pose.translation;
+        let pose: LanePose<V, 2> = LanePose::of(simd, pose);
         for block in &mut self.blocks {
-            let [x, y]: [V; 2] = turned(simd, &block.vertices, &pose.rotation);
-            block.vertices = stored(&[x + V::all(simd, at.x), y + V::all(simd, at.y)]);
-            block.normals = stored(&turned::<S, N, V>(simd, &block.normals, &pose.rotation));
+            block.vertices = stored(&pose.point(&load(simd, &block.vertices)));
+            block.normals = stored(&pose.vector(&load(simd, &block.normals)));
         }
         self
     }
@@ -270,18 +269,6 @@ impl<N: Real> Outline<N> {
         let length = dot(&tip, &tip).sqrt();
         ([tip[0] / length, tip[1] / length], is_tip)
     }
-}
-
-/// Vectors in a frame turned by a matrix.
-#[inline(always)]
-fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    vectors: &[Row<N>; 2],
-    by: &Matrix<N, 2>,
-) -> [V; 2] {
-    let v: [V; 2] = load(simd, vectors);
-    let row = |row: usize| [V::all(simd, by[(row, 0)]), V::all(simd, by[(row, 1)])];
-    [dot(&row(0), &v), dot(&row(1), &v)]
 }
 
 #[inline(always)]

@@ -4,9 +4,9 @@ use super::super::polygon_polygon;
 use super::super::segment_lanes::SegmentGap;
 use super::{ChainQuestion, Eight, Links};
 use crate::convex::Separation;
-use crate::math::lanes::{dot, spread, with_lanes};
+use crate::math::lanes::{LanePose, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide, min};
+use crate::math::{Point, Real, Vector, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{Kind, Segment};
@@ -75,8 +75,8 @@ impl<N: Real> Gaps<N> {
         let own: [Point<N, 2>; 2] = [*core.a(), *core.b()];
         let found = if let Kind::Segment(_) = question.solid {
             let own: [[V; 2]; 2] = own.map(|end| spread(simd, &end.coords));
-            let [a, b] = &eight.ends;
-            let chain = [placed(simd, &question.pose12, a), placed(simd, &question.pose12, b)];
+            let pose12 = LanePose::of(simd, &question.pose12);
+            let chain = [pose12.point(&eight.ends[0]), pose12.point(&eight.ends[1])];
             SegmentGap::of(simd, [&own, &chain])
         } else {
             let own = own.map(|end| spread(simd, &question.pose12.point(&end).coords));
@@ -108,16 +108,4 @@ impl<N: Real> Gaps<N> {
         let is_known = self.known >> lane & 1 == 1;
         is_known.then_some(Separation { distance, normal, point1, point2 })
     }
-}
-
-/// Points of a frame that has a pose.
-#[inline(always)]
-fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    pose: &Pose<N, 2>,
-    local: &[V; 2],
-) -> [V; 2] {
-    let (turn, at) = (&pose.rotation, &pose.translation);
-    let row = |row: usize| [V::all(simd, turn[(row, 0)]), V::all(simd, turn[(row, 1)])];
-    [dot(&row(0), local) + V::all(simd, at.x), dot(&row(1), local) + V::all(simd, at.y)]
 }
