@@ -197,6 +197,19 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
+/// Of two masks the one that each lane wants.
+#[inline(always)]
+pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
+    (is & one) | (!is & other)
+}
+
+/// A bit for each of eight lanes.
+#[inline(always)]
+pub(crate) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+    let [low, ..] = mask.to_bitmask().to_le_bytes();
+    low
+}
+
 /// A [`Pose`] in each lane, its rotation by columns.
 pub(crate) struct LanePose<V, const D: usize> {
     pub(crate) rotation: [[V; D]; D],

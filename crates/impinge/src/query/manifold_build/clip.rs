@@ -15,8 +15,8 @@ use smallvec::SmallVec;
 use super::frame::{Candidate, Candidates, Frame, Which, part_beside};
 use super::ring::{LANES, RingCorner, SupportRing};
 use super::{Pair, RawManifold, add_witness, choose, names};
-use crate::math::lanes::{load, with_lanes};
-use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::lanes::{bits, load, with_lanes};
+use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{FeatureId, Kind};
 
@@ -159,8 +159,8 @@ impl<N: Real> Insides<N> {
                 let (from, inward): ([V; 2], [V; 2]) =
                     (load(simd, &block.flats), load(simd, &block.inward));
                 let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
-                let [within, ..] = inside.simd_gt(most).to_bitmask().to_le_bytes();
-                let [beyond, ..] = inside.simd_lt(least).to_bitmask().to_le_bytes();
+                let within = bits(inside.simd_gt(most));
+                let beyond = bits(inside.simd_lt(least));
                 let all = first_bits(sides - at * LANES);
                 let mut row = SideRow {
                     inside: [N::ZERO; LANES],

@@ -240,7 +240,7 @@ impl<N: Real> Outline<N> {
         most
     }
 
-    /// The blocks with what [`Self::reach`] says along the normals of their sides.
+    /// All vertices, with the normals of the sides that start there, eight at a time.
     #[inline(always)]
     pub(super) fn blocks(&self) -> &[OutlineBlock<N>] {
         &self.blocks

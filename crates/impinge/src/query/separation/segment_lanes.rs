@@ -6,7 +6,7 @@
 use super::segments::core;
 use crate::convex::Separation;
 use crate::math::lanes::{
-    dot, either, minus, negated, norm, over, plus, spread, times, with_lanes,
+    dot, either, either_mask, minus, negated, norm, over, plus, spread, times, with_lanes,
 };
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
@@ -103,7 +103,7 @@ impl<V, M> EndAndSide<V, M> {
                 either(is_other, &other.points[0], point1),
                 either(is_other, &other.points[1], point2),
             ],
-            is_inside: (is_other & other.is_inside) | (!is_other & self.is_inside),
+            is_inside: either_mask(is_other, other.is_inside, self.is_inside),
             along: either(is_other, &other.along, &self.along),
             squared: is_other.select(other.squared, self.squared),
         }

@@ -4,7 +4,7 @@
 //! Of the solid its core counts by its extents along its own axes alone, as that of a box.
 
 use super::near::{least_length, relative_slack};
-use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
+use crate::math::lanes::{bits, by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide, min};
 use crate::query::tiles::{LANES, Tiles};
@@ -82,7 +82,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     let mut known = [N::ZERO; LANES];
     let known_bound = is_bound.select(from_middle, V::all(simd, N::ZERO));
     is_in.select(known_bound, V::all(simd, N::INFINITY)).store(&mut known);
-    let [near, ..] = (is_in & !is_beyond).to_bitmask().to_le_bytes();
+    let near = bits(is_in & !is_beyond);
     Bounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 

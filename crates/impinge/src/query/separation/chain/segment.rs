@@ -4,8 +4,8 @@ use super::super::polygon_polygon;
 use super::super::segment_lanes::SegmentGap;
 use super::{ChainQuestion, Eight, Links};
 use crate::convex::Separation;
-use crate::math::lanes::{LanePose, spread, with_lanes};
-use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::lanes::{LanePose, bits, spread, with_lanes};
+use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
@@ -83,12 +83,11 @@ impl<N: Real> Gaps<N> {
             SegmentGap::of(simd, [&eight.ends, &own])
         };
         let row = [N::ZERO; LANES];
-        let [known, ..] = found.is_known.to_bitmask().to_le_bytes();
         let mut gaps = Self {
             gaps: row,
             normals: [row; 2],
             points: [[row; 2]; 2],
-            known,
+            known: bits(found.is_known),
             least: eight.least(),
         };
         found.gap.store(&mut gaps.gaps);

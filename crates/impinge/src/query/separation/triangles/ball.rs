@@ -8,9 +8,8 @@
 
 use smallvec::SmallVec;
 
-use super::low_byte;
 use crate::bounding_volume::Aabb;
-use crate::math::lanes::{by_axis, dot, either, load, minus, spread, with_lanes};
+use crate::math::lanes::{bits, by_axis, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, max_component, min};
 use crate::query::tiles::{LANES, Tiles};
@@ -74,7 +73,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         Sighted { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
-        let within = meant & low_byte(are_within::<S, N, V>(simd, question, tiles).to_bitmask());
+        let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
         if within == 0 {
             continue;
         }
@@ -215,7 +214,7 @@ impl<V> TrianglePacket<V> {
         let [a, b, c, d, e, f, g, h] = known;
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
-        let near = within & low_byte((!is_beyond).to_bitmask());
+        let near = within & bits(!is_beyond);
         let mut places =
             NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
         if near != 0 && has_seams {
@@ -223,7 +222,7 @@ impl<V> TrianglePacket<V> {
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
             let (kind, room) = self.beside(simd);
             let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
-            places.sides = low_byte(is_beside.to_bitmask());
+            places.sides = bits(is_beside);
             kind.store(&mut places.kinds);
             (self.squared - clear).store(&mut places.least);
             let most = is_tall.select(self.squared + clear, V::all(simd, N::INFINITY));

@@ -33,11 +33,6 @@ fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-fn low_byte(bits: u64) -> u8 {
-    let [low, ..] = bits.to_le_bytes();
-    low
-}
-
 /// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
 /// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
 /// that are not treated here.

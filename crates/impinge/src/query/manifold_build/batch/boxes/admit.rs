@@ -1,8 +1,7 @@
 //! The candidates of eight pairs, each in a slot of its own, and which of them count.
 
 use super::LANES;
-use super::masks::bits;
-use crate::math::lanes::norm;
+use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 

@@ -6,9 +6,9 @@
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
-use super::super::masks::bits;
 use super::faces::{Faces, cross};
 use super::shown::Shown;
+use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
