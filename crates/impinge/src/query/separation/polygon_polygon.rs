@@ -48,6 +48,14 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     if let Some(found) = segment_lanes::separation(Level::new(), pair) {
         return Some(found).filter(|found| found.distance <= limit);
     }
+    separation_of_outlines(pair, limit)
+}
+
+/// [`separation`] of what is not two segments that are known to be apart.
+pub(super) fn separation_of_outlines<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    limit: N,
+) -> Option<Separation<N, 2>> {
     match between(Level::new(), pair, limit) {
         Verdict::Beyond => None,
         Verdict::Found(found) => Some(found).filter(|found| found.distance <= limit),

@@ -40,7 +40,7 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// The separation of one segment of the chain.
+/// The separation of one segment of the chain of which [`SegmentGap`] does not know it.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,
@@ -49,7 +49,8 @@ fn alone<N: Real>(
     let (solid, segment) = (question.solid, Kind::Segment(segment));
     let comes_first = matches!(solid, Kind::Segment(_));
     let (first, second) = if comes_first { (solid, segment) } else { (segment, solid) };
-    polygon_polygon::separation(&Pair { first, second, pose12: question.pose12 }, question.limit)
+    let pair = Pair { first, second, pose12: question.pose12 };
+    polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
 /// What separates eight segments from another, by rows.
