@@ -14,7 +14,7 @@ use crate::place::Dimension;
 const COMMON_KINDS: usize = 13;
 
 /// Compounds are nested so deep at most.
-const MOST_NESTED: usize = 3;
+const MAX_NESTED: usize = 3;
 
 /// A shape of the kind that the next byte says; a ball where a constructor refuses the numbers.
 pub(crate) fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
@@ -57,8 +57,7 @@ fn nested<N: Space<D>, M: Dimension<N, D>, const D: usize>(
             made(TaperedCapsule::<N, D>::try_from_ends(a, b, radii))
         }
         8 => {
-            let inner =
-                if depth < MOST_NESTED { nested::<N, M, D>(bytes, depth + 1) } else { None };
+            let inner = if depth < MAX_NESTED { nested::<N, M, D>(bytes, depth + 1) } else { None };
             made(Rounded::try_from_handle(inner?, bytes.size()))
         }
         9 => {
@@ -89,7 +88,7 @@ fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
     depth: usize,
 ) -> Option<ShapeHandle<N, D>> {
-    if depth == MOST_NESTED {
+    if depth == MAX_NESTED {
         return None;
     }
     let count = bytes.choice(8);

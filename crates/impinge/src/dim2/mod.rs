@@ -218,7 +218,7 @@ pub mod procedural {
     pub use crate::procedural::plane::{
         ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
     };
-    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
+    pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, Outline};
 }
 
 /// Searches among boxes of the user's own.

@@ -219,7 +219,7 @@ pub mod procedural {
         ball, capsule, cone, convex_hull, cuboid, cylinder, ellipsoid, tapered_capsule,
         tetrahedron, triangle,
     };
-    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
+    pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, TriangleSurface};
 }
 
 /// Searches among boxes of the user's own.

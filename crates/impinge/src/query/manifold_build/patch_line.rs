@@ -16,8 +16,8 @@ use crate::math::{Real, Vector};
 use crate::query::{PairIds, RawPoint};
 
 /// As many pieces and points are merged here; more are left to the general way.
-const MOST_PIECES: usize = 8;
-const MOST_POINTS: usize = 12;
+const MAX_PIECES: usize = 8;
+const MAX_POINTS: usize = 12;
 
 /// [`merge`](super::merge) in the plane; many pieces are left to it.
 pub(in crate::query) fn merge_in_plane<N: Real>(
@@ -26,7 +26,7 @@ pub(in crate::query) fn merge_in_plane<N: Real>(
     ids: &mut PairIds,
 ) {
     let (pieces, points) = (merging.pieces.len(), merging.points.len());
-    if pieces > MOST_PIECES || points > MOST_POINTS {
+    if pieces > MAX_PIECES || points > MAX_POINTS {
         return merge(merging, patches, ids);
     }
     let count = match merging.pieces {
@@ -44,9 +44,9 @@ fn merge_some<N: Real>(
 ) -> usize {
     let kept = merging.kept(patches);
     let row = Row { merging, kept: &kept };
-    let mut order = [Placed { piece: 0, deepest: 0, group: 0 }; MOST_PIECES];
+    let mut order = [Placed { piece: 0, deepest: 0, group: 0 }; MAX_PIECES];
     let count = row.order(&mut order);
-    let mut groups = [Group { lead: 0, first: [0; 2], count: 0 }; MOST_PIECES];
+    let mut groups = [Group { lead: 0, first: [0; 2], count: 0 }; MAX_PIECES];
     let of_groups = row.group(&mut order[..count], &mut groups);
     let (order, groups) = (&order[..count], &mut groups[..of_groups]);
     groups.sort_unstable_by_key(|group| group.first);
@@ -99,7 +99,7 @@ struct Row<'a, N: Real> {
 
 impl<N: Real> Row<'_, N> {
     /// The pieces with points, the deepest first; answers how many.
-    fn order(&self, order: &mut [Placed; MOST_PIECES]) -> usize {
+    fn order(&self, order: &mut [Placed; MAX_PIECES]) -> usize {
         let Merging { pieces, points, .. } = *self.merging;
         let mut count = 0;
         for (index, piece) in pieces.iter().enumerate() {
@@ -117,7 +117,7 @@ impl<N: Real> Row<'_, N> {
     }
 
     /// Puts each piece to the first group that it lies level with; answers how many there are.
-    fn group(&self, order: &mut [Placed], groups: &mut [Group; MOST_PIECES]) -> usize {
+    fn group(&self, order: &mut [Placed], groups: &mut [Group; MAX_PIECES]) -> usize {
         let Merging { pieces, points, tolerance, .. } = *self.merging;
         let mut count = 0;
         for at in 0..order.len() {
@@ -202,7 +202,7 @@ impl<N: Real> Row<'_, N> {
         (out, ids): (&mut SmallVec<[PatchPoint<N, 2>; 4]>, &mut PairIds),
     ) {
         let flat = Vector::<N, 2>::zeros();
-        let mut members = [Member { flat, piece: lead.piece, point: lead.deepest }; MOST_POINTS];
+        let mut members = [Member { flat, piece: lead.piece, point: lead.deepest }; MAX_POINTS];
         let count = self.members(lead, order, &mut members);
         let count = self.without_copies(&mut members[..count]);
         let lowest = self.merging.points[lead.deepest].distance;
@@ -238,7 +238,7 @@ impl<N: Real> Row<'_, N> {
         &self,
         lead: Placed,
         order: &[Placed],
-        members: &mut [Member<N>; MOST_POINTS],
+        members: &mut [Member<N>; MAX_POINTS],
     ) -> usize {
         let Merging { request, pieces, points, .. } = *self.merging;
         let tangents = tangents2(&pieces[lead.piece].normal);

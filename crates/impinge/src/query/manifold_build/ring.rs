@@ -15,7 +15,7 @@ use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, m
 use crate::shape::{FaceRing, FeatureId, Kind, Segment};
 
 /// How many corners are side by side.
-pub(super) const LANES: usize = FaceRing::<f32>::MOST;
+pub(super) const LANES: usize = FaceRing::<f32>::MAX;
 
 /// A corner, and the side that leads from it to the next.
 #[derive(Clone, Copy)]

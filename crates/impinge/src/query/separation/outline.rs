@@ -12,7 +12,7 @@ use crate::shape::{Kind, Polytope, Segment, Triangle};
 pub(super) const LANES: usize = 8;
 
 /// Outlines of more vertices are left to the general algorithm.
-const MOST_BLOCKS: usize = 4;
+const MAX_BLOCKS: usize = 4;
 
 /// A number for each of eight vertices.
 pub(super) type Row<N> = [N; LANES];
@@ -21,7 +21,7 @@ pub(super) type Row<N> = [N; LANES];
 ///
 /// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
 pub(super) struct Outline<N: Real> {
-    blocks: SmallVec<[OutlineBlock<N>; MOST_BLOCKS]>,
+    blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
     /// Of vertices.
     pub(super) count: usize,
     pub(super) rounding: N,
@@ -119,7 +119,7 @@ impl<N: Real> Outline<N> {
     #[inline(always)]
     fn of_polygon(polygon: &Polytope<N, 2>) -> Option<Self> {
         let (vertices, planes) = (polygon.blocks(), polygon.planes());
-        if vertices.len() > MOST_BLOCKS {
+        if vertices.len() > MAX_BLOCKS {
             return None;
         }
         let blocks = vertices.iter().zip(planes);

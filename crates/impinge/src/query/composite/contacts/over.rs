@@ -10,7 +10,7 @@ use crate::shape::{FeatureId, Triangle};
 /// So many tolerances from the border of a region its answer is certain.
 const CERTAIN: f64 = 64.0;
 /// The least ratio of a triangle's height to its longest side.
-const LEAST_HEIGHT: f64 = 1.0 / 32.0;
+const MIN_HEIGHT: f64 = 1.0 / 32.0;
 
 /// In the plane triangles are filled.
 pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Option<FeatureId> {
@@ -32,7 +32,7 @@ pub(crate) fn over3<N: Real>(
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
     // Written so that what is no number is not certain.
-    let is_plain = area > N::lit(LEAST_HEIGHT) * longest * longest && longest > room;
+    let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
     if !is_plain {
         return None;
     }

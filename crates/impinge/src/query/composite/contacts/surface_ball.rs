@@ -23,7 +23,7 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, T
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
 /// Most of these cost no more than a look at whether their box meets the ball's.
-const MOST_ROOMY: usize = 5 * LANES;
+const MAX_ROOMY: usize = 5 * LANES;
 
 /// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general way,
 /// as of all other solids.
@@ -86,7 +86,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     fn box_within(&self, around: &mut Around<N, 3>) -> Option<Aabb<N, 3>> {
         let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
-        let is_kept = around.reaches_with(self.parts, &aabb, MOST_ROOMY);
+        let is_kept = around.reaches_with(self.parts, &aabb, MAX_ROOMY);
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 

@@ -20,7 +20,7 @@ use crate::shape::{FeatureId, Kind};
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
 const INSIDE: f64 = 1.0 / 32.0;
 /// The least square of the sine of the angle between the two.
-const LEAST_SINE: f64 = 1.0 / 64.0;
+const MIN_SINE: f64 = 1.0 / 64.0;
 /// A triangle with less than this ratio of height to longest side may have its other sides as near.
 const TALL: f64 = 1.0 / 32.0;
 /// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
@@ -150,7 +150,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
         // Written so that NaN is not plain.
         let is_plain = is_inside
-            && det > N::lit(LEAST_SINE) * own * other
+            && det > N::lit(MIN_SINE) * own * other
             && own > long * long
             && cross(&way, &third).norm_squared() > tall * tall;
         is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
