@@ -41,8 +41,8 @@ pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) within: Aabb<N, 3>,
 }
 
-/// What a ball sees of some of the triangles.
-pub(crate) struct Sighted<N> {
+/// The triangles near a ball.
+pub(crate) struct NearTriangles<N> {
     /// No triangle in the box is nearer to the middle; zero if that is not known.
     pub(crate) from_middle: N,
     /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
@@ -52,13 +52,16 @@ pub(crate) struct Sighted<N> {
     pub(crate) hidden_from: N,
 }
 
-/// What a ball sees; nothing is hidden unless `has_seams`.
-pub(crate) fn sighted<N: Real>(question: &BallQuestion<'_, N>, has_seams: bool) -> Sighted<N> {
+/// Finds the triangles near a ball; nothing is hidden unless `has_seams`.
+pub(crate) fn near_triangles<N: Real>(
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> NearTriangles<N> {
     at(Level::new(), question, has_seams)
 }
 
 /// By the vectors of an instruction set, on which the answer does not depend.
-fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> Sighted<N> {
+fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
@@ -67,10 +70,10 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> Sighted<N> {
+) -> NearTriangles<N> {
     let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
     let mut seen =
-        Sighted { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
+        NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
         let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
@@ -391,14 +394,14 @@ mod tests {
             let reach = Vector::<N, 3>::repeat(N::lit(1.2));
             let within = Aabb::around(Point::from(center), reach);
             let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
-            let expected = sighted(&question, true);
+            let expected = near_triangles(&question, true);
             for level in Level::available() {
                 let found = at(level, &question, true);
                 assert_eq!(found.near, expected.near, "{level:?}");
                 assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
                 assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
             }
-            let shown = sighted(&question, false);
+            let shown = near_triangles(&question, false);
             for ((_, [near, without]), (_, [same, with])) in shown.near.iter().zip(&expected.near) {
                 assert_eq!((near, *without), (same, 0), "without seams all are shown");
                 hidden += with.count_ones();

@@ -10,7 +10,7 @@ mod axes;
 mod ball;
 
 use self::axes::{AxisFeature, TriangleAxes};
-pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
+pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::math::simd::Level;
 use crate::math::{Pose, Real, Vector, cross, max};
