@@ -114,7 +114,7 @@ fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> 
     Unit::new_normalize(if is_usable { any } else { axis })
 }
 
-/// A support map of the user's own: the hull of points, swollen.
+/// A support map of the user's own: the hull of points, inflated.
 #[derive(Clone, Debug)]
 pub(crate) struct Cloud<N: Real, const D: usize> {
     points: Vec<Point<N, D>>,

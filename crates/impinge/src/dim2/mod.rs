@@ -156,7 +156,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
-        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Siding, SupportMap,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Sidedness, SupportMap,
         Surface,
     };
 

@@ -157,7 +157,7 @@ pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, Siding, SupportMap, Surface, Tetrahedron,
+        ShapeKind, Sidedness, SupportMap, Surface, Tetrahedron,
     };
 
     /// Where a curved support point lies, and how it moves.

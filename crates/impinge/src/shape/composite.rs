@@ -7,7 +7,7 @@
 
 use smallvec::SmallVec;
 
-use super::{FeatureId, Geometry, Segment, Shape, Siding, Triangle};
+use super::{FeatureId, Geometry, Segment, Shape, Sidedness, Triangle};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
@@ -256,7 +256,7 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
 
     /// Which sides all segments of a chain in the plane have, for a quicker way to the same answers. `None`,
     /// the default, of all surfaces but this library's own chains.
-    fn siding(&self) -> Option<Siding> {
+    fn sidedness(&self) -> Option<Sidedness> {
         None
     }
 

@@ -25,7 +25,7 @@ pub struct CurvedSupport<N: Real, const D: usize> {
     pub bend: Matrix<N, D>,
 }
 
-/// A convex solid: a core, known by its support points, swollen by a rounding radius.
+/// A convex solid: a core, known by its support points, inflated by a rounding radius.
 ///
 /// All in the local frame. Without rounding (the default) the core is the solid itself.
 ///
@@ -35,7 +35,7 @@ pub struct CurvedSupport<N: Real, const D: usize> {
 ///
 /// let capsule = Capsule::<f32>::new(2.0, 0.5);
 /// assert_eq!(capsule.core_support(&Vector::new(1.0, 1.0, 0.0)).y, 2.0, "of the segment");
-/// assert_eq!(capsule.rounding(), 0.5, "by which it is swollen");
+/// assert_eq!(capsule.rounding(), 0.5, "by which it is inflated");
 /// ```
 pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// A point of the core farthest along `direction`.
@@ -44,7 +44,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// answer depends on nothing but `direction`, and not on its length.
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D>;
 
-    /// The radius by which the core is swollen; zero or more.
+    /// The radius by which the core is inflated; zero or more.
     fn rounding(&self) -> N {
         N::ZERO
     }

@@ -211,7 +211,7 @@ fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     Point::<N, 2>::new(x, y)
 }
 
-/// The radius by which the core of a solid is swollen.
+/// The radius by which the core of a solid is inflated.
 #[inline]
 fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     match kind {

@@ -17,7 +17,7 @@ const MAX_BLOCKS: usize = 4;
 /// A number for each of eight vertices.
 pub(super) type Row<N> = [N; LANES];
 
-/// A convex polygon in some frame, swollen by a radius.
+/// A convex polygon in some frame, inflated by a radius.
 ///
 /// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
 pub(super) struct Outline<N: Real> {

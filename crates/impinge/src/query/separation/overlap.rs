@@ -97,7 +97,7 @@ fn beside_ball_in_space<N: Real>(
         Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
         Kind::Rounded(solid) => {
             let core = beside_ball_in_space(radius, solid.inner().0, center)?;
-            return Some(core - solid.swelling());
+            return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
     };
@@ -115,7 +115,7 @@ fn beside_ball_in_plane<N: Real>(
         Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
         Kind::Rounded(solid) => {
             let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
-            return Some(core - solid.swelling());
+            return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
     };

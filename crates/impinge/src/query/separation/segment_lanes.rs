@@ -188,7 +188,7 @@ fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) 
     dot(direction, first).smaller(dot(direction, last))
 }
 
-/// The separation of two segments of the plane, swollen or not; `None` of other kinds, and where
+/// The separation of two segments of the plane, inflated or not; `None` of other kinds, and where
 /// [`SegmentGap`] knows none.
 pub(super) fn separation<N: Real>(level: Level, pair: &Pair<'_, N, 2>) -> Option<Separation<N, 2>> {
     let is_segment = |kind: &Kind<'_, N, 2>| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));

@@ -20,7 +20,7 @@ use crate::query::separation::{ChainQuestion, Links, links};
 use crate::query::tiles::{LANES, Tiles};
 use crate::query::{ManifoldRequest, Pair, RawPoint};
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Siding,
+    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Sidedness,
     SupportMap, Surface,
 };
 
@@ -63,7 +63,7 @@ struct Chain<'b, 'a, N: Real> {
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: &'a dyn Surface<N, 2>,
-    siding: Option<Siding>,
+    sidedness: Option<Sidedness>,
     /// The chain's frame in that of the solid, put through one point.
     turn: Pose<N, 2>,
     /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it comes first.
@@ -153,7 +153,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             solid,
             parts,
             surface,
-            siding: surface.siding(),
+            sidedness: surface.sidedness(),
             turn,
             pose12,
             comes_first,
@@ -223,7 +223,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             return None;
         }
         let (parts, ends) = ([0, kept.parts[index]], kept.ends(index));
-        let known = KnownSegment::new(self.surface, self.siding, kept, ends);
+        let known = KnownSegment::new(self.surface, self.sidedness, kept, ends);
         if !known.faces(parts[1], &self.from) {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Eight segments at once against a polygon of up to eight vertices, swollen or not.
+//! Eight segments at once against a polygon of up to eight vertices, inflated or not.
 
 use super::super::outline::{Outline, Row};
 use super::super::polygon_polygon::{Axis, of_axis};
