@@ -191,7 +191,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         Self { rule, ..self }
     }
 
-    /// The same, told in the frames of two shapes of which the solids are parts, or all: `pose1` and
+    /// The same in the frames of two shapes of which the solids are parts, or all: `pose1` and
     /// `pose2` are the poses of the solids in these.
     pub(super) fn seen_from(
         &self,

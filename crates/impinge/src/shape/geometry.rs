@@ -31,13 +31,13 @@ pub enum ShapeKind {
     Triangle,
     /// [`Cuboid`].
     Cuboid,
-    /// A convex polygon in the plane, a convex hull in space: [`Polytope`].
+    /// A convex polygon in 2D, a convex hull in 3D: [`Polytope`].
     Polytope,
     /// [`Cylinder`].
     Cylinder,
     /// [`Cone`].
     Cone,
-    /// [`Ellipsoid`]: an ellipse in the plane.
+    /// [`Ellipsoid`]: an ellipse in 2D.
     Ellipsoid,
     /// [`TaperedCapsule`].
     TaperedCapsule,

@@ -49,8 +49,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     }
 }
 
-/// The own normals of a segment are all that are perpendicular to it: two in the plane, a circle
-/// of them in space.
+/// The own normals of a segment are all that are perpendicular to it: two in 2D, a circle
+/// of them in 3D.
 impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         if self.keeps_internal_edges {

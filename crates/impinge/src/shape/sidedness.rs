@@ -1,4 +1,4 @@
-//! Which normals a segment of a chain in the plane has: told by its ends and those of the segments around it.
+//! Which normals a segment of a chain in 2D has: computed from its ends and those of the segments around it.
 
 use smallvec::SmallVec;
 
@@ -7,7 +7,7 @@ use super::seam::{Seam, slack};
 use super::{FeatureId, Surface};
 use crate::math::{Point, Real, Vector, perp, unit};
 
-/// Which sides the segments of a chain have: what a [`Surface`] in the plane says so that contacts need not
+/// Which sides the segments of a chain have: what a [`Surface`] in 2D says so that contacts need not
 /// ask it about each segment. Chains of this library have one.
 ///
 /// ```
@@ -22,7 +22,7 @@ pub struct Sidedness {
     /// The front is on the left of a segment, seen from its first end to its second.
     pub(super) is_left: bool,
     pub(super) is_one_sided: bool,
-    /// Of two sides the one that a vector points to is told by the front, else by the vector itself.
+    /// Of two sides the one that a vector points to follows from the front, else from the vector itself.
     pub(super) follows_front: bool,
     pub(super) keeps_internal_edges: bool,
     pub(super) joining: Joining,
@@ -71,7 +71,7 @@ impl Sidedness {
     }
 }
 
-/// A segment of a chain, with what its ends tell: the answers of its surface, without a look at that.
+/// A segment of a chain, with what follows from its ends: the answers of its surface, without a look at that.
 pub(crate) struct KnownSegment<'a, N: Real> {
     surface: &'a dyn Surface<N, 2>,
     sidedness: Option<Sidedness>,

@@ -121,7 +121,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// The rule for flat faces: among the edges at the support vertex take the one that leans least
     /// out of the supporting plane; of the two faces beside it take the one whose normal is most
     /// aligned. Answer with that face if it leans by at most atan(1/2) ≈ 26.6°, else with the edge if
-    /// it does, else with the vertex. In the plane the sides at the vertex are the faces. So the two
+    /// it does, else with the vertex. In 2D the sides at the vertex are the faces. So the two
     /// crossing edges of an edge-edge contact are found as edges or as sides of the faces answered.
     /// The rule knows angles only, treats mirrored directions alike, and near its two limits both
     /// answers contain the touching part. No regular polyhedron, nor a regular prism on an edge,
@@ -156,13 +156,13 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// If `id` is not a vertex of the solid.
     fn vertex(&self, id: FeatureId) -> Point<N, D>;
 
-    /// The two ends of an edge and their names (in the plane: of a side).
+    /// The two ends of an edge and their names (in 2D: of a side).
     ///
     /// # Panics
-    /// If `id` is not an edge of the solid (in the plane: a face).
+    /// If `id` is not an edge of the solid (in 2D: a face).
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2];
 
-    /// A face, as a polygon (in the plane: as a segment with a normal).
+    /// A face, as a polygon (in 2D: as a segment with a normal).
     ///
     /// # Panics
     /// If `id` is not a face of the solid.

@@ -1,4 +1,4 @@
-//! The corners of the common area of two supporting features in space: points, segments or faces.
+//! The corners of the common area of two supporting features in 3D: points, segments or faces.
 //!
 //! Both are [rings](super::ring) seen along the normal, and how far inside of the sides of one the corners of
 //! the other are is computed in lanes. A corner of the common area is a corner of one inside the other, or a

@@ -7,7 +7,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// How many rounding errors of the pair's size are told from nothing.
+/// Lengths up to so many rounding errors of the pair's size count as zero.
 pub(super) const ROUNDING_ERRORS: f64 = 16.0;
 
 /// Supporting features that tilt more than 60° out of the plane of contact count as their nearest point.
@@ -105,8 +105,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 }
 
 impl<N: Real, const D: usize> Frame<N, D> {
-    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in the
-    /// plane.
+    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in 2D.
     pub(super) fn new(
         pair: &Pair<'_, N, D>,
         witness: &Separation<N, D>,

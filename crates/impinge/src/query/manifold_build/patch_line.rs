@@ -19,7 +19,7 @@ use crate::query::{PairIds, RawPoint};
 const MAX_PIECES: usize = 8;
 const MAX_POINTS: usize = 12;
 
-/// [`merge`](super::merge) in the plane; many pieces are left to it.
+/// [`merge`](super::merge) in 2D; many pieces are left to it.
 pub(in crate::query) fn merge_in_plane<N: Real>(
     merging: &Merging<'_, N, 2>,
     patches: &mut Vec<Patch<N, 2>>,

@@ -1,4 +1,4 @@
-//! Convex outlines in the plane: what points, segments, triangles, boxes and polygons have in common.
+//! Convex outlines in 2D: what points, segments, triangles, boxes and polygons have in common.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -250,7 +250,7 @@ impl<N: Real> Outline<N> {
     /// where the angle is sharper than a right one.
     ///
     /// Sides alone would leave gaps of more than a right angle between the directions, so that flat outlines that
-    /// point at each other were not told apart.
+    /// point at each other would count as overlapping.
     #[inline(always)]
     pub(super) fn tips<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -1,4 +1,4 @@
-//! Segments, triangles, boxes and polygons among themselves in the plane, rounded or not.
+//! Segments, triangles, boxes and polygons among themselves in 2D, rounded or not.
 //!
 //! The signed distance of two convex sets is the largest gap that any direction leaves between them
 //! (negative where every direction finds them overlapping). Where they overlap, a normal of one of

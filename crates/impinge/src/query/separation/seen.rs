@@ -24,7 +24,7 @@ pub(crate) fn seen_in_plane<N: Real>(
     }
 }
 
-/// [`seen_in_plane`], in space.
+/// [`seen_in_plane`], in 3D.
 pub(crate) fn seen_in_space<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,

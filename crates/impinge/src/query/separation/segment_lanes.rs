@@ -1,4 +1,4 @@
-//! Segments in lanes: the nearest point of each to a point, and in the plane the separation of two.
+//! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
 //!
 //! A lone pair of the plane is a batch of one, so that what is asked of two segments, and what a manifold of
 //! them says, are the same bits.

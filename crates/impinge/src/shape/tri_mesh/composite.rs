@@ -67,7 +67,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     fn expect(&self, part: u32) {
         let beyond = self.topology.all_across(part);
         let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
-        black_box((normal(part), self.bends.told_of(part), self.triangles[part as usize]));
+        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
         // Where there is no triangle across a side there is none of such a number.
         black_box(beyond.map(normal));
     }

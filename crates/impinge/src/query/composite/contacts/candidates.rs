@@ -29,7 +29,7 @@ pub(super) struct Nearby<N: Real> {
 }
 
 /// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
-/// candidates those that no plane tells to be farther.
+/// candidates those that no plane proves to be farther.
 ///
 /// What is kept `around` must be of the same composite.
 pub(super) fn nearby<N: Space<D>, const D: usize>(

@@ -1,4 +1,4 @@
-//! The contacts of a convex solid and a chain of segments in the plane: the general way, which defines them,
+//! The contacts of a convex solid and a chain of segments in 2D: the general way, which defines them,
 //! with what all segments have in common worked out once, and nothing made of those beyond reach.
 
 use super::super::between::Between;

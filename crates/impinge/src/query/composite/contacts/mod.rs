@@ -124,8 +124,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
-    /// and features stay keep their numbers. Other shapes than before must be told of by
-    /// [`Self::forget_shapes`].
+    /// and features stay keep their numbers. Other shapes than before have to be announced
+    /// by [`Self::forget_shapes`].
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,

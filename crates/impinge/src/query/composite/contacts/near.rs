@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_told_from_triangles_below_it() {
+    fn a_box_is_separated_from_triangles_below_it() {
         let below = |y: f64| [P3::new(-3.0, y, -3.0), P3::new(3.0, y, -3.0), P3::new(0.0, y, 4.0)];
         let cuboid = Cuboid::new(Vector::<f64, 3>::new(0.5, 0.5, 0.5));
         for near in bounds(&cuboid, below(-0.6), 0.2) {

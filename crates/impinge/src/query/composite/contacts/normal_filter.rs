@@ -113,7 +113,7 @@ fn leaning<N: Space<D>, const D: usize>(
     unit(&leaning).map(|(leaning, _)| leaning)
 }
 
-/// A flat piece; for the segments of a surface in the plane that is an edge.
+/// A flat piece; for the segments of a surface in 2D that is an edge.
 fn is_face(feature: FeatureId) -> bool {
     matches!(feature, FeatureId::Face(_))
 }

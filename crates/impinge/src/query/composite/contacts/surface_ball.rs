@@ -1,4 +1,4 @@
-//! The contacts of a ball and a surface of triangles in space: the general way, which defines them, with what
+//! The contacts of a ball and a surface of triangles in 3D: the general way, which defines them, with what
 //! all triangles have in common worked out once, and nothing made of those that others hide.
 
 use super::super::between::Between;

@@ -251,7 +251,7 @@ impl<N: Real> Place<N> {
         self.outward.dot(&self.point) - self.level
     }
 
-    /// What the place is told by the point that is lowest along its direction: that the solids are farther apart than
+    /// What follows from the point that is lowest along its direction: that the solids are farther apart than
     /// `beyond`, or, if nothing is lower than the place, whether that is the answer. `None` if something is.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
         let height = self.outward.dot(low) - self.level;

@@ -121,7 +121,7 @@ impl<N: Real> RoundView<N> {
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
-        // The part in the plane of the axes is told by how the normal leans against each.
+        // The part in the plane of the axes follows from how the normal leans against each.
         let up = Vector::<N, 3>::y();
         let level = (up * (rise1 + rise2 * lean) - self.axis * (rise2 + rise1 * lean)) / squared;
         let left = N::ONE - level.norm_squared();

@@ -4,7 +4,7 @@
 //! rises along its normal (see `seam.rs`). Where one of these triangles is nearer to the middle of the ball
 //! than the corner or edge, the way to its nearest point is such a direction, so that distances alone tell
 //! what the normals would: of the triangles around the place where a ball rests on a surface one is left.
-//! What is close is not told.
+//! Close cases are left undecided.
 
 use smallvec::SmallVec;
 

@@ -50,7 +50,7 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// In the plane triangles are filled.
+/// In 2D triangles are filled.
 pub(crate) fn gaps2<N: Real>(
     _: &TiledParts<'_, N, 2>,
     _: Kind<'_, N, 2>,

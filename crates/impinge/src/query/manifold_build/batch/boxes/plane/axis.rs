@@ -1,4 +1,4 @@
-//! The separating axis test of eight pairs of boxes in the plane:
+//! The separating axis test of eight pairs of boxes in 2D:
 //! `query/separation/rectangle_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
