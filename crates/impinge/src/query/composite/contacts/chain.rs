@@ -7,7 +7,7 @@ use super::around::Around;
 use super::candidates::{depth_in, search_box};
 use super::near::relative_slack;
 use super::normal_filter::{Case, FilteredNormal, filter_normal};
-use super::part_contact::{ContactBuffers, ContactStatus, PartContact};
+use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use super::{
     CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
@@ -37,8 +37,8 @@ pub(crate) fn update_chain<N: Real>(
     request: &ManifoldRequest<N>,
 ) -> bool {
     let Some(mut chain) = Chain::new(between, request) else { return false };
-    let (mut part_contacts, mut buffers) = (PartContacts::new(), ContactBuffers::default());
-    if chain.find(contacts, &mut part_contacts, &mut buffers).is_none() {
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    if chain.find(contacts, &mut part_contacts, &mut arena).is_none() {
         return false;
     }
     let (reference, center) = (Some(chain.from), Some(chain.center));
@@ -49,9 +49,9 @@ pub(crate) fn update_chain<N: Real>(
         request: &chain.request,
     };
     if !is_settled(&part_contacts) {
-        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut buffers);
+        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, merge_in_plane, reference, center, &part_contacts, &buffers);
+    contacts.conclude(request, merge_in_plane, reference, center, &part_contacts, &arena);
     true
 }
 
@@ -184,7 +184,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         &mut self,
         contacts: &mut CompositeContacts<N, 2>,
         part_contacts: &mut PartContacts<N, 2>,
-        buffers: &mut ContactBuffers<N, 2>,
+        arena: &mut Arena<N, 2>,
     ) -> Option<()> {
         let limit = self.request.prediction;
         let around = &mut contacts.around;
@@ -206,7 +206,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let kept = Kept { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
             if let Some(link) = self.link(&kept, *index, found) {
-                link.find(part_contacts, &mut buffers.points)?;
+                link.find(part_contacts, &mut arena.points)?;
             }
         }
         Some(())
@@ -264,15 +264,13 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let seen = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
         let (of_piece, mut status) = match &filtered {
             FilteredNormal::Nothing => return Some(()),
-            FilteredNormal::Refused => (normal, ContactStatus::Left),
-            FilteredNormal::Admitted => (self.between(&normal, points)?, ContactStatus::Own),
-            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, ContactStatus::Own),
+            FilteredNormal::Refused => (normal, PartStatus::Left),
+            FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
+            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, PartStatus::Own),
             FilteredNormal::Snapped(face) => {
-                (self.along(&seen(face), points)?, ContactStatus::Snapped)
+                (self.along(&seen(face), points)?, PartStatus::Snapped)
             }
-            FilteredNormal::Beyond(face) => {
-                (self.along(&seen(face), points)?, ContactStatus::Beyond)
-            }
+            FilteredNormal::Beyond(face) => (self.along(&seen(face), points)?, PartStatus::Beyond),
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
@@ -280,10 +278,10 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
-            (status, lowest) = (ContactStatus::Left, N::INFINITY);
+            (status, lowest) = (PartStatus::Left, N::INFINITY);
         }
         let piece = Piece { normal: of_piece, parts, points: start..points.len() };
-        let face = filtered.face().filter(|_| status != ContactStatus::Left);
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
         part_contacts.push(PartContact {
             distance,
             normal,

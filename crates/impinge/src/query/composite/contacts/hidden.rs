@@ -10,7 +10,7 @@
 use smallvec::SmallVec;
 
 use super::around::corners_of;
-use super::part_contact::{ContactStatus, PartContact};
+use super::part_contact::{PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::{Point, Real, Space, Vector, max, min};
 
@@ -49,18 +49,18 @@ type Faces<N, const D: usize> = (SmallVec<[Face<N, D>; 8]>, SmallVec<[(u64, usiz
 /// Cost: O(n log n) in the number of faces that are touched.
 pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    part_contacts: &mut [PartContact<N, D>],
+    contacts: &mut [PartContact<N, D>],
 ) {
     // Between two composites it is not one solid that is on one side.
     if !scene.first_is_convex() {
         return;
     }
-    let (all, next) = (part_contacts.iter(), part_contacts.iter());
+    let (all, next) = (contacts.iter(), contacts.iter());
     let (all, next) = (all.filter_map(|one| one.face), next.filter_map(|one| one.face).skip(1));
     if all.zip(next).all(|(a, b)| are_alike(&a, &b)) {
         return;
     }
-    let (faces, mut corners) = faces_of(scene, part_contacts);
+    let (faces, mut corners) = faces_of(scene, contacts);
     for star in corners.chunk_by_mut(|a, b| a.0 == b.0) {
         if star.len() > MAX_HIDING {
             let distance = |&(_, face): &(u64, usize)| faces[face].distance.as_f64();
@@ -69,7 +69,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
         for (at, (_, first)) in star.iter().enumerate().take(MAX_HIDING) {
             for (_, second) in &star[at + 1..] {
                 if let Some(hidden) = hidden_of(&faces[*first], &faces[*second]) {
-                    part_contacts[hidden].status = ContactStatus::Left;
+                    contacts[hidden].status = PartStatus::Left;
                 }
             }
         }
@@ -79,12 +79,12 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
 /// The faces that are touched.
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    part_contacts: &[PartContact<N, D>],
+    contacts: &[PartContact<N, D>],
 ) -> Faces<N, D> {
     let (mut faces, mut shared) = Faces::default();
-    faces.reserve(part_contacts.len());
-    shared.reserve(3 * part_contacts.len());
-    for (contact, PartContact { distance, face, piece, .. }) in part_contacts.iter().enumerate() {
+    faces.reserve(contacts.len());
+    shared.reserve(3 * contacts.len());
+    for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };

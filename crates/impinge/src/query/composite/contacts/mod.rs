@@ -35,7 +35,7 @@ use self::candidates::Nearby;
 pub(crate) use self::chain::update_chain;
 use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
-use self::part_contact::{ContactBuffers, ContactStatus, PartContact, Reference};
+use self::part_contact::{Arena, PartContact, PartStatus, Reference};
 use self::scene::Scene;
 pub(crate) use self::surface_ball::update_on_surface;
 use super::between::Between;
@@ -152,9 +152,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let reference = center.map(|center| advanced(between, &way, center));
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
-        let mut buffers = ContactBuffers::default();
-        let part_contacts = query.part_contacts(&nearby, &mut buffers);
-        self.conclude(request, merge, reference, center, &part_contacts, &buffers);
+        let mut arena = Arena::default();
+        let contacts = query.part_contacts(&nearby, &mut arena);
+        self.conclude(request, merge, reference, center, &contacts, &arena);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
@@ -165,42 +165,42 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         merge: MergeFn<N, D>,
         reference: Reference<N, D>,
         center: Reference<N, D>,
-        part_contacts: &[PartContact<N, D>],
-        buffers: &ContactBuffers<N, D>,
+        contacts: &[PartContact<N, D>],
+        arena: &Arena<N, D>,
     ) {
-        let overlaps = part_contacts.iter().any(|contact| contact.distance <= N::ZERO);
+        let overlaps = contacts.iter().any(|contact| contact.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
-        let tolerances = part_contacts.iter().map(|found| found.tolerance);
-        let tolerance = tolerances.fold(buffers.rounding, max);
-        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(part_contacts.len());
-        for found in part_contacts.iter().filter(|found| found.status != ContactStatus::Left) {
+        let tolerances = contacts.iter().map(|found| found.tolerance);
+        let tolerance = tolerances.fold(arena.rounding, max);
+        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(contacts.len());
+        for found in contacts.iter().filter(|found| found.status != PartStatus::Left) {
             pieces.push(found.piece.clone());
         }
         if !pieces.is_empty() && self.patches.capacity() == 0 {
             // Most pairs never have more than one: what lies close together is read faster.
             self.patches.reserve_exact(1);
         }
-        let merging = Merging { request, tolerance, pieces: &pieces, points: &buffers.points };
+        let merging = Merging { request, tolerance, pieces: &pieces, points: &arena.points };
         merge(&merging, &mut self.patches, &mut self.ids);
     }
 }
 
 /// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
-fn is_settled<N: Real, const D: usize>(part_contacts: &[PartContact<N, D>]) -> bool {
+fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
-    for contact in part_contacts {
+    for contact in contacts {
         let is_alike = match (face, contact.face) {
             (Some(before), Some(own)) => are_alike(&before, &own),
             _ => true,
         };
-        if !(is_alike && contact.status == ContactStatus::Own) {
+        if !(is_alike && contact.status == PartStatus::Own) {
             return false;
         }
         face = contact.face.or(face);
         (distance, lowest) = (min(distance, contact.distance), min(lowest, contact.lowest));
     }
-    part_contacts.is_empty() || lowest <= max(distance, N::ZERO)
+    contacts.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
 /// Merges pieces into patches.
@@ -265,16 +265,12 @@ const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
-    fn part_contacts(
-        &self,
-        nearby: &Nearby<N>,
-        buffers: &mut ContactBuffers<N, D>,
-    ) -> PartContacts<N, D> {
+    fn part_contacts(&self, nearby: &Nearby<N>, arena: &mut Arena<N, D>) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
-        let (mut part_contacts, mut slot) = (PartContacts::new(), None);
+        let (mut contacts, mut slot) = (PartContacts::new(), None);
         if nearby.parts.len() > MANY_PARTS {
-            part_contacts.reserve(nearby.parts.len());
-            buffers.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+            contacts.reserve(nearby.parts.len());
+            arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
         }
         if let Some(surface) = scene.surfaces[1] {
             nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
@@ -282,13 +278,13 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
             let parts = nearby.parts[index];
             let placed = scene.pair_in(&mut slot, parts);
-            part_contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, buffers));
+            contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, arena));
         };
         if !scene.each_gap(nearby, self.request.prediction, &mut find) {
             (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
-        self.settle(&scene, &mut part_contacts, buffers);
-        part_contacts
+        self.settle(&scene, &mut contacts, arena);
+        contacts
     }
 
     /// Settles which of the contacts hold.
@@ -296,12 +292,12 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         &self,
         scene: &Scene<'_, N, D>,
         found: &mut [PartContact<N, D>],
-        buffers: &mut ContactBuffers<N, D>,
+        arena: &mut Arena<N, D>,
     ) {
-        resolve::resolve(scene, found, buffers);
+        resolve::resolve(scene, found, arena);
         for contact in found.iter_mut().filter(|contact| contact.is_owing()) {
             let (piece, lowest) =
-                part_contact::nearest_points(scene, contact.parts(), self.request, buffers);
+                part_contact::nearest_points(scene, contact.parts(), self.request, arena);
             contact.set_piece(piece, lowest);
         }
     }
@@ -422,11 +418,11 @@ fn deepest_in_general<N: Space<D>, const D: usize>(
     let reference = middle_of_first(between);
     let query = Query { between, around: None, reference: &reference, request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
-    let mut buffers = ContactBuffers::default();
-    let part_contacts = query.part_contacts(&nearby, &mut buffers);
-    let kept = part_contacts.iter().filter(|contact| contact.status != ContactStatus::Left);
+    let mut arena = Arena::default();
+    let contacts = query.part_contacts(&nearby, &mut arena);
+    let kept = contacts.iter().filter(|contact| contact.status != PartStatus::Left);
     deepest_of(kept.flat_map(|PartContact { piece, .. }| {
-        buffers.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
+        arena.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
     }))
 }
 

@@ -16,7 +16,7 @@ use crate::shape::{FeatureId, Kind};
 
 /// Whether a contact of two parts is one of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ContactStatus {
+pub(super) enum PartStatus {
     /// It is one.
     Own,
     /// It is one with the face of a part, whose seams the parts alone would touch at.
@@ -39,7 +39,7 @@ pub(super) struct PartContact<N: Real, const D: usize> {
     pub(super) piece: Piece<N, D>,
     /// The least distance of the piece's points.
     pub(super) lowest: N,
-    pub(super) status: ContactStatus,
+    pub(super) status: PartStatus,
     /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
     /// if it touches otherwise.
     pub(super) face: Option<Vector<N, D>>,
@@ -47,9 +47,9 @@ pub(super) struct PartContact<N: Real, const D: usize> {
     pub(super) tolerance: N,
 }
 
-/// The points of all contacts, and the manifold that is being made.
+/// The memory of one update: the points of all contacts, and the manifold that is being made.
 #[derive(Default)]
-pub(super) struct ContactBuffers<N: Real, const D: usize> {
+pub(super) struct Arena<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: Points<N, D>,
     /// What counts as rounding of parts that were passed over.
@@ -57,7 +57,7 @@ pub(super) struct ContactBuffers<N: Real, const D: usize> {
     raw: RawManifold<N, D>,
 }
 
-impl<N: Real, const D: usize> ContactBuffers<N, D> {
+impl<N: Real, const D: usize> Arena<N, D> {
     /// An empty manifold to be made.
     pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
@@ -72,7 +72,7 @@ impl<N: Real, const D: usize> PartContact<N, D> {
 
     /// It holds, but what it said along a face's normal does not: its nearest points are still to be found.
     pub(super) fn is_owing(&self) -> bool {
-        self.status != ContactStatus::Left && self.piece.points.is_empty()
+        self.status != PartStatus::Left && self.piece.points.is_empty()
     }
 
     /// Replaces the points.
@@ -85,10 +85,10 @@ impl<N: Real, const D: usize> PartContact<N, D> {
 fn appended<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> (Piece<N, D>, N) {
-    let lowest = buffers.raw.points.iter().fold(N::INFINITY, |low, point| min(low, point.distance));
-    (placed.piece(&buffers.raw, parts, &mut buffers.points), lowest)
+    let lowest = arena.raw.points.iter().fold(N::INFINITY, |low, point| min(low, point.distance));
+    (placed.piece(&arena.raw, parts, &mut arena.points), lowest)
 }
 
 /// Where the solid that meets a surface comes from, where it is not just its middle.
@@ -102,13 +102,13 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     parts: [u32; 2],
     query: &Query<'_, N, D>,
     known: Option<&PartGap<N, D>>,
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
     let (reference, request) = (query.reference, query.request);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
-        return plain(placed, parts, request, buffers);
+        return plain(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
         // Of a convex first shape nothing is asked.
@@ -117,8 +117,8 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     };
     let meeting = Meeting { placed, parts, centers, reference };
     match known {
-        Some(gap) => of_surfaces(scene, &meeting, gap, request, buffers),
-        None => of_separation(scene, &meeting, request, buffers),
+        Some(gap) => of_surfaces(scene, &meeting, gap, request, arena),
+        None => of_separation(scene, &meeting, request, arena),
     }
 }
 
@@ -127,14 +127,14 @@ fn plain<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
-    (N::tables().contacts)(&placed.pair(), request, buffers.blank());
-    if buffers.raw.points.is_empty() {
+    (N::tables().contacts)(&placed.pair(), request, arena.blank());
+    if arena.raw.points.is_empty() {
         return None;
     }
-    let (piece, lowest) = appended(placed, parts, buffers);
-    let (status, tolerance, face) = (ContactStatus::Own, placed.tolerance(), None);
+    let (piece, lowest) = appended(placed, parts, arena);
+    let (status, tolerance, face) = (PartStatus::Own, placed.tolerance(), None);
     let normal = Vector::<N, D>::zeros();
     Some(PartContact { distance: lowest, normal, piece, lowest, status, face, tolerance })
 }
@@ -205,10 +205,10 @@ fn of_separation<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
     request: &ManifoldRequest<N>,
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
     let found = (N::tables().separation)(&meeting.placed.pair(), request.prediction)?;
-    of_surfaces(scene, meeting, &PartGap::of(&found), request, buffers)
+    of_surfaces(scene, meeting, &PartGap::of(&found), request, arena)
 }
 
 /// The contact of two parts, of which one at least belongs to a surface.
@@ -217,7 +217,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     meeting: &Meeting<'_, N, D>,
     gap: &PartGap<N, D>,
     request: &ManifoldRequest<N>,
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
     let (placed, parts, distance) = (meeting.placed, meeting.parts, gap.distance);
     if !distance.is_finite_number() {
@@ -226,21 +226,21 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
     let Some(filtered) = meeting.filtered_normals(scene, gap, tolerance, over) else {
-        return of_separation(scene, meeting, request, buffers);
+        return of_separation(scene, meeting, request, arena);
     };
     let normal = placed.outward(&gap.normal);
-    let raw = buffers.blank();
+    let raw = arena.blank();
     let mut status = match settled(placed, &filtered, &normal) {
         Settled::Nothing => return None,
-        Settled::Refused => ContactStatus::Left,
-        Settled::Forced(..) if is_beside(over) => ContactStatus::Left,
+        Settled::Refused => PartStatus::Left,
+        Settled::Forced(..) if is_beside(over) => PartStatus::Left,
         Settled::Found(normal) => {
             let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
             let over = over.filter(|over| is_certain(*over, &filtered[1]));
             if !touch.build(&pair, over, request, raw) {
-                return of_separation(scene, meeting, request, buffers);
+                return of_separation(scene, meeting, request, arena);
             }
-            ContactStatus::Own
+            PartStatus::Own
         }
         Settled::Forced(normal, status) => {
             let least = if distance > N::ZERO { distance } else { -N::INFINITY };
@@ -250,11 +250,11 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         }
     };
     if overlooks(raw, distance, tolerance) {
-        status = ContactStatus::Left;
+        status = PartStatus::Left;
         raw.points.clear();
     }
-    let (piece, lowest) = appended(placed, parts, buffers);
-    let face = filtered[1].face().filter(|_| status != ContactStatus::Left);
+    let (piece, lowest) = appended(placed, parts, arena);
+    let face = filtered[1].face().filter(|_| status != PartStatus::Left);
     Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }
 
@@ -326,14 +326,14 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
-    buffers: &mut ContactBuffers<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> (Piece<N, D>, N) {
     let placed = scene.pair(parts);
-    let (pair, raw) = (placed.pair(), buffers.blank());
+    let (pair, raw) = (placed.pair(), arena.blank());
     if let Some(found) = (N::tables().separation)(&pair, request.prediction) {
         build_between(&pair, &found, request, raw);
     }
-    appended(&placed, parts, buffers)
+    appended(&placed, parts, arena)
 }
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
@@ -354,7 +354,7 @@ enum Settled<N: Real, const D: usize> {
     /// A contact with this normal at the witness.
     Found(Vector<N, D>),
     /// Contacts with a face along this normal, where there are some.
-    Forced(Vector<N, D>, ContactStatus),
+    Forced(Vector<N, D>, PartStatus),
 }
 
 /// Combines the results of both surfaces; `normal` is the one that they are about. All in the frame of
@@ -367,9 +367,9 @@ fn settled<N: Space<D>, const D: usize>(
     use FilteredNormal::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
     let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
     let status = if filtered.iter().any(|filtered| matches!(filtered, Beyond(_))) {
-        ContactStatus::Beyond
+        PartStatus::Beyond
     } else {
-        ContactStatus::Snapped
+        PartStatus::Snapped
     };
     match filtered {
         [Nothing, _] | [_, Nothing] => Settled::Nothing,

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::part_contact::{ContactBuffers, ContactStatus, PartContact};
+use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::{Real, Space, Vector, max};
 
@@ -33,17 +33,17 @@ struct Ways<N: Real, const D: usize>(SmallVec<[Way<N, D>; MAX_WAYS]>);
 /// solids that overlap always have a contact.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    part_contacts: &mut [PartContact<N, D>],
-    buffers: &mut ContactBuffers<N, D>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
 ) {
-    super::hidden::drop_hidden(scene, part_contacts);
+    super::hidden::drop_hidden(scene, contacts);
     let is_asked = |contact: &PartContact<N, D>| {
-        matches!(contact.status, ContactStatus::Snapped | ContactStatus::Beyond)
+        matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
     };
-    if part_contacts.iter().any(is_asked) {
-        leave_explained(scene, part_contacts, buffers);
+    if contacts.iter().any(is_asked) {
+        leave_explained(scene, contacts, arena);
     }
-    keep_one(part_contacts, buffers);
+    keep_one(contacts, arena);
 }
 
 /// Leaves out contacts with faces that other contacts explain, first such as are none beyond a ridge.
@@ -51,23 +51,22 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
 /// Cost: O(n log n) in the number of contacts, each held against a limited number of ways.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    part_contacts: &mut [PartContact<N, D>],
-    buffers: &ContactBuffers<N, D>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &Arena<N, D>,
 ) {
-    use ContactStatus::{Beyond, Own, Snapped};
+    use PartStatus::{Beyond, Own, Snapped};
     for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
-        let known = shallowest_first(part_contacts, |status| explaining.contains(&status));
+        let known = shallowest_first(contacts, |status| explaining.contains(&status));
         let (mut known, mut ways) = (known.into_iter().peekable(), Ways(SmallVec::new()));
-        for index in shallowest_first(part_contacts, |status| status == asked) {
-            let is_shallower =
-                |&other: &usize| depth(&part_contacts[other]) <= depth(&part_contacts[index]);
+        for index in shallowest_first(contacts, |status| status == asked) {
+            let is_shallower = |&other: &usize| depth(&contacts[other]) <= depth(&contacts[index]);
             while let Some(other) = known.next_if(is_shallower) {
-                ways.add(&part_contacts[other]);
+                ways.add(&contacts[other]);
             }
-            if is_explained(scene, &part_contacts[index], &ways, buffers) {
-                part_contacts[index].status = ContactStatus::Left;
+            if is_explained(scene, &contacts[index], &ways, arena) {
+                contacts[index].status = PartStatus::Left;
             } else {
-                ways.add(&part_contacts[index]);
+                ways.add(&contacts[index]);
             }
         }
     }
@@ -80,15 +79,13 @@ fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
 
 /// The contacts with some statuses.
 fn shallowest_first<N: Real, const D: usize>(
-    part_contacts: &[PartContact<N, D>],
-    is_meant: impl Fn(ContactStatus) -> bool,
+    contacts: &[PartContact<N, D>],
+    is_meant: impl Fn(PartStatus) -> bool,
 ) -> SmallVec<[usize; 16]> {
-    let mut order = SmallVec::<[usize; 16]>::with_capacity(part_contacts.len());
-    order.extend((0..part_contacts.len()).filter(|&index| is_meant(part_contacts[index].status)));
+    let mut order = SmallVec::<[usize; 16]>::with_capacity(contacts.len());
+    order.extend((0..contacts.len()).filter(|&index| is_meant(contacts[index].status)));
     // Contacts come in the order of their parts.
-    order.sort_by(|&a, &b| {
-        depth(&part_contacts[a]).as_f64().total_cmp(&depth(&part_contacts[b]).as_f64())
-    });
+    order.sort_by(|&a, &b| depth(&contacts[a]).as_f64().total_cmp(&depth(&contacts[b]).as_f64()));
     order
 }
 
@@ -116,13 +113,13 @@ fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
     ways: &Ways<N, D>,
-    buffers: &ContactBuffers<N, D>,
+    arena: &Arena<N, D>,
 ) -> bool {
     let normal = contact.piece.normal;
     if depth(contact) <= contact.tolerance {
         return false;
     }
-    let is_beyond = contact.status == ContactStatus::Beyond;
+    let is_beyond = contact.status == PartStatus::Beyond;
     let is_asked = |way: &&Way<N, D>| is_beyond || way.normal.dot(&normal) < N::lit(ALIKE);
     // The plane that is known to part the two best may do so well enough once they are moved.
     let rest = |way: &Way<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
@@ -134,7 +131,7 @@ fn is_explained<N: Space<D>, const D: usize>(
         asked.push(way);
     }
     !asked.is_empty() && {
-        let points = &buffers.points[contact.piece.points.clone()];
+        let points = &arena.points[contact.piece.points.clone()];
         let mut placed = None;
         asked.into_iter().any(|way| {
             let shift = way.normal * way.depth;
@@ -153,39 +150,36 @@ fn is_explained<N: Space<D>, const D: usize>(
 
 /// If the contacts that hold are farther than the nearest two parts, adds that of these. What is
 /// apart by rounding only, where parts touch, is made to touch.
-fn keep_one<N: Real, const D: usize>(
-    part_contacts: &mut [PartContact<N, D>],
-    buffers: &mut ContactBuffers<N, D>,
-) {
-    let nearest = least_of(part_contacts, |contact| Some(contact.distance));
+fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: &mut Arena<N, D>) {
+    let nearest = least_of(contacts, |contact| Some(contact.distance));
     let Some(nearest) = nearest else { return };
     let (least, tolerance) =
-        (max(part_contacts[nearest].distance, N::ZERO), part_contacts[nearest].tolerance);
-    let kept = least_of(part_contacts, |contact| {
-        (contact.status != ContactStatus::Left).then_some(contact.lowest)
+        (max(contacts[nearest].distance, N::ZERO), contacts[nearest].tolerance);
+    let kept = least_of(contacts, |contact| {
+        (contact.status != PartStatus::Left).then_some(contact.lowest)
     });
-    match kept.map(|index| (index, part_contacts[index].lowest)) {
+    match kept.map(|index| (index, contacts[index].lowest)) {
         Some((_, lowest)) if lowest <= least => {}
         Some((index, lowest)) if lowest <= least + tolerance => {
-            for point in &mut buffers.points[part_contacts[index].piece.points.clone()] {
+            for point in &mut arena.points[contacts[index].piece.points.clone()] {
                 point.distance = max(point.distance - lowest, N::ZERO) + least;
             }
-            part_contacts[index].lowest = least;
+            contacts[index].lowest = least;
         }
         _ => {
             // Points that it has are of a face's normal, and farther.
-            part_contacts[nearest].status = ContactStatus::Own;
-            part_contacts[nearest].piece.points = 0..0;
+            contacts[nearest].status = PartStatus::Own;
+            contacts[nearest].piece.points = 0..0;
         }
     }
 }
 
 /// The index of the least of some number of the contacts, the first of equals.
 fn least_of<N: Real, const D: usize>(
-    part_contacts: &[PartContact<N, D>],
+    contacts: &[PartContact<N, D>],
     value: impl Fn(&PartContact<N, D>) -> Option<N>,
 ) -> Option<usize> {
-    let all = part_contacts.iter().enumerate();
+    let all = contacts.iter().enumerate();
     let said = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
     let least = said.reduce(|best, next| if next.1 < best.1 { next } else { best });
     least.map(|(index, _)| index)

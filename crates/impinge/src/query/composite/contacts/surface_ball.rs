@@ -6,9 +6,7 @@ use super::super::bounds::enclosing;
 use super::around::Around;
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::over::over3;
-use super::part_contact::{
-    self, ContactBuffers, ContactStatus, PartContact, is_beside, is_certain, of_ball,
-};
+use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_certain, of_ball};
 use super::scene::Scene;
 use super::{
     CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
@@ -35,18 +33,18 @@ pub(crate) fn update_on_surface<N: Real>(
     request: &ManifoldRequest<N>,
 ) -> bool {
     let Some(mut rolling) = Rolling::new(between, request) else { return false };
-    let (mut part_contacts, mut buffers) = (PartContacts::new(), ContactBuffers::default());
-    let Some(rounding) = rolling.find(contacts, &mut part_contacts, &mut buffers) else {
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    let Some(rounding) = rolling.find(contacts, &mut part_contacts, &mut arena) else {
         return false;
     };
-    buffers.rounding = rounding;
+    arena.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
     if !is_settled(&part_contacts) {
         let around = Some(&contacts.around);
         let query = Query { between, around, reference: &reference, request: &rolling.request };
-        query.settle(&Scene::new(between, around), &mut part_contacts, &mut buffers);
+        query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, merge, reference, center, &part_contacts, &buffers);
+    contacts.conclude(request, merge, reference, center, &part_contacts, &arena);
     true
 }
 
@@ -100,7 +98,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,
         part_contacts: &mut PartContacts<N, 3>,
-        buffers: &mut ContactBuffers<N, 3>,
+        arena: &mut Arena<N, 3>,
     ) -> Option<N> {
         let within = self.box_within(&mut contacts.around)?;
         let question = BallQuestion {
@@ -123,7 +121,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             |[near, hidden]| near & !hidden,
             |index| {
                 let one = self.seen(around, index)?;
-                self.add(&one, around, (&mut *part_contacts, &mut *buffers));
+                self.add(&one, around, (&mut *part_contacts, &mut *arena));
                 Some(())
             },
         )?;
@@ -177,12 +175,12 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         &self,
         seen: &Seen<N>,
         around: &Around<N, 3>,
-        (part_contacts, buffers): (&mut PartContacts<N, 3>, &mut ContactBuffers<N, 3>),
+        (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
     ) {
         let kind = Kind::Triangle(&seen.triangle);
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
         let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
-        let found = self.plainly(seen, &found, buffers).unwrap_or_else(|| {
+        let found = self.plainly(seen, &found, arena).unwrap_or_else(|| {
             let scene = Scene::new(self.between, Some(around));
             let parts = [0, seen.part];
             let query = Query {
@@ -192,7 +190,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
                 request: &self.request,
             };
             let gap = PartGap::of(&found);
-            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&gap), buffers)
+            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&gap), arena)
         });
         part_contacts.extend(found);
     }
@@ -203,7 +201,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         &self,
         seen: &Seen<N>,
         found: &Separation<N, 3>,
-        buffers: &mut ContactBuffers<N, 3>,
+        arena: &mut Arena<N, 3>,
     ) -> Option<Option<PartContact<N, 3>>> {
         let over = over3(&seen.triangle, &Point::origin(), seen.tolerance)?;
         if !found.distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
@@ -211,27 +209,27 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         }
         let filtered = self.filtered_normal(seen, found, over);
         let (normal, status) = match &filtered {
-            FilteredNormal::Face(face) => (-self.turn.vector(face), ContactStatus::Own),
-            FilteredNormal::Admitted => (found.normal, ContactStatus::Own),
-            FilteredNormal::Refused => (found.normal, ContactStatus::Left),
+            FilteredNormal::Face(face) => (-self.turn.vector(face), PartStatus::Own),
+            FilteredNormal::Admitted => (found.normal, PartStatus::Own),
+            FilteredNormal::Refused => (found.normal, PartStatus::Left),
             FilteredNormal::Snapped(_) | FilteredNormal::Beyond(_) if is_beside(Some(over)) => {
-                (found.normal, ContactStatus::Left)
+                (found.normal, PartStatus::Left)
             }
             _ => return None,
         };
-        let start = buffers.points.len();
+        let start = arena.points.len();
         let mut lowest = N::INFINITY;
-        if status == ContactStatus::Own {
+        if status == PartStatus::Own {
             if !is_certain(over, &filtered) {
                 return None;
             }
             let mut point = of_ball(&Separation { normal, ..*found }, over);
             point.point1 = Point::origin() + point.point1.coords;
             lowest = point.distance;
-            buffers.points.push(point);
+            arena.points.push(point);
         }
-        let piece = Piece { normal, parts: [0, seen.part], points: start..buffers.points.len() };
-        let face = filtered.face().filter(|_| status != ContactStatus::Left);
+        let piece = Piece { normal, parts: [0, seen.part], points: start..arena.points.len() };
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
         let (distance, normal, tolerance) = (found.distance, found.normal, seen.tolerance);
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
