@@ -14,7 +14,7 @@ use crate::place::Dimension;
 const COMMON_KINDS: usize = 13;
 
 /// Compounds are nested so deep at most.
-const MOST_NESTED: usize = 3;
+const MAX_NESTED: usize = 3;
 
 /// A shape of the kind that the next byte says; a ball where a constructor refuses the numbers.
 pub(crate) fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
@@ -57,8 +57,7 @@ fn nested<N: Space<D>, M: Dimension<N, D>, const D: usize>(
             made(TaperedCapsule::<N, D>::try_from_ends(a, b, radii))
         }
         8 => {
-            let inner =
-                if depth < MOST_NESTED { nested::<N, M, D>(bytes, depth + 1) } else { None };
+            let inner = if depth < MAX_NESTED { nested::<N, M, D>(bytes, depth + 1) } else { None };
             made(Rounded::try_from_handle(inner?, bytes.size()))
         }
         9 => {
@@ -89,7 +88,7 @@ fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
     depth: usize,
 ) -> Option<ShapeHandle<N, D>> {
-    if depth == MOST_NESTED {
+    if depth == MAX_NESTED {
         return None;
     }
     let count = bytes.choice(8);
@@ -115,7 +114,7 @@ fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> 
     Unit::new_normalize(if is_usable { any } else { axis })
 }
 
-/// A support map of the user's own: the hull of points, swollen.
+/// A support map of the user's own: the hull of points, inflated.
 #[derive(Clone, Debug)]
 pub(crate) struct Cloud<N: Real, const D: usize> {
     points: Vec<Point<N, D>>,

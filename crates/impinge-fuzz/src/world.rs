@@ -18,17 +18,17 @@ use crate::shapes::shape;
 use crate::{Bytes, Task, dispatch};
 
 /// No more operations on one world.
-const MOST_OPERATIONS: usize = 48;
+const MAX_OPERATIONS: usize = 48;
 
 /// No more objects in one world.
-const MOST_OBJECTS: usize = 10;
+const MAX_OBJECTS: usize = 10;
 
 struct Operations;
 
 impl Task for Operations {
     fn run<N: Space<D>, M: Dimension<N, D>, const D: usize>(self, bytes: &mut Bytes<'_>) {
         let mut stage = Stage::<N, D>::new(bytes);
-        for _ in 0..MOST_OPERATIONS {
+        for _ in 0..MAX_OPERATIONS {
             if bytes.is_empty() {
                 break;
             }
@@ -125,7 +125,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
     }
 
     fn add<M: Dimension<N, D>>(&mut self, bytes: &mut Bytes<'_>) {
-        if self.world.len() == MOST_OBJECTS {
+        if self.world.len() == MAX_OBJECTS {
             return;
         }
         let (shape, position) = (self.shape::<M>(bytes), M::stored(M::position(bytes)));

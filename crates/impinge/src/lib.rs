@@ -1,6 +1,6 @@
-//! Collision detection for the plane and for space: who touches whom, where, and since when.
+//! Collision detection in 2D and 3D: who touches whom, where, and since when.
 //!
-//! You move your objects by your own rules; there are no forces here. A world tells you, at each
+//! You move your objects by your own rules; there are no forces here. A world says, at each
 //! update, which pairs came to touch or parted, where their contact points are, how deep and along
 //! which direction. It also answers rays, points, boxes, shapes and moving shapes, and [`query`] any
 //! question about two shapes on their own.

@@ -88,7 +88,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) contacts: ContactsFn<N, D>,
     /// Those of some pairs of a group, several at a time, if that can be done.
     pub(crate) update_lanes: UpdateLanesFn<N, D>,
-    /// Two directions across a normal; the second is zero in the plane.
+    /// Two directions across a normal; the second is zero in 2D.
     pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
     pub(crate) public_manifold: PublicManifoldFn<N, D>,
@@ -191,7 +191,7 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) project: ProjectFn<N, D>,
     pub(crate) holds: fn(&Body<N, D>, &Point<N, D>) -> bool,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
-    pub(crate) turn_over:
+    pub(crate) begin_and_end_pairs:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &[Interaction], &mut Events),
     pub(crate) pair_stopped:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32, &mut Events),
@@ -220,7 +220,7 @@ impl<N: Space<D>, const D: usize> WorldTables<N, D> {
             project: Body::project,
             holds: Body::holds,
             pair_started: DefaultNarrowPhase::pair_started,
-            turn_over: DefaultNarrowPhase::turn_over,
+            begin_and_end_pairs: DefaultNarrowPhase::begin_and_end_pairs,
             pair_stopped: DefaultNarrowPhase::pair_stopped,
             object_changed: DefaultNarrowPhase::object_changed,
         }

@@ -102,7 +102,7 @@ impl<const D: usize> Solid<D> {
 
     /// The solid and all that lies within `radius` of it.
     #[must_use]
-    pub fn swollen(mut self, radius: f64) -> Self {
+    pub fn inflated(mut self, radius: f64) -> Self {
         self.radius += radius;
         self
     }

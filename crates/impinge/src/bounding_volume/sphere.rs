@@ -1,4 +1,4 @@
-//! Bounding spheres (disks in the plane).
+//! Bounding spheres (disks in 2D).
 
 use core::fmt;
 

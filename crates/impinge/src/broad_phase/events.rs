@@ -106,10 +106,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
             // Of two unbounded objects, the one that changed speaks, of two that did the smaller.
-            let is_told_by_other = self.homes[other as usize] == Home::Unbounded
+            let is_reported_by_other = self.homes[other as usize] == Home::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);
-            if other == u || is_told_by_other {
+            if other == u || is_reported_by_other {
                 return;
             }
             match self.overlap_before_and_now(u, other) {

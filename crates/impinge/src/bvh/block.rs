@@ -7,7 +7,7 @@ pub const LANES: usize = 16;
 
 /// Sixteen boxes as a structure of arrays: by axis, all least coordinates, then all greatest.
 ///
-/// 384 bytes (six cache lines) in space, 256 in the plane. A lane without a box holds
+/// 384 bytes (six cache lines) in 3D, 256 in 2D. A lane without a box holds
 /// [`Bounds::EMPTY`], which no bounded query overlaps and which is neutral when bounds are taken,
 /// so that no count of lanes is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -108,7 +108,7 @@ impl<const D: usize> Bounds<D> {
         Self { lo: self.lo.map(above), hi: self.hi.map(below) }
     }
 
-    /// Half the surface (in the plane half the perimeter): what a search pays for a node, up to a
+    /// Half the surface (in 2D half the perimeter): what a search pays for a node, up to a
     /// factor (Goldsmith and Salmon 1987). Not the volume, which is zero for every flat box.
     ///
     /// In `f64`, where no box of finite faces overflows; 0 for an empty box.

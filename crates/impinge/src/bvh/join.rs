@@ -373,7 +373,7 @@ impl<'a, const D: usize> Boxes<'a, D> {
         let (first, second) = (sides.first, sides.second);
         let (now_a, before_a) = (&first.layers[0].blocks[..], first.was());
         let (now_b, before_b) = (&second.layers[0].blocks[..], second.was());
-        // Of equal length: told once rather than asked for each pair.
+        // Of equal length: computed once rather than for each pair.
         let (now_a, now_b) = (&now_a[..before_a.len()], &now_b[..before_b.len()]);
         Self { now_a, before_a, now_b, before_b }
     }

@@ -65,13 +65,13 @@ impl<const D: usize> Probe<D> for Gaps<D> {
 
 /// A block that lies open.
 #[derive(Clone, Copy, Debug)]
-struct Open {
+pub(super) struct Open {
     /// Those of the children.
-    keys: [f32; LANES],
+    pub(super) keys: [f32; LANES],
     /// The children to be looked at.
-    mask: u32,
+    pub(super) mask: u32,
     /// The number of the first child.
-    first: u32,
+    pub(super) first: u32,
 }
 
 impl Open {
@@ -211,6 +211,18 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
+    /// Opens a block of which the children are wanted that may be as near as `limit`, as
+    /// [`Lanes::visit_around`].
+    pub(super) fn opened_around(
+        &self,
+        gaps: &Gaps<D>,
+        layer: usize,
+        number: u32,
+        limit: f32,
+    ) -> Open {
+        with_kernel!(self.lanes, kernel => self.opened(kernel, gaps, layer, number, limit))
+    }
+
     /// Reads something of a leaf block.
     #[inline(always)]
     fn touch_leaf(&self, block: u32) {
@@ -224,7 +236,7 @@ impl<const D: usize> Tree<D> {
 
     /// Without the lanes that have no block below them.
     #[inline(always)]
-    pub(super) fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
+    fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };
         let left = self.layers[below].blocks.len() - first as usize;
         if left < LANES { mask & ((1 << left) - 1) } else { mask }

@@ -11,9 +11,8 @@ use std::collections::BinaryHeap;
 use smallvec::SmallVec;
 
 use super::gaps::Gaps;
-use super::kernel::{Kernel, Lanes, with_kernel};
-use super::tree::small;
-use super::{Block, Bounds, LANES, Tree};
+use super::near_first::Open;
+use super::{Bounds, LANES, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, max};
 
@@ -142,12 +141,10 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// The lanes of a block of one tree that are within the bound of a box in its frame, near ones first, of several
     /// at one distance the first. A distance is a little less than the exact one.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
-        let (tree, layer, first) = (self.trees[which], usize::from(layer), block * small(LANES));
-        let (gaps, mut keys) = (Gaps::new(aabb, tree.size()), [0.0; LANES]);
-        let limit = gaps.limit(self.question.bound());
-        let asked = &tree.layers[layer].blocks[block as usize];
-        let mask = tree.lanes.apart(asked, &gaps, limit, &mut keys);
-        let mut mask = tree.lanes_in_use(layer, first, mask);
+        let (tree, layer) = (self.trees[which], usize::from(layer));
+        let gaps = Gaps::new(aabb, tree.size());
+        let Open { keys, mut mask, first } =
+            tree.opened_around(&gaps, layer, block, gaps.limit(self.question.bound()));
         let mut near = NearLanes::new();
         while mask != 0 {
             let lane = mask.trailing_zeros();
@@ -160,23 +157,11 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 }
 
-impl Lanes {
-    /// See [`Kernel::apart`].
-    fn apart<const D: usize>(
-        self,
-        block: &Block<D>,
-        gaps: &Gaps<D>,
-        limit: f32,
-        keys: &mut [f32; LANES],
-    ) -> u32 {
-        with_kernel!(self, kernel => kernel.apart(block, gaps, limit, keys))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bounding_volume::BoundingVolume;
+    use crate::bvh::Lanes;
     use crate::math::noise::Noise;
     use crate::math::{Point, Vector};
 

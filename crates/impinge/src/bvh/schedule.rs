@@ -15,7 +15,7 @@ const LOOK_EVERY: u32 = 4;
 /// A part of the snapshot this small is sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
 /// The least number of items that a step handles, so that small trees renew in few steps.
-const LEAST_BUDGET: usize = 2048;
+const MIN_BUDGET: usize = 2048;
 /// One object in so many came or went elsewhere while the snapshot was sorted: it is worth nothing.
 const LATE: usize = 4;
 /// Objects that may come or go in any case before the order is renewed.
@@ -163,7 +163,7 @@ impl<const D: usize> Tree<D> {
         } else if self.schedule.parts.is_empty() {
             self.apply_snapshot();
         } else {
-            self.schedule.sort_some(self.live.max(LEAST_BUDGET));
+            self.schedule.sort_some(self.live.max(MIN_BUDGET));
         }
     }
 

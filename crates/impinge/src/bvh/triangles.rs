@@ -10,7 +10,7 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Real, max_component};
 use fearless_simd::{Simd, SimdBase, f32x16};
 
-/// Sixteen triangles in space as a structure of arrays: by corner, then by axis, rounded to nearest.
+/// Sixteen triangles in 3D as a structure of arrays: by corner, then by axis, rounded to nearest.
 ///
 /// 576 bytes. Lanes without a triangle hold zeros, and may be proposed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The nearest supporting line of a difference that holds the origin, in the plane.
+//! The nearest supporting line of a difference that holds the origin, in 2D.
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
 //! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Here

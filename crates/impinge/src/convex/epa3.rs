@@ -1,4 +1,4 @@
-//! The nearest supporting plane of a difference that holds the origin, in space.
+//! The nearest supporting plane of a difference that holds the origin, in 3D.
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
 //! (2001): a polytope inside the difference grows outwards at its face nearest to the origin. Here

@@ -56,7 +56,7 @@ struct GjkSearch<N: Real, const D: usize> {
 /// What is known of two cores.
 pub(super) enum Answer<N: Real, const D: usize> {
     Signed(Separation<N, D>),
-    /// Swollen they certainly overlap; how deep was not asked.
+    /// Inflated they certainly overlap; how deep was not asked.
     Overlap,
 }
 
@@ -77,7 +77,7 @@ where
     }
 }
 
-/// As [`solve`], but if a rounding is given, content with a certain overlap of what is swollen by it: see
+/// As [`solve`], but if a rounding is given, content with a certain overlap of what is inflated by it: see
 /// [`overlaps`]. What is apart is found by the same steps.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
@@ -114,7 +114,7 @@ fn near<N: Real>(rounding: N) -> N {
     rounding - N::lit(CLEAR)
 }
 
-/// Whether the difference, swollen by a radius, certainly holds the origin: found by a simplex that holds
+/// Whether the difference, inflated by a radius, certainly holds the origin: found by a simplex that holds
 /// a ball around it, or by a point nearer than the radius. Not looked for where the way out along `start`
 /// is shorter than `min_depth`.
 pub(super) fn overlaps<N, S, const D: usize>(

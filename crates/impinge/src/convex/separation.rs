@@ -40,7 +40,7 @@ impl<N: Real, const D: usize> Separation<N, D> {
         }
     }
 
-    /// The cores swollen by their rounding radii.
+    /// The cores inflated by their rounding radii.
     pub(crate) fn rounded(&self, rounding1: N, rounding2: N) -> Self {
         Self {
             distance: self.distance - rounding1 - rounding2,

@@ -35,7 +35,7 @@ impl<N: Real> Simplicial<2> for N {
     }
 }
 
-/// As [`nearest_on_segment`]; in the plane the edge alone gives the direction.
+/// As [`nearest_on_segment`]; in 2D the edge alone gives the direction.
 fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> Nearest<N, 2> {
     let nearest = nearest_on_segment(points, [i, j]);
     if nearest.weights[i] == N::ZERO || nearest.weights[j] == N::ZERO {

@@ -36,7 +36,7 @@ pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
     pub use crate::shape::{aabb, bounding_sphere};
 
-    /// An axis-aligned box of the plane.
+    /// An axis-aligned box in 2D.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 2>;
     /// A disk that encloses something.
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 2>;
@@ -89,13 +89,13 @@ pub mod events {
     pub use crate::query::Proximity;
 }
 
-/// Objects that are told, at each update, who touches whom.
+/// Objects, and who touches whom as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
     pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
 
-    /// A world of the plane.
+    /// A world in 2D.
     pub type CollisionWorld<N, T> = crate::world::CollisionWorld<N, 2, T>;
     /// An object of a world.
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 2, T>;
@@ -156,7 +156,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
-        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Siding, SupportMap,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Sidedness, SupportMap,
         Surface,
     };
 
@@ -218,7 +218,7 @@ pub mod procedural {
     pub use crate::procedural::plane::{
         ball, capsule, convex_polygon, cuboid, ellipse, tapered_capsule, triangle,
     };
-    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, Outline};
+    pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, Outline};
 }
 
 /// Searches among boxes of the user's own.
@@ -244,7 +244,7 @@ pub mod math {
     use crate::math::na;
     pub use crate::math::{Pose, Real, Unit};
 
-    /// The dimension of the plane.
+    /// The number of dimensions.
     pub const DIM: usize = 2;
     /// A point.
     pub type Point<N> = na::Point2<N>;

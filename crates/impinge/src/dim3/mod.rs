@@ -36,7 +36,7 @@ pub mod bounding_volume {
     pub use crate::bounding_volume::{AabbError, BoundingSphereError, BoundingVolume};
     pub use crate::shape::{aabb, bounding_sphere};
 
-    /// An axis-aligned box of space.
+    /// An axis-aligned box in 3D.
     pub type Aabb<N> = crate::bounding_volume::Aabb<N, 3>;
     /// A ball that encloses something.
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 3>;
@@ -89,13 +89,13 @@ pub mod events {
     pub use crate::query::Proximity;
 }
 
-/// Objects that are told, at each update, who touches whom.
+/// Objects, and who touches whom as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
     pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
 
-    /// A world of space.
+    /// A world in 3D.
     pub type CollisionWorld<N, T> = crate::world::CollisionWorld<N, 3, T>;
     /// An object of a world.
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 3, T>;
@@ -157,7 +157,7 @@ pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, Siding, SupportMap, Surface, Tetrahedron,
+        ShapeKind, Sidedness, SupportMap, Surface, Tetrahedron,
     };
 
     /// Where a curved support point lies, and how it moves.
@@ -219,7 +219,7 @@ pub mod procedural {
         ball, capsule, cone, convex_hull, cuboid, cylinder, ellipsoid, tapered_capsule,
         tetrahedron, triangle,
     };
-    pub use crate::procedural::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS, TriangleSurface};
+    pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, TriangleSurface};
 }
 
 /// Searches among boxes of the user's own.
@@ -245,7 +245,7 @@ pub mod math {
     use crate::math::na;
     pub use crate::math::{Pose, Real, Unit};
 
-    /// The dimension of space.
+    /// The number of dimensions.
     pub const DIM: usize = 3;
     /// A point.
     pub type Point<N> = na::Point3<N>;

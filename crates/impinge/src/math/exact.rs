@@ -1,4 +1,4 @@
-//! On which side: orientation of points in the plane and in space, with the exact sign.
+//! On which side: orientation of points in 2D and 3D, with the exact sign.
 //!
 //! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"
 //! (1997): a rounded determinant with a bound on its error and, where the bound does not decide, the

@@ -4,7 +4,7 @@
 //! here is a `map`: closures that are handed to it are not inlined into vector code.
 
 use super::simd::{Simd, SimdMask};
-use super::{Real, Vector, Wide, max};
+use super::{Pose, Real, Vector, Wide, max};
 
 /// Runs `$body` with `$simd` bound to the vectors of a [`Level`](super::simd::Level), or to arrays.
 ///
@@ -195,4 +195,101 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
         #[inline(always)]
         |axis| is.select(one[axis], other[axis]),
     )
+}
+
+/// Of two masks the one that each lane wants.
+#[inline(always)]
+pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
+    (is & one) | (!is & other)
+}
+
+/// A bit for each of eight lanes.
+#[inline(always)]
+pub(crate) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
+    let [low, ..] = mask.to_bitmask().to_le_bytes();
+    low
+}
+
+/// A [`Pose`] in each lane, its rotation by columns.
+pub(crate) struct LanePose<V, const D: usize> {
+    pub(crate) rotation: [[V; D]; D],
+    pub(crate) translation: [V; D],
+}
+
+impl<V, const D: usize> LanePose<V, D> {
+    /// The same pose in all lanes.
+    #[inline(always)]
+    pub(crate) fn of<S: Simd, N: Real>(simd: S, pose: &Pose<N, D>) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let rotation = by_axis(
+            #[inline(always)]
+            |column| {
+                by_axis(
+                    #[inline(always)]
+                    |row| V::all(simd, pose.rotation[(row, column)]),
+                )
+            },
+        );
+        Self { rotation, translation: spread(simd, &pose.translation) }
+    }
+
+    /// `Pose::vector`.
+    #[inline(always)]
+    pub(crate) fn vector<S: Simd>(&self, local: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        by_axis(
+            #[inline(always)]
+            |row| {
+                let terms: [V; D] = by_axis(
+                    #[inline(always)]
+                    |column| self.rotation[column][row] * local[column],
+                );
+                let mut sum = terms[0];
+                for &term in &terms[1..] {
+                    sum += term;
+                }
+                sum
+            },
+        )
+    }
+
+    /// `Pose::point`.
+    #[inline(always)]
+    pub(crate) fn point<S: Simd>(&self, local: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        plus(&self.vector(local), &self.translation)
+    }
+
+    /// `Pose::inverse_point`.
+    #[inline(always)]
+    pub(crate) fn inverse_point<S: Simd>(&self, outer: &[V; D]) -> [V; D]
+    where
+        V: Wide<S>,
+    {
+        seen_from(&self.rotation, &minus(outer, &self.translation))
+    }
+
+    /// `Pose::inverse_point` of the origin.
+    #[inline(always)]
+    pub(crate) fn inverse_origin<S: Simd, N: Real>(&self, simd: S) -> [V; D]
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        self.inverse_point(&[V::all(simd, N::ZERO); D])
+    }
+
+    /// How far the second solid's origin is from the first's.
+    #[inline(always)]
+    pub(crate) fn apart<S: Simd>(&self) -> V
+    where
+        V: Wide<S>,
+    {
+        norm(&self.translation)
+    }
 }

@@ -62,7 +62,7 @@ pub fn cross2<N: Real>(a: &Vector<N, 2>, b: &Vector<N, 2>) -> N {
     a.x * b.y - a.y * b.x
 }
 
-/// The cross product in space.
+/// The cross product in 3D.
 #[inline]
 pub fn cross<N: Real>(a: &Vector<N, 3>, b: &Vector<N, 3>) -> Vector<N, 3> {
     Vector::<N, 3>::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)

@@ -12,7 +12,7 @@ use crate::query::{ContactManifold, ManifoldRequest};
 use crate::shape::Shape;
 
 /// How many points a manifold is reduced to unless more are asked for: what it takes to delimit an
-/// area, two in the plane and four in space.
+/// area, two in 2D and four in 3D.
 pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
@@ -158,7 +158,7 @@ pub struct DefaultContactDispatcher<const D: usize> {
 }
 
 impl<const D: usize> DefaultContactDispatcher<D> {
-    /// Manifolds of at most two points in the plane and four in space.
+    /// Manifolds of at most two points in 2D and four in 3D.
     #[must_use]
     pub const fn new() -> Self {
         Self { max_points: conforming_points::<D>() }

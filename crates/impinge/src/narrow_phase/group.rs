@@ -22,7 +22,7 @@ pub(super) struct Chosen([u64; CHUNK / WORD]);
 
 /// The states of some pairs in no particular order, without gaps.
 ///
-/// A pair's place changes when another pair of the group is removed; whoever keeps places is told.
+/// A pair's place changes when another pair of the group is removed; whoever keeps places is notified.
 /// What is asked of all pairs again and again, whether they are due and whether they touch, stands apart
 /// from the states, so that who passes over a pair does not wait for its memory.
 /// To each state belongs a view: what readers make of it. The views come into being, all together,

@@ -37,7 +37,7 @@ pub(crate) struct Location {
     pub(crate) place: u32,
 }
 
-/// What a pair carries over when its algorithm changes: the facts that events are told by.
+/// What a pair carries over when its algorithm changes: what events follow from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
     Contacts { is_touching: bool },

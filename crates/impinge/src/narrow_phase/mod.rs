@@ -18,11 +18,11 @@ mod handle;
 mod ids;
 mod lanes;
 mod objects;
+mod pair_batch;
 mod query_type;
 mod reuse;
 mod state;
 mod traits;
-mod turnover;
 mod update;
 mod view;
 

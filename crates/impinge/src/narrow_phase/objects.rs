@@ -49,7 +49,7 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By row, as all below.
     handles: Vec<CollisionObjectHandle>,
     solids: Vec<Solid<N, D>>,
-    /// Balls and boxes that hold the shapes: most pairs that are far apart are told so by these, without a
+    /// Balls and boxes that hold the shapes: most pairs that are far apart are rejected by these, without a
     /// look at the shapes, which lie far off in memory.
     bounds: Vec<Bounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
     }
 }
 
-/// What every query of a pair reads of an object: of `f32` in space one cache line.
+/// What every query of a pair reads of an object: of `f32` in 3D one cache line.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct Solid<N: Real, const D: usize> {

@@ -58,7 +58,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
         self.bounds.is_some_and(|[one, other]| one.is_clear_of(other, &between, limit))
     }
 
-    /// As [`Self::are_beyond`], told by boxes, for the poses of a pair in canonical order.
+    /// As [`Self::are_beyond`], by boxes, for the poses of a pair in canonical order.
     fn have_boxes_beyond(&self, pose12: &Pose<N, D>, is_swapped: bool, limit: N) -> bool {
         self.bounds.is_some_and(|[one, other]| {
             let [first, second] = if is_swapped { [other, one] } else { [one, other] };
@@ -78,7 +78,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
 }
 
 /// The poses of two shapes; `None` if the shapes are certainly farther apart than `limit`, which is
-/// told before anything is turned.
+/// found before anything is rotated.
 pub(super) fn poses_within<N: Space<D>, const D: usize>(
     [isometry1, isometry2]: [&N::Isometry; 2],
     shapes: [&dyn Shape<N, D>; 2],

@@ -9,7 +9,7 @@ const PER_LINE: usize = 8;
 /// Links in the line that an object with links has, beside what describes the rest.
 const INLINE: usize = PER_LINE - 1;
 /// More idle heads than this, and than others, are given back.
-const MOST_IDLE: usize = 256;
+const MAX_IDLE: usize = 256;
 /// The line of an object without links.
 const NO_HEAD: u32 = u32::MAX;
 /// The class of a run that is not there.
@@ -345,7 +345,7 @@ impl Lines {
 
     /// Gives memory back.
     pub(super) fn fit(&mut self, look: Look) {
-        if self.idle.len() > self.heads.len() / 2 + MOST_IDLE {
+        if self.idle.len() > self.heads.len() / 2 + MAX_IDLE {
             self.drop_idle();
         }
         look.fit(&mut self.owned);

@@ -16,8 +16,8 @@ use crate::math::{Point, Real, Space, Vector, max};
 /// be few.
 ///
 /// Making it costs O(n log n). A search looks at O(log n) blocks of sixteen boxes and at what it finds,
-/// as long as boxes do not all overlap. Beside its box, an object takes about 60 bytes in the plane and
-/// 85 in space, and up to twice that for what arrays keep in reserve.
+/// as long as boxes do not all overlap. Beside its box, an object takes about 60 bytes in 2D and
+/// 85 in 3D, and up to twice that for what arrays keep in reserve.
 ///
 /// ```
 /// use impinge::bounding_volume::{Aabb, Ray};

@@ -5,19 +5,19 @@ use core::f64::consts::FRAC_PI_2;
 use crate::math::{Real, Vector};
 
 /// The least number of parts of a full turn: fewer enclose nothing.
-pub const LEAST_SUBDIVISIONS: u32 = 3;
+pub const MIN_SUBDIVISIONS: u32 = 3;
 
 /// The greatest number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below what
 /// an `f32` tells apart, and the vertices of every surface can be numbered in 32 bits.
-pub const MOST_SUBDIVISIONS: u32 = 1 << 14;
+pub const MAX_SUBDIVISIONS: u32 = 1 << 14;
 
 /// The number of parts that stands for the number asked for.
 pub(super) fn parts_of_turn(subdivisions: u32) -> u32 {
-    subdivisions.clamp(LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS)
+    subdivisions.clamp(MIN_SUBDIVISIONS, MAX_SUBDIVISIONS)
 }
 
 /// The unit vector that is `index / count` of a full turn from x, towards y; `index` may be anything
-/// up to some turns, `count` up to four times [`MOST_SUBDIVISIONS`].
+/// up to some turns, `count` up to four times [`MAX_SUBDIVISIONS`].
 ///
 /// Each is computed for itself, from an angle of an eighth of a turn at most: errors do not add up, and
 /// quarter turns are exact.
@@ -72,6 +72,6 @@ mod tests {
     #[test]
     fn counts_are_clamped() {
         let counts = [0, 2, 3, 100, u32::MAX].map(parts_of_turn);
-        assert_eq!(counts, [3, 3, 3, 100, MOST_SUBDIVISIONS], "to what can be built");
+        assert_eq!(counts, [3, 3, 3, 100, MAX_SUBDIVISIONS], "to what can be built");
     }
 }

@@ -10,8 +10,8 @@
 //! * a size of zero changes no vertex count and no triangle: some triangles then have no area;
 //! * scaling a shape by a power of two scales every vertex exactly, and the bits are the same on every
 //!   machine;
-//! * the number of subdivisions is that of a full turn. It counts as [`LEAST_SUBDIVISIONS`] below that
-//!   and as [`MOST_SUBDIVISIONS`] above that.
+//! * the number of subdivisions is that of a full turn. It counts as [`MIN_SUBDIVISIONS`] below that
+//!   and as [`MAX_SUBDIVISIONS`] above that.
 
 mod circle;
 pub mod plane;
@@ -19,5 +19,5 @@ mod revolution;
 pub mod space;
 mod surface;
 
-pub use circle::{LEAST_SUBDIVISIONS, MOST_SUBDIVISIONS};
+pub use circle::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS};
 pub use surface::{Outline, TriangleSurface};

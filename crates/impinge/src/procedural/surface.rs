@@ -3,7 +3,7 @@
 use crate::math::{Point, Real, Vector};
 use crate::shape::{MeshError, Polyline, TriMesh};
 
-/// A closed line through points of the plane, counter-clockwise; the last leads back to the first.
+/// A closed line through 2D points, counter-clockwise; the last leads back to the first.
 ///
 /// ```
 /// use impinge::dim2::procedural;
@@ -19,7 +19,7 @@ pub struct Outline<N: Real> {
     pub points: Vec<Point<N, 2>>,
 }
 
-/// A closed surface of triangles in space.
+/// A closed surface of triangles in 3D.
 ///
 /// Triangles share their vertices: each edge belongs to two triangles, once in each direction. Where
 /// the surface has a crease, the triangles on its two sides differ in their normals only.

@@ -1,13 +1,13 @@
-//! Shapes that are certainly too far apart, told before anything is turned.
+//! Shapes that are certainly too far apart, rejected before anything is rotated.
 //!
 //! A ball around the origin of its frame holds a solid however it is turned. So the balls of two solids,
 //! whose radii are known at once, and the difference of the positions tell most pairs apart that the
 //! algorithms need not look at: without a rotation, an order of the two, or a feature.
 //!
-//! What is told here is what the algorithms would have answered. They are off by some hundred rounding
+//! What is rejected here is what the algorithms would have answered. They are off by some hundred rounding
 //! errors of the lengths of the pair, and all of these are at most twice the distance of the origins
 //! where the balls do not meet. The squares are compared with a factor of 1 + 2⁻⁶: the balls of solids
-//! that are told apart are farther from each other than the limit by 2⁻⁸ of that distance, which is
+//! that are rejected are farther from each other than the limit by 2⁻⁸ of that distance, which is
 //! 2¹⁵ rounding errors of `f32`.
 
 use crate::math::{Pose, Real, Vector, max, max_component, min};
@@ -230,14 +230,14 @@ mod tests {
         }
     }
 
-    /// Whatever is told to be beyond is so for the algorithms: close to where it begins to be told, at all
+    /// Whatever is rejected is beyond the limit for the algorithms: close to where rejection begins, at all
     /// scales, and where the world's numbers are coarse.
-    fn tells_no_more<N: Space<D>, const D: usize>(
+    fn rejects_no_more<N: Space<D>, const D: usize>(
         (draw, kinds): (Draw<N, D>, usize),
         turn: fn(&mut Random) -> Pose<N, D>,
     ) {
         let random = &mut Random(11);
-        let (mut told, mut boxed, mut moved) = (0, 0, 0);
+        let (mut rejected, mut boxed, mut moved) = (0, 0, 0);
         for round in 0..4000 {
             let shapes = [draw(random, round % kinds), draw(random, round / kinds % kinds)];
             let bounds = [Bounds::of(shapes[0].as_ref()), Bounds::of(shapes[1].as_ref())];
@@ -258,7 +258,7 @@ mod tests {
                 pose12: Pose { translation: between, ..pose12 },
             };
             if (Apart { between, ..apart }).is_beyond(limit) {
-                told += 1;
+                rejected += 1;
                 assert!(
                     separation(&pair, limit).is_none(),
                     "in round {round}: {pair_poses:?}",
@@ -270,7 +270,10 @@ mod tests {
             nearer.pose12.translation *= N::lit([1.0, 0.8, 0.6, 0.4][round % 4]);
             if bounds[0].has_box_clear_of(&bounds[1], &nearer.pose12, limit) {
                 boxed += 1;
-                assert!(separation(&nearer, limit).is_none(), "in round {round}, told by boxes");
+                assert!(
+                    separation(&nearer, limit).is_none(),
+                    "in round {round}, rejected by boxes"
+                );
             }
             let velocity = turn(random).translation;
             if (Apart { between, ..apart }).stays_beyond(limit, &velocity, N::TWO) {
@@ -283,8 +286,8 @@ mod tests {
                 }
             }
         }
-        assert!(told > 500 && told < 3500, "{told} pairs are told apart");
-        assert!(boxed > 500 && boxed < 3500, "the boxes of {boxed} pairs are told apart");
+        assert!(rejected > 500 && rejected < 3500, "{rejected} pairs are rejected");
+        assert!(boxed > 500 && boxed < 3500, "the boxes of {boxed} pairs are rejected");
         assert!(moved > 100 && moved < 3500, "{moved} pairs stay apart");
     }
 
@@ -301,15 +304,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_is_what_the_algorithms_say() {
-        tells_no_more::<f32, 2>((of_plane, 9), turn2);
-        tells_no_more::<f64, 2>((of_plane, 9), turn2);
-        tells_no_more::<f32, 3>((of_space, 11), turn3);
-        tells_no_more::<f64, 3>((of_space, 11), turn3);
+    fn what_is_rejected_is_beyond_for_the_algorithms() {
+        rejects_no_more::<f32, 2>((of_plane, 9), turn2);
+        rejects_no_more::<f64, 2>((of_plane, 9), turn2);
+        rejects_no_more::<f32, 3>((of_space, 11), turn3);
+        rejects_no_more::<f64, 3>((of_space, 11), turn3);
     }
 
     #[test]
-    fn numbers_near_both_ends_of_the_range_are_not_told() {
+    fn numbers_near_both_ends_of_the_range_are_not_rejected() {
         let (small, large) = (Ball::new(1e-23_f32), Ball::new(1.8e19_f32));
         let apart = |ball, x: f32| Apart {
             shapes: [Shape::<f32, 3>::geometry(ball); 2],

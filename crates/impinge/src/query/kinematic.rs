@@ -191,7 +191,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         Self { rule, ..self }
     }
 
-    /// The same, told in the frames of two shapes of which the solids are parts, or all: `pose1` and
+    /// The same in the frames of two shapes of which the solids are parts, or all: `pose1` and
     /// `pose2` are the poses of the solids in these.
     pub(super) fn seen_from(
         &self,
@@ -251,7 +251,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             }
         };
         let least = N::TWO * least_angle();
-        let nearly_parallel = N::lit(LEAST_SINE_SQUARED).sqrt();
+        let nearly_parallel = N::lit(MIN_SINE_SQUARED).sqrt();
         leans(self.geometry1, &self.normal1, least)
             || leans(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
     }
@@ -360,7 +360,7 @@ fn level_edges<N: Real, const D: usize>(
 ) -> Option<(Vector<N, D>, Vector<N, D>)> {
     let (edge1, edge2) = (side1.level_edge()?, side2.level_edge()?);
     let across = edge1.dot(&pose12.vector(&edge2));
-    (across * across < N::ONE - N::lit(LEAST_SINE_SQUARED)).then_some((edge1, edge2))
+    (across * across < N::ONE - N::lit(MIN_SINE_SQUARED)).then_some((edge1, edge2))
 }
 
 impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
@@ -392,7 +392,7 @@ impl<N: Real, const D: usize> Lines<N, D> {
             core::mem::swap(&mut first, &mut second);
         }
         let across = second - first * first.dot(&second);
-        let least = N::lit(LEAST_SINE_SQUARED).sqrt();
+        let least = N::lit(MIN_SINE_SQUARED).sqrt();
         let across = unit(&across).filter(|&(_, sine)| sine > least).map(|(across, _)| across);
         Self {
             first,
@@ -436,7 +436,7 @@ impl<N: Real, const D: usize> Lines<N, D> {
 }
 
 /// Below this squared sine of the angle between two lines their crossing is not looked for.
-const LEAST_SINE_SQUARED: f64 = 1e-6;
+const MIN_SINE_SQUARED: f64 = 1e-6;
 
 /// The points of the two cores that face each other along the normal.
 ///
@@ -479,7 +479,7 @@ fn crossing<N: Real, const D: usize>(
     let (squared1, squared2) = (along1.norm_squared(), along2.norm_squared());
     let mixed = along1.dot(along2);
     let determinant = squared1 * squared2 - mixed * mixed;
-    if determinant > N::lit(LEAST_SINE_SQUARED) * squared1 * squared2 {
+    if determinant > N::lit(MIN_SINE_SQUARED) * squared1 * squared2 {
         let (gap1, gap2) = (gap.dot(along1), gap.dot(along2));
         let a = (gap1 * squared2 - gap2 * mixed) / determinant;
         let b = (gap1 * mixed - gap2 * squared1) / determinant;

@@ -104,7 +104,7 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// Points that delimit a flat area of contact, with one common normal.
 ///
 /// Two convex solids have one manifold, composites one for each flat patch that they touch in. A box
-/// that rests on a plane is one manifold of four points in space and two in the plane; a ball gives
+/// that rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives
 /// one point. The deepest pair of points of the two solids is always among them, so that
 /// [`Self::deepest_contact`] is the answer of the query for one contact. Empty means that the solids
 /// are farther apart than the prediction.

@@ -226,7 +226,7 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
         }
         Kind::Rounded(solid) => {
             let mut numbers = numbers(&solid.inner().0);
-            numbers.push(solid.swelling());
+            numbers.push(solid.radius());
             numbers
         }
         Kind::SupportMap(map) => probed(*map),

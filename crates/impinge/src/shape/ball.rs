@@ -1,4 +1,4 @@
-//! Balls (disks in the plane).
+//! Balls (disks in 2D).
 
 use super::error::{or_panic, size};
 use super::scale::Scale;

@@ -1,4 +1,4 @@
-//! The edge between two triangles: which normals it has, told by the faces' own.
+//! The edge between two triangles: which normals it has, computed from those of the faces.
 //!
 //! The normals of an edge are those between the normals of its two faces on the side where it is a ridge,
 //! and none on the side where it is hollow. For triangles that are neither thin nor far away for their

@@ -11,7 +11,7 @@ use crate::math::{Point, Pose, Real, Vector};
 /// The points within `radius` of a segment.
 ///
 /// Radius and length may be zero: a capsule of no length is a ball, one of no radius a segment.
-/// Vertices: 0 and 1 are the round ends; the round side is `Edge(0)`, in the plane too.
+/// Vertices: 0 and 1 are the round ends; the round side is `Edge(0)`, in 2D too.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};

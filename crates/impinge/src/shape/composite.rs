@@ -7,7 +7,7 @@
 
 use smallvec::SmallVec;
 
-use super::{FeatureId, Geometry, Segment, Shape, Siding, Triangle};
+use super::{FeatureId, Geometry, Segment, Shape, Sidedness, Triangle};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
@@ -245,7 +245,7 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
     /// The part will be asked about next. A surface may read now what it will need then: of several
-    /// parts told of in a row, what lies far apart in memory comes at one time.
+    /// parts announced in a row, what lies far apart in memory comes at one time.
     fn expect(&self, part: u32) {
         let _ = part;
     }
@@ -254,13 +254,13 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// side.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
 
-    /// Which sides all segments of a chain in the plane have, for a quicker way to the same answers. `None`,
+    /// Which sides all segments of a chain in 2D have, for a quicker way to the same answers. `None`,
     /// the default, of all surfaces but this library's own chains.
-    fn siding(&self) -> Option<Siding> {
+    fn sidedness(&self) -> Option<Sidedness> {
         None
     }
 
-    /// In space, parts hang together where they have corners at one position, and there alone; and a normal
+    /// In 3D, parts hang together where they have corners at one position, and there alone; and a normal
     /// along which a direction into a part at the seam rises is none there. For a quicker way to the same
     /// answers: false, the default, of all surfaces but this library's own.
     fn has_plain_seams(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Cones, in space.
+//! Cones, in 3D.
 
 use super::error::{or_panic, size};
 use super::round::{Disk, RoundPart, axial_on, radial_of};

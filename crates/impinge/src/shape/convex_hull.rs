@@ -1,4 +1,4 @@
-//! Convex polyhedra, in space.
+//! Convex polyhedra, in 3D.
 
 use core::ops::Deref;
 

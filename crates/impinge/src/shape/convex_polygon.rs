@@ -1,4 +1,4 @@
-//! Convex polygons, in the plane.
+//! Convex polygons, in 2D.
 
 use core::ops::Deref;
 

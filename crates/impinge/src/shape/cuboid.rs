@@ -1,4 +1,4 @@
-//! Boxes (rectangles in the plane).
+//! Boxes (rectangles in 2D).
 
 use super::error::{finite, or_panic, size};
 use super::scale::Scale;
@@ -16,12 +16,12 @@ use crate::math::{Point, Pose, Real, Vector};
 /// Half extents may be zero: the box is then flat, a segment or a point.
 ///
 /// Vertices: bit `i` of the number says that coordinate `i` is positive. Faces: `2 · axis` on the
-/// positive side of an axis, one more on the negative side. Edges (in space): `4 · axis` of the
+/// positive side of an axis, one more on the negative side. Edges (in 3D): `4 · axis` of the
 /// direction plus two bits, the signs on the next axis and the one after (x → y → z → x): 1 if the
 /// next coordinate is positive, 2 if the one after is.
 ///
-/// Faces are given with their vertices counter-clockwise seen from outside (in the plane with the
-/// box on the left), so in the plane the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
+/// Faces are given with their vertices counter-clockwise seen from outside (in 2D with the
+/// box on the left), so in 2D the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
 /// 1, 3, 2, 0. A face without width is given as the segment or the point that it is.
 ///
 /// ```
@@ -127,7 +127,7 @@ pub(crate) struct FacingPart<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> FacingPart<N, D> {
-    /// The direction of an edge of boxes in space.
+    /// The direction of an edge of boxes in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
         axis_vector((index / 4) as usize)
     }

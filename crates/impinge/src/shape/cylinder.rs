@@ -1,4 +1,4 @@
-//! Cylinders, in space.
+//! Cylinders, in 3D.
 
 use super::error::{or_panic, size};
 use super::round::{Disk, RoundPart, axial_on, radial_of};

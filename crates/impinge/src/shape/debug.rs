@@ -8,7 +8,7 @@ use super::{
 };
 use crate::math::{Real, Space};
 
-/// The vertices, and the faces in space; in the plane the sides follow from the vertices.
+/// The vertices, and the faces in 3D; in 2D the sides follow from the vertices.
 fn polytope<N: Real, const D: usize>(
     f: &mut fmt::Formatter<'_>,
     name: &str,

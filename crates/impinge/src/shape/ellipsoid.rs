@@ -1,4 +1,4 @@
-//! Ellipsoids, and ellipses in the plane.
+//! Ellipsoids, and ellipses in 2D.
 
 use super::error::{finite, or_panic, size};
 use super::scale::Scale;

@@ -105,7 +105,7 @@ pub enum ShapeError {
     },
     /// A height, or the height times the scale, is NaN or infinite.
     HeightNotFinite {
-        /// The row; 0 in the plane.
+        /// The row; 0 in 2D.
         row: usize,
         /// The column.
         column: usize,

@@ -1,4 +1,4 @@
-//! The face of a solid in space with few corners, in lists of fixed size.
+//! The face of a 3D solid with few corners, in lists of fixed size.
 
 use super::cuboid::Part;
 use super::tilt::Tilt;
@@ -6,7 +6,7 @@ use super::{Cuboid, FeatureId};
 use crate::math::{Point, Real, Vector};
 
 /// So many corners a face may have here: as many as there are lanes.
-const MOST: usize = 8;
+const MAX: usize = 8;
 
 /// A face, its corners and sides in the order of [`Feature`](super::Feature).
 #[derive(Clone, Debug)]
@@ -15,23 +15,23 @@ pub(crate) struct FaceRing<N: Real> {
     /// Three at least.
     pub(crate) count: usize,
     /// By coordinate; beyond the last there are zeros.
-    pub(crate) corners: [[N; MOST]; 3],
-    pub(crate) ids: [FeatureId; MOST],
+    pub(crate) corners: [[N; MAX]; 3],
+    pub(crate) ids: [FeatureId; MAX],
     /// Of the sides from each corner to the next.
-    pub(crate) sides: [FeatureId; MOST],
+    pub(crate) sides: [FeatureId; MAX],
     /// Unit, outward.
     pub(crate) normal: Vector<N, 3>,
 }
 
 impl<N: Real> FaceRing<N> {
     /// So many corners a face may have here.
-    pub(crate) const MOST: usize = MOST;
+    pub(crate) const MAX: usize = MAX;
 
     /// No face yet.
     #[inline]
     pub(crate) fn blank() -> Self {
-        let (id, corners) = (FeatureId::Face(0), [[N::ZERO; MOST]; 3]);
-        let (ids, normal) = ([id; MOST], Vector::<N, 3>::zeros());
+        let (id, corners) = (FeatureId::Face(0), [[N::ZERO; MAX]; 3]);
+        let (ids, normal) = ([id; MAX], Vector::<N, 3>::zeros());
         Self { id, count: 0, corners, ids, sides: ids, normal }
     }
 

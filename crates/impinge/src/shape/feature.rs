@@ -6,9 +6,9 @@ use crate::math::{Point, Real, Vector};
 
 /// A part of a solid's surface.
 ///
-/// In the plane a polygon has vertices and faces (its sides); edges occur in space only. The curved
+/// In 2D a polygon has vertices and faces (its sides); edges occur in 3D only. The curved
 /// parts of a surface are faces too, except that the core of a capsule is a segment: an edge in
-/// space and a face in the plane. Each shape documents its numbering.
+/// 3D and a face in 2D. Each shape documents its numbering.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -33,7 +33,7 @@ pub enum FeatureId {
 
 impl FeatureId {
     /// The name of a flat part of `dimension` of a solid in `D` dimensions: a point is a vertex, a
-    /// part that bounds the solid (a side in the plane, a polygon in space) a face, else an edge.
+    /// part that bounds the solid (a side in 2D, a polygon in 3D) a face, else an edge.
     pub(crate) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
         if dimension == 0 {
             Self::Vertex(index)
@@ -71,14 +71,14 @@ impl FeatureId {
 pub struct Feature<N: Real, const D: usize> {
     /// Its name.
     pub id: FeatureId,
-    /// One point, two for a segment, more for a polygon: in space counter-clockwise seen from
-    /// outside; in the plane a side is given with the solid on its left.
+    /// One point, two for a segment, more for a polygon: in 3D counter-clockwise seen from
+    /// outside; in 2D a side is given with the solid on its left.
     pub vertices: SmallVec<[Point<N, D>; 8]>,
     /// The name of each vertex.
     pub vertex_ids: SmallVec<[FeatureId; 8]>,
     /// The name of the side from each vertex to the next; for a segment one entry; for a point none.
     pub side_ids: SmallVec<[FeatureId; 8]>,
-    /// The outward normal, where the feature has one: a polygon in space, a side in the plane.
+    /// The outward normal, where the feature has one: a polygon in 3D, a side in 2D.
     pub normal: Option<Vector<N, D>>,
 }
 

@@ -31,17 +31,17 @@ pub enum ShapeKind {
     Triangle,
     /// [`Cuboid`].
     Cuboid,
-    /// A convex polygon in the plane, a convex hull in space: [`Polytope`].
+    /// A convex polygon in 2D, a convex hull in 3D: [`Polytope`].
     Polytope,
     /// [`Cylinder`].
     Cylinder,
     /// [`Cone`].
     Cone,
-    /// [`Ellipsoid`]: an ellipse in the plane.
+    /// [`Ellipsoid`]: an ellipse in 2D.
     Ellipsoid,
     /// [`TaperedCapsule`].
     TaperedCapsule,
-    /// A convex solid swollen by a radius: [`Rounded`](super::Rounded).
+    /// A convex solid inflated by a radius: [`Rounded`](super::Rounded).
     Rounded,
     /// A convex solid known by its support points only.
     SupportMap,
@@ -174,7 +174,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
             Kind::Cone(cone, _) => of_round(cone.half_height(), cone.radius()),
             Kind::Ellipsoid(ellipsoid) => ellipsoid.reach(),
             Kind::TaperedCapsule(capsule) => capsule.reach() + capsule.rounding(),
-            Kind::Rounded(solid) => solid.inner().extent() + solid.swelling(),
+            Kind::Rounded(solid) => solid.inner().extent() + solid.radius(),
             Kind::SupportMap(_) | Kind::Plane(_) | Kind::Composite(_) => N::INFINITY,
         }
     }

@@ -88,7 +88,7 @@ impl std::error::Error for MeshError {}
 
 /// The most vertices and the most parts: the corners of all parts are numbered with 32 bits, and a
 /// few numbers are kept for other things.
-const MOST: usize = (u32::MAX / 3 - 2) as usize;
+const MAX: usize = (u32::MAX / 3 - 2) as usize;
 
 /// Vertices are finite and few enough.
 pub(super) fn check_vertices<N: Real, const D: usize>(
@@ -97,7 +97,7 @@ pub(super) fn check_vertices<N: Real, const D: usize>(
     let is_finite = |point: &Point<N, D>| point.iter().all(|x| x.is_finite_number());
     match vertices.iter().position(|point| !is_finite(point)) {
         Some(vertex) => Err(MeshError::VertexNotFinite { vertex }),
-        None if vertices.len() > MOST => Err(MeshError::TooMany { given: vertices.len() }),
+        None if vertices.len() > MAX => Err(MeshError::TooMany { given: vertices.len() }),
         None => Ok(()),
     }
 }
@@ -110,7 +110,7 @@ pub(super) fn check_parts<const K: usize>(
     if parts.is_empty() {
         return Err(MeshError::Empty);
     }
-    if parts.len() > MOST {
+    if parts.len() > MAX {
         return Err(MeshError::TooMany { given: parts.len() });
     }
     for (part, corners) in parts.iter().enumerate() {

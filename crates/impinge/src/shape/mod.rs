@@ -1,6 +1,6 @@
 //! The solids: what they are, in their own frame, and nothing about pairs or worlds.
 //!
-//! A convex solid is a *core* swollen by a *rounding* radius: a ball is a point swollen by its
+//! A convex solid is a *core* inflated by a *rounding* radius: a ball is a point inflated by its
 //! radius, a capsule a segment. Algorithms run on cores and subtract the roundings at the end,
 //! which is exact and free. [`Shape`] is what a world stores; [`SupportMap`] is what a convex solid
 //! of a user's own must offer to join every query; [`ConvexPolyhedron`] names the features of solids
@@ -46,7 +46,7 @@ mod scale;
 mod seam;
 mod segment;
 mod shown;
-mod siding;
+mod sidedness;
 mod support_map;
 mod tapered_capsule;
 mod tetrahedron;
@@ -88,8 +88,8 @@ pub(crate) use rounded::RoundedSolid;
 pub use scale::ScaleError;
 pub use segment::Segment;
 pub(crate) use shown::Shown;
-pub use siding::Siding;
-pub(crate) use siding::{KnownSegment, KnownSegments};
+pub use sidedness::Sidedness;
+pub(crate) use sidedness::{KnownSegment, KnownSegments};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 pub(crate) use tapered_capsule::Taper;
 pub use tapered_capsule::TaperedCapsule;

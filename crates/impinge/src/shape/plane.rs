@@ -1,4 +1,4 @@
-//! Half-spaces (half-planes in the plane).
+//! Half-spaces (half-planes in 2D).
 
 use super::scale::Scale;
 use super::{Geometry, Kind, ScaleError, Shape, ShapeHandle};

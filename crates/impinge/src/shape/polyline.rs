@@ -15,7 +15,7 @@ use crate::partitioning::{BoxTree, BoxTreeError};
 /// [`Segment`]; all is in the frame of the line. Segments belong together by the positions of their
 /// ends, not by the indices.
 ///
-/// **Sides.** A line has no inside, but for `encloses` and `signed_distance` of one in the plane. In the plane it has two sides, or one if asked by `one_sided`:
+/// **Sides.** A line has no inside, but for `encloses` and `signed_distance` of one in 2D. In 2D it has two sides, or one if asked by `one_sided`:
 /// then what is solid lies on its left, as for an outline that runs counter-clockwise, and nothing
 /// touches it from there.
 ///

@@ -1,11 +1,11 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
 use super::seam::{Seam, slack};
-use super::siding::Joining;
+use super::sidedness::Joining;
 use super::tri_mesh::{aabb_at, sphere_around};
 use super::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
-    Shape, ShapeHandle, Siding, Surface,
+    Shape, ShapeHandle, Sidedness, Surface,
 };
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
@@ -49,8 +49,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     }
 }
 
-/// The own normals of a segment are all that are perpendicular to it: two in the plane, a circle
-/// of them in space.
+/// The own normals of a segment are all that are perpendicular to it: two in 2D, a circle
+/// of them in 3D.
 impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         if self.keeps_internal_edges {
@@ -72,11 +72,11 @@ impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
         across(&along, normal)
     }
 
-    fn siding(&self) -> Option<Siding> {
-        let (is_left, is_told_by_front) = (false, false);
+    fn sidedness(&self) -> Option<Sidedness> {
+        let (is_left, follows_front) = (false, false);
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided(), self.keeps_internal_edges);
         let joining = if self.is_moved { Joining::Unknown } else { Joining::All };
-        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges, joining })
+        Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {

@@ -13,8 +13,8 @@ use crate::math::{Point, Real, Vector, max, unit};
 
 /// A convex solid with flat faces, in any dimension.
 ///
-/// In the plane the faces are the sides: face `i` leads from vertex `i` to vertex `i + 1`,
-/// counter-clockwise, and there are no edges. In space the faces are polygons, counter-clockwise
+/// In 2D the faces are the sides: face `i` leads from vertex `i` to vertex `i + 1`,
+/// counter-clockwise, and there are no edges. In 3D the faces are polygons, counter-clockwise
 /// seen from outside, and each edge lies between two faces.
 ///
 /// Features are named by their place in [`Self::vertices`], [`Self::edges`] and [`Self::faces`].
@@ -48,11 +48,11 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(super) faces: Vec<PolytopeFace<N, D>>,
     /// The vertices of all faces, one loop after the other.
     pub(super) loops: Vec<u32>,
-    /// For each entry of `loops`, the edge (in the plane: the face) that leads to the next vertex.
+    /// For each entry of `loops`, the edge (in 2D: the face) that leads to the next vertex.
     pub(super) loop_sides: Vec<u32>,
-    /// Empty in the plane.
+    /// Empty in 2D.
     pub(super) edges: Vec<PolytopeEdge>,
-    /// The edges (in the plane: the faces) at all vertices, one vertex after the other.
+    /// The edges (in 2D: the faces) at all vertices, one vertex after the other.
     pub(super) fans: Vec<u32>,
     /// Where the fan of each vertex starts, and at last where the last one ends.
     pub(super) fan_starts: Vec<u32>,
@@ -105,7 +105,7 @@ impl<N: Real, const D: usize> PolytopeFace<N, D> {
     }
 }
 
-/// An edge between two faces, in space.
+/// An edge between two faces, in 3D.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -137,7 +137,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.faces
     }
 
-    /// The edges; none in the plane.
+    /// The edges; none in 2D.
     #[must_use]
     pub fn edges(&self) -> &[PolytopeEdge] {
         &self.edges
@@ -150,7 +150,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.loops[first..first + face.len as usize]
     }
 
-    /// The sides around a face: edges, in the plane the face itself.
+    /// The sides around a face: edges, in 2D the face itself.
     pub(super) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
@@ -166,12 +166,12 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.planes
     }
 
-    /// The edges (in the plane: the faces) that end at a vertex.
+    /// The edges (in 2D: the faces) that end at a vertex.
     pub(super) fn fan(&self, vertex: usize) -> &[u32] {
         &self.fans[self.fan_range(vertex)]
     }
 
-    /// The edges (in the plane: the faces) that end at a vertex, and their directions.
+    /// The edges (in 2D: the faces) that end at a vertex, and their directions.
     pub(super) fn fan_along(
         &self,
         vertex: usize,
@@ -184,7 +184,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize
     }
 
-    /// An edge (in the plane: a face) with its ends and what lies beside it; a side of the plane lies
+    /// An edge (in 2D: a face) with its ends and what lies beside it; a side of the plane lies
     /// beside itself.
     pub(super) fn side(&self, index: u32) -> PolytopeEdge {
         match self.edges.get(index as usize) {
@@ -196,7 +196,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The name of an edge (in the plane: of a face).
+    /// The name of an edge (in 2D: of a face).
     pub(super) fn side_id(index: u32) -> FeatureId {
         FeatureId::flat::<D>(1, index)
     }
@@ -269,7 +269,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, length_of(&vertex.coords)))
     }
 
-    /// For each vertex the edges (in the plane: the faces) that end at it.
+    /// For each vertex the edges (in 2D: the faces) that end at it.
     pub(super) fn collect_fans(&mut self) {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
         let sides = (0_u32..).take(count);

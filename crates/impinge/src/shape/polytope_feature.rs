@@ -238,7 +238,7 @@ impl<N: Real> Polytope<N, 3> {
     pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
-        if !(3..=FaceRing::<N>::MOST).contains(&vertices.len()) {
+        if !(3..=FaceRing::<N>::MAX).contains(&vertices.len()) {
             return false;
         }
         (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);

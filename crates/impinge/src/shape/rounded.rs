@@ -1,4 +1,4 @@
-//! Any convex solid, swollen by a radius.
+//! Any convex solid, inflated by a radius.
 
 use super::error::{or_panic, size};
 use super::scale::Scale;
@@ -90,7 +90,7 @@ pub(crate) trait RoundedSolid<N: Real, const D: usize>: SupportMap<N, D> {
     fn inner(&self) -> Geometry<'_, N, D>;
 
     /// By how much.
-    fn swelling(&self) -> N;
+    fn radius(&self) -> N;
 }
 
 impl<N: Real, const D: usize> RoundedSolid<N, D> for Rounded<N, D> {
@@ -98,7 +98,7 @@ impl<N: Real, const D: usize> RoundedSolid<N, D> for Rounded<N, D> {
         self.shape.geometry()
     }
 
-    fn swelling(&self) -> N {
+    fn radius(&self) -> N {
         self.radius
     }
 }

@@ -10,7 +10,7 @@ use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
 
 /// The points between `a` and `b`, which may coincide.
 ///
-/// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in the plane too.
+/// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in 2D too.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};

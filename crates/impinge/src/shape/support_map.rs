@@ -25,7 +25,7 @@ pub struct CurvedSupport<N: Real, const D: usize> {
     pub bend: Matrix<N, D>,
 }
 
-/// A convex solid: a core, known by its support points, swollen by a rounding radius.
+/// A convex solid: a core, known by its support points, inflated by a rounding radius.
 ///
 /// All in the local frame. Without rounding (the default) the core is the solid itself.
 ///
@@ -35,7 +35,7 @@ pub struct CurvedSupport<N: Real, const D: usize> {
 ///
 /// let capsule = Capsule::<f32>::new(2.0, 0.5);
 /// assert_eq!(capsule.core_support(&Vector::new(1.0, 1.0, 0.0)).y, 2.0, "of the segment");
-/// assert_eq!(capsule.rounding(), 0.5, "by which it is swollen");
+/// assert_eq!(capsule.rounding(), 0.5, "by which it is inflated");
 /// ```
 pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// A point of the core farthest along `direction`.
@@ -44,7 +44,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// answer depends on nothing but `direction`, and not on its length.
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D>;
 
-    /// The radius by which the core is swollen; zero or more.
+    /// The radius by which the core is inflated; zero or more.
     fn rounding(&self) -> N {
         N::ZERO
     }
@@ -121,7 +121,7 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// The rule for flat faces: among the edges at the support vertex take the one that leans least
     /// out of the supporting plane; of the two faces beside it take the one whose normal is most
     /// aligned. Answer with that face if it leans by at most atan(1/2) ≈ 26.6°, else with the edge if
-    /// it does, else with the vertex. In the plane the sides at the vertex are the faces. So the two
+    /// it does, else with the vertex. In 2D the sides at the vertex are the faces. So the two
     /// crossing edges of an edge-edge contact are found as edges or as sides of the faces answered.
     /// The rule knows angles only, treats mirrored directions alike, and near its two limits both
     /// answers contain the touching part. No regular polyhedron, nor a regular prism on an edge,
@@ -156,13 +156,13 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// If `id` is not a vertex of the solid.
     fn vertex(&self, id: FeatureId) -> Point<N, D>;
 
-    /// The two ends of an edge and their names (in the plane: of a side).
+    /// The two ends of an edge and their names (in 2D: of a side).
     ///
     /// # Panics
-    /// If `id` is not an edge of the solid (in the plane: a face).
+    /// If `id` is not an edge of the solid (in 2D: a face).
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2];
 
-    /// A face, as a polygon (in the plane: as a segment with a normal).
+    /// A face, as a polygon (in 2D: as a segment with a normal).
     ///
     /// # Panics
     /// If `id` is not a face of the solid.

@@ -15,7 +15,7 @@ use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to,
 ///
 /// Radii and length may be zero, and one ball may hold the other: then the solid is that ball. With
 /// equal radii it is a capsule, with one radius of zero a cone with a round base, with two a segment.
-/// Vertices: 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`, in the plane too.
+/// Vertices: 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`, in 2D too.
 ///
 /// Its rounding is the smaller radius. Its core is the hull of a point and of a ball whose radius is
 /// the difference; as a feature the core shows the generating segment that faces the direction.

@@ -1,4 +1,4 @@
-//! Tetrahedra, in space.
+//! Tetrahedra, in 3D.
 
 use super::error::{finite, or_panic};
 use super::scale::Scale;

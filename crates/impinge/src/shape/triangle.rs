@@ -1,4 +1,4 @@
-//! Triangles: filled in the plane, flat in space.
+//! Triangles: filled in 2D, flat in 3D.
 
 use super::error::{finite, or_panic};
 use super::scale::Scale;
@@ -11,13 +11,13 @@ use crate::math::{Point, Pose, Real, Vector, centroid, max};
 /// The points between three corners, which may be given in either order and may coincide or lie on
 /// a line.
 ///
-/// In space it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
-/// from vertex `i` to the next; they are faces in the plane and edges in space. In space `Face(0)`
+/// In 3D it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
+/// from vertex `i` to the next; they are faces in 2D and edges in 3D. In 3D `Face(0)`
 /// is the side that sees `a`, `b`, `c` counter-clockwise and `Face(1)` the other.
 ///
-/// As features, sides are given so that the loop they belong to runs counter-clockwise: in the plane
-/// with the triangle on the left, in space as seen from where the direction points. The normal on a
-/// side, and in space on an edge, lies in the triangle's plane and points out. A triangle without
+/// As features, sides are given so that the loop they belong to runs counter-clockwise: in 2D
+/// with the triangle on the left, in 3D as seen from where the direction points. The normal on a
+/// side, and in 3D on an edge, lies in the triangle's plane and points out. A triangle without
 /// area has its longest side as its only feature besides the vertices, a triangle without extent its
 /// first vertex.
 ///

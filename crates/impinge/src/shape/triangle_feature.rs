@@ -168,7 +168,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         if back.1 < out.1 { back } else { out }
     }
 
-    /// The two-sided face: in space only.
+    /// The two-sided face: in 3D only.
     fn fill_polygon(&self, span: &Span<N, D>, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.clear();
         let ring = self.ring(direction);

@@ -1,4 +1,4 @@
-//! Convex hulls in the plane.
+//! Convex hulls in 2D.
 
 use super::outline::thinned;
 use super::span::{Scaled, first_three, precedes};

@@ -1,4 +1,4 @@
-//! Convex hulls in space.
+//! Convex hulls in 3D.
 
 use super::hull_faces::{Face, faces, redundant};
 use super::quickhull::{Facet, Surface};

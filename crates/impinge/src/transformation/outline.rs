@@ -1,4 +1,4 @@
-//! Convex outlines in the plane, and polygons made of points.
+//! Convex outlines in 2D, and polygons made of points.
 
 use super::hull2::convex_hull2;
 use super::span::{Scaled, distance_from_segment, first_three};

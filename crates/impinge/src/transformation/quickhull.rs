@@ -1,4 +1,4 @@
-//! Quickhull in space, with exact decisions and a tolerance on what is worth a vertex.
+//! Quickhull in 3D, with exact decisions and a tolerance on what is worth a vertex.
 //!
 //! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). Who sees which
 //! facet is decided by exact orientation, so the facets a point sees are always connected and their

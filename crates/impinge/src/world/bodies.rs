@@ -15,7 +15,7 @@ use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 pub(crate) type WorldBroadPhase<N, const D: usize> =
     dyn BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync;
 
-/// The object is tested against itself, as the narrow phase has been told.
+/// The object is tested against itself, as the narrow phase knows.
 const SELF_PAIR: u32 = 1 << 31;
 /// The bits of a place in the list of changes; all set for an object that has none.
 const PLACE: u32 = SELF_PAIR - 1;
@@ -23,7 +23,7 @@ const PLACE: u32 = SELF_PAIR - 1;
 const GONE: u32 = u32::MAX;
 
 /// An object as the user left it: each fact is kept here and nowhere else, but for what the phases
-/// hold as of the last update. Of `f32` in space 96 bytes, and there are as many as objects.
+/// hold as of the last update. Of `f32` in 3D 96 bytes, and there are as many as objects.
 ///
 /// What queries read stands side by side, the rest at both ends.
 #[derive(Clone, Debug)]
@@ -98,7 +98,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
         self.state = self.state & SELF_PAIR | place;
     }
 
-    /// The narrow phase has been told to test the object against itself.
+    /// The narrow phase tests the object against itself.
     pub(crate) const fn has_self_pair(&self) -> bool {
         self.state & SELF_PAIR != 0
     }

@@ -15,7 +15,7 @@ use crate::narrow_phase::{
 };
 use crate::shape::ShapeHandle;
 
-/// Objects that are told, at each update, who touches whom.
+/// Objects, and who touches whom as of the last update.
 ///
 /// Objects are added, moved, changed and removed by handle; [`Self::update`] then finds the pairs
 /// (broad phase), computes their contacts and proximities (narrow phase) and collects the events

@@ -4,7 +4,7 @@ use super::CollisionWorld;
 use super::object::CollisionObject;
 use crate::math::Space;
 
-/// The margin of a world that is not told one.
+/// The default margin of a world.
 const USUAL_MARGIN: f64 = 0.02;
 
 /// An empty world whose margin is 0.02, which suits objects of size 1: the margin never changes an exact

@@ -1,4 +1,4 @@
-//! One object that is told, at each update, who touches whom, where, and since when.
+//! The world: who touches whom, where, and since when, brought up to date by each update.
 //!
 //! The world is a thin shell around the two phases. Each object is one record: what the user said, as
 //! they left it (`bodies`), and the user's data. The phases have what they need as of the last update: the

@@ -1,4 +1,4 @@
-//! The narrow phase as a world sees it: told of pairs, asked for contacts and proximities.
+//! The narrow phase as a world sees it: given pairs, asked for contacts and proximities.
 
 use super::CollisionObjects;
 use crate::math::Space;
@@ -223,7 +223,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &CollisionObjects<N, D, T>,
         interactions: &[Interaction],
     ) {
-        (N::tables().world.turn_over)(self, objects.table(), interactions, events);
+        (N::tables().world.begin_and_end_pairs)(self, objects.table(), interactions, events);
     }
 
     fn handle_removal(

@@ -11,7 +11,7 @@ use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, 
 use crate::shape::ShapeHandle;
 
 /// More objects than this have no handles: as many changes can be listed.
-const MOST: u32 = (1 << 31) - 1;
+const MAX_OBJECTS: u32 = (1 << 31) - 1;
 
 /// The objects of a world, by handle.
 ///
@@ -177,7 +177,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         if let Some(&index) = self.free.last() {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
         }
-        let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MOST);
+        let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MAX_OBJECTS);
         Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, self.first))
     }
 

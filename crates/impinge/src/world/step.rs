@@ -7,7 +7,7 @@ use crate::narrow_phase::{
 };
 use crate::query::Proximity;
 
-/// Pairs that the narrow phase is told of in one go: few enough to be still in the cache when the rows of
+/// Pairs that the narrow phase gets in one go: few enough to be still in the cache when the rows of
 /// their objects are given back.
 const AT_ONCE: usize = 512;
 
@@ -144,7 +144,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// An update in which a phase is replaced. With all proxies new, every pair is reported as
-    /// started: a narrow phase that stays knows most of these already, and is told which of its
+    /// started: a narrow phase that stays knows most of these already, and is notified which of its
     /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
     /// what was before.
     fn update_with_other_phases(&mut self) {

@@ -88,7 +88,7 @@ fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> 
     let [r, s] = lengths::<N, 2>(random);
     let half = lengths::<N, D>(random);
     let dots = |points: &[[f64; D]]| points.iter().map(|p| Piece::Ball(*p, 0.0)).collect();
-    let swollen = |points: &[[f64; D]], r| points.iter().map(|p| Piece::Ball(*p, r)).collect();
+    let inflated = |points: &[[f64; D]], r| points.iter().map(|p| Piece::Ball(*p, r)).collect();
     let corners: Vec<[f64; D]> = (0..1_usize << D)
         .map(|bits| std::array::from_fn(|i| if bits >> i & 1 == 0 { half[i] } else { -half[i] }))
         .collect();
@@ -99,14 +99,14 @@ fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> 
     let of_mesh = dots(&[a, b, c, [0.0; D]]);
     let rounded = Rounded::try_from_handle(cuboid.clone(), N::lit(r)).expect("a box has no radius");
     vec![
-        (ShapeHandle::new(Ball::new(N::lit(r))), swollen(&[[0.0; D]], r)),
+        (ShapeHandle::new(Ball::new(N::lit(r))), inflated(&[[0.0; D]], r)),
         (cuboid, dots(&corners)),
-        (ShapeHandle::new(rounded), swollen(&corners, r)),
+        (ShapeHandle::new(rounded), inflated(&corners, r)),
         (ShapeHandle::new(Segment::new(pa, pb)), dots(&[a, b])),
         (ShapeHandle::new(Triangle::new(pa, pb, pc)), dots(&[a, b, c])),
         (
             ShapeHandle::new(Capsule::try_from_ends(pa, pb, N::lit(r)).expect("finite")),
-            swollen(&[a, b], r),
+            inflated(&[a, b], r),
         ),
         (
             ShapeHandle::new(

@@ -349,34 +349,6 @@ fn bad_boxes_panic() {
     let _ = BoxTree::from_boxes(&[inverted]);
 }
 
-fn all<N: Space<D>, const D: usize>() {
-    boxes_and_points::<N, D>();
-    rays::<N, D>();
-    nearest::<N, D>();
-    anywhere::<N, D>();
-    unbounded::<N, D>();
-    few_and_equal::<N, D>();
-    not_a_number::<N, D>();
-}
-
-#[test]
-fn plane_f32() {
-    all::<f32, 2>();
-}
-
-#[test]
-fn space_f32() {
-    all::<f32, 3>();
-}
-
-#[test]
-#[cfg(feature = "f64")]
-fn plane_f64() {
-    all::<f64, 2>();
-}
-
-#[test]
-#[cfg(feature = "f64")]
-fn space_f64() {
-    all::<f64, 3>();
+in_tests! {
+    boxes_and_points, rays, nearest, anywhere, unbounded, few_and_equal, not_a_number,
 }

@@ -132,7 +132,12 @@ fn on_a_grid<N: Space<D>, const D: usize>() {
 }
 
 /// Numbers that no `f32` holds, and far from the origin: the tree proposes, the boxes as given decide.
-fn anywhere<N: Space<D>, const D: usize>(offset: f64) {
+fn anywhere<N: Space<D>, const D: usize>() {
+    around::<N, D>(0.0);
+    around::<N, D>(1e6);
+}
+
+fn around<N: Space<D>, const D: usize>(offset: f64) {
     let (mut random, mut hits) = (Random::new(12), 0);
     let place = |random: &mut Random| -> [f64; D] {
         core::array::from_fn(|_| offset + random.range(-5.0, 5.0))
@@ -247,34 +252,6 @@ fn not_a_number<N: Space<D>, const D: usize>() {
     }
 }
 
-fn all<N: Space<D>, const D: usize>() {
-    on_a_grid::<N, D>();
-    anywhere::<N, D>(0.0);
-    anywhere::<N, D>(1e6);
-    unbounded::<N, D>();
-    limits::<N, D>();
-    huge::<N, D>();
-    not_a_number::<N, D>();
-}
-
-#[test]
-fn plane_f32() {
-    all::<f32, 2>();
-}
-
-#[test]
-fn space_f32() {
-    all::<f32, 3>();
-}
-
-#[test]
-#[cfg(feature = "f64")]
-fn plane_f64() {
-    all::<f64, 2>();
-}
-
-#[test]
-#[cfg(feature = "f64")]
-fn space_f64() {
-    all::<f64, 3>();
+in_tests! {
+    on_a_grid, anywhere, unbounded, limits, huge, not_a_number,
 }

@@ -8,7 +8,7 @@ use crate::shape::{Ball, Capsule, Cone, Cuboid, Cylinder, Segment, SupportMap, T
 
 pub(super) type Solid<N, const D: usize> = Box<dyn SupportMap<N, D>>;
 
-/// The hull of some points, swollen.
+/// The hull of some points, inflated.
 pub(super) struct Points<N: Real, const D: usize> {
     pub(super) points: Vec<Point<N, D>>,
     pub(super) rounding: N,
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Points<N, D> {
     }
 }
 
-/// A box, swollen.
+/// A box, inflated.
 struct RoundCuboid<N: Real, const D: usize> {
     cuboid: Cuboid<N, D>,
     rounding: N,

@@ -23,7 +23,7 @@ pub(in crate::query) fn aabb_of<N: Space<D>, const D: usize>(
         Kind::Plane(plane) => plane.aabb(pose),
         Kind::Ellipsoid(ellipsoid) => ellipsoid.aabb(pose),
         Kind::TaperedCapsule(capsule) => capsule.aabb(pose),
-        Kind::Rounded(solid) => aabb_of(solid.inner().0, pose).loosened(solid.swelling()),
+        Kind::Rounded(solid) => aabb_of(solid.inner().0, pose).loosened(solid.radius()),
         Kind::Polytope(map) => of_map(map, pose),
         Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => of_map(map, pose),
         Kind::Composite(parts) => parts.search().bounds().transformed_by(pose),

@@ -16,7 +16,7 @@ pub(super) struct Slabs<N: Real, const D: usize> {
     origin: Vector<N, D>,
     /// A length that the rounding of the solid's place is in proportion to.
     size: N,
-    /// Those of a triangle: across each side and, in space, across its plane.
+    /// Those of a triangle: across each side and, in 3D, across its plane.
     slabs: SmallVec<[Slab<N, D>; 4]>,
 }
 
@@ -91,7 +91,7 @@ impl<N: Space<D>, const D: usize> Slabs<N, D> {
     }
 }
 
-/// Unit vectors across each side of a triangle whose first corner is the origin and, in space, across its plane.
+/// Unit vectors across each side of a triangle whose first corner is the origin and, in 3D, across its plane.
 pub(super) fn across<N: Real, const D: usize>(
     [_, one, other]: &[Vector<N, D>; 3],
 ) -> impl Iterator<Item = Vector<N, D>> {

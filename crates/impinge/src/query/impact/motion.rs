@@ -9,7 +9,7 @@ use crate::math::{
 
 /// The motion of a rigid body.
 ///
-/// Times count from zero, in any unit; the frame is the world's. Speeds are bounded, not told: a
+/// Times count from zero, in any unit; the frame is the world's. Speeds are bounded, not given: a
 /// bound that is too high costs steps, one that is too low may miss an impact. The bounds are about
 /// one point of the body, [`Self::local_center`], and about how fast the body turns, whatever its
 /// shape.
@@ -150,7 +150,7 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Self { start, local_center: Point::origin(), linear, spin, unit_spin, turn }
     }
 
-    /// The rotation since time zero, by the formula of Rodrigues, which in the plane says the same.
+    /// The rotation since time zero, by the formula of Rodrigues, which in 2D says the same.
     fn turned(&self, time: N) -> Matrix<N, D> {
         let (sine, cosine) = (self.turn * time).sine_cosine();
         let squared = self.unit_spin * self.unit_spin;

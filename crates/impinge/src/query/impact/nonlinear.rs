@@ -178,7 +178,7 @@ struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
 
 /// How the bodies lie at a time.
 struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
-    scene: BodyPoses<'b, 'a, N, D>,
+    poses: BodyPoses<'b, 'a, N, D>,
     found: PartSeparation<N, D>,
     /// The nearest points, seen from the origin of the search.
     points: [Vector<N, D>; 2],
@@ -201,28 +201,28 @@ enum Mode<N> {
 
 impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     fn run(&self) -> Option<Impact<N, D>> {
-        let mut sight = self.look(N::ZERO, None)?;
+        let mut configuration = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
         if !starts {
             return None;
         }
         let mut mode = Mode::Apart;
-        if sight.gap <= sight.tolerance {
-            if self.counts_at_start(&sight) {
-                return Some(self.impact(&sight, ImpactStatus::Reached));
+        if configuration.gap <= configuration.tolerance {
+            if self.counts_at_start(&configuration) {
+                return Some(self.impact(&configuration, ImpactStatus::Reached));
             }
-            mode = Mode::Contact(sight.gap);
+            mode = Mode::Contact(configuration.gap);
         }
         let mut near_steps = 0;
         for _ in 0..MAX_STEPS {
-            mode = sight.mode_after(mode);
-            let is_near = self.tolerance.is_none() && sight.is_near(mode);
+            mode = configuration.mode_after(mode);
+            let is_near = self.tolerance.is_none() && configuration.is_near(mode);
             near_steps = if is_near { near_steps + 1 } else { 0 };
-            if sight.is_hit(mode) || near_steps > MAX_NEAR_STEPS {
-                return Some(self.impact(&sight, ImpactStatus::Reached));
+            if configuration.is_hit(mode) || near_steps > MAX_NEAR_STEPS {
+                return Some(self.impact(&configuration, ImpactStatus::Reached));
             }
-            let time = sight.scene.moment.time;
-            let step = self.step(&sight, mode);
+            let time = configuration.poses.moment.time;
+            let step = self.step(&configuration, mode);
             if time >= self.end || step.time > self.end - time || !step.time.is_finite_number() {
                 return None;
             }
@@ -232,23 +232,24 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
                 let is_small = step.time > N::ZERO;
                 let status =
                     if is_small { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
-                return Some(self.impact(&sight, status));
+                return Some(self.impact(&configuration, status));
             }
             near_steps += step.near_steps;
-            match self.look(if later < self.end { later } else { self.end }, Some(&sight)) {
-                Some(next) => sight = next,
+            match self.look(if later < self.end { later } else { self.end }, Some(&configuration)) {
+                Some(next) => configuration = next,
                 None => break,
             }
         }
-        Some(self.impact(&sight, ImpactStatus::StepsSpent))
+        Some(self.impact(&configuration, ImpactStatus::StepsSpent))
     }
 
     /// For how long nothing can happen.
-    fn step(&self, sight: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
-        let moment = &sight.scene.moment;
+    fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
+        let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
         let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
-        let (excess, apart) = (sight.excess(mode), between - radius1 - radius2 - self.target);
+        let (excess, apart) =
+            (configuration.excess(mode), between - radius1 - radius2 - self.target);
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
         let whole = Step { time: whole, near_steps: 0 };
         let size = self.bodies[0].size() + self.bodies[1].size();
@@ -259,20 +260,20 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let longest = min(rate.time_for(N::lit(PARTS_WAY) * size), self.end - moment.time);
         let mut parts = PartSteps {
             search: self,
-            sight,
+            configuration,
             mode,
-            spent: sight.found.separation.distance - excess,
+            spent: configuration.found.separation.distance - excess,
             rate,
             step: Step { time: longest, near_steps: 0 },
         };
         // The nearest are likely to end the step: what the others do later is then not asked.
-        parts.visit(sight.found.parts);
-        visit_near_pairs(&sight.scene.between, &mut parts);
+        parts.visit(configuration.found.parts);
+        visit_near_pairs(&configuration.poses.between, &mut parts);
         if parts.step.time > whole.time { parts.step } else { whole }
     }
 
     /// The bodies at a time; `None` if a pose is not finite.
-    fn scene(&self, time: N) -> Option<BodyPoses<'_, 'a, N, D>> {
+    fn poses_at(&self, time: N) -> Option<BodyPoses<'_, 'a, N, D>> {
         let poses = self.bodies.each_ref().map(|body| body.motion.pose_about(&self.origin, time));
         let [one, two] =
             [0, 1].map(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
@@ -299,7 +300,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         time: N,
         before: Option<&Configuration<'_, 'a, N, D>>,
     ) -> Option<Configuration<'_, 'a, N, D>> {
-        let BodyPoses { moment, pose1, between } = self.scene(time)?;
+        let BodyPoses { moment, pose1, between } = self.poses_at(time)?;
         let first = before.map(|before| before.found.parts);
         let found = nearest_between(&between, N::INFINITY, Wanted::Deepest, first)?;
         let sizes = self.bodies[0].size() + self.bodies[1].size();
@@ -312,30 +313,36 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             tolerance: self.tolerance.map_or(rounding, |tolerance| max(tolerance, rounding)),
             points: [found.separation.point1, found.separation.point2]
                 .map(|point| pose1.point(&point).coords),
-            scene: BodyPoses { moment: Moment { normal, ..moment }, pose1, between },
+            poses: BodyPoses { moment: Moment { normal, ..moment }, pose1, between },
             found,
         })
     }
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
-    fn counts_at_start(&self, sight: &Configuration<'_, '_, N, D>) -> bool {
-        let (closing, noise) = sight.scene.moment.closing(&sight.points, sight.size);
+    fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
+        let (closing, noise) =
+            configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
-        self.contact_at_start || is_hit_at_start(sight.gap, closing, sight.tolerance, noise)
+        self.contact_at_start
+            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, noise)
     }
 
     /// The impact at a moment, seen from the world.
-    fn impact(&self, sight: &Configuration<'_, '_, N, D>, status: ImpactStatus) -> Impact<N, D> {
-        let parts = sight.scene.between.parts(sight.found.parts);
-        let features = (N::tables().witness_features)(&parts.pair(), &sight.found.local);
-        let [point1, point2] = sight.points.map(|point| (point + self.origin).into());
+    fn impact(
+        &self,
+        configuration: &Configuration<'_, '_, N, D>,
+        status: ImpactStatus,
+    ) -> Impact<N, D> {
+        let parts = configuration.poses.between.parts(configuration.found.parts);
+        let features = (N::tables().witness_features)(&parts.pair(), &configuration.found.local);
+        let [point1, point2] = configuration.points.map(|point| (point + self.origin).into());
         Impact {
-            toi: sight.scene.moment.time,
+            toi: configuration.poses.moment.time,
             world1: point1,
             world2: point2,
-            normal: Unit::new_unchecked(sight.scene.moment.normal),
-            part1: sight.found.parts[0],
-            part2: sight.found.parts[1],
+            normal: Unit::new_unchecked(configuration.poses.moment.normal),
+            part1: configuration.found.parts[0],
+            part2: configuration.found.parts[1],
             feature1: features[0],
             feature2: features[1],
             status,
@@ -344,7 +351,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
-    /// By how much a contact may get deeper, or bodies part, and not be told from resting.
+    /// By how much a contact may get deeper, or bodies part, and still count as resting.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
     }
@@ -385,7 +392,7 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
 /// others have done so earlier.
 struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     search: &'s ImpactSearch<'a, N, D>,
-    sight: &'s Configuration<'b, 'a, N, D>,
+    configuration: &'s Configuration<'b, 'a, N, D>,
     mode: Mode<N>,
     /// The distance of parts at which the excess is used up.
     spent: N,
@@ -403,12 +410,12 @@ struct Step<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
-    /// By how much two parts may come nearer in a scene, and for how long they certainly do not; `None` if they cannot
+    /// By how much two parts may come nearer at some poses, and for how long they certainly do not; `None` if they cannot
     /// in the time that is left, by their largest speed in any direction.
-    fn alone(&self, scene: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
-        let (moment, end) = (&scene.moment, self.search.end);
-        let placed = scene.between.parts(parts);
-        let parts = moment.parts(&placed, &scene.pose1);
+    fn alone(&self, poses: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
+        let (moment, end) = (&poses.moment, self.search.end);
+        let placed = poses.between.parts(parts);
+        let parts = moment.parts(&placed, &poses.pose1);
         let way = min(moment.rate_of(&parts, end).way(left), self.rate.way(left));
         let found = separation(&placed.pair(), self.spent + way)?;
         let gap = found.distance - self.spent;
@@ -422,12 +429,14 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N,
     }
 
     fn sweep(&self, which: usize) -> Option<Sweep<N, D>> {
-        Some(self.sight.scene.moment.sweep(which, &self.rate, self.step.time))
+        Some(self.configuration.poses.moment.sweep(which, &self.rate, self.step.time))
     }
 
     fn visit(&mut self, parts: [u32; 2]) {
-        let (start, longest) = (self.sight.scene.moment.time, self.step.time);
-        let Some((_, mut time)) = self.alone(&self.sight.scene, parts, longest) else { return };
+        let (start, longest) = (self.configuration.poses.moment.time, self.step.time);
+        let Some((_, mut time)) = self.alone(&self.configuration.poses, parts, longest) else {
+            return;
+        };
         let mut near_steps = 0;
         // What is in contact may part and come back: all parts are looked at after each of its steps.
         let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
@@ -435,10 +444,10 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N,
             if time >= longest {
                 return;
             }
-            let Some(scene) = self.search.scene(start + time) else { break };
-            let Some((gap, safe)) = self.alone(&scene, parts, longest - time) else { return };
-            near_steps = if gap <= self.sight.near() { near_steps + 1 } else { 0 };
-            if gap <= self.sight.tolerance || start + (time + safe) <= start + time {
+            let Some(poses) = self.search.poses_at(start + time) else { break };
+            let Some((gap, safe)) = self.alone(&poses, parts, longest - time) else { return };
+            near_steps = if gap <= self.configuration.near() { near_steps + 1 } else { 0 };
+            if gap <= self.configuration.tolerance || start + (time + safe) <= start + time {
                 break;
             }
             time += safe;

@@ -27,7 +27,7 @@ pub struct ContactSide<N: Real, const D: usize> {
     pub feature: FeatureId,
     /// What the solid's core looks like there, in its local frame.
     pub geometry: NeighborhoodGeometry<N, D>,
-    /// The radius by which the core is swollen: that of a ball, whose core is a point.
+    /// The radius by which the core is inflated: that of a ball, whose core is a point.
     pub rounding: N,
 }
 

@@ -41,7 +41,7 @@ impl<N: Real, const D: usize> Side<N, D> {
             }
             Kind::Rounded(solid) => {
                 let inner = Self::new(solid.inner().0, outward);
-                return Self { rounding: inner.rounding + solid.swelling(), ..inner };
+                return Self { rounding: inner.rounding + solid.radius(), ..inner };
             }
             Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
                 Some(part) => (Facing::Part(part), N::ZERO),

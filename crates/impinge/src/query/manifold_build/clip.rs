@@ -1,4 +1,4 @@
-//! The corners of the common area of two supporting features in space: points, segments or faces.
+//! The corners of the common area of two supporting features in 3D: points, segments or faces.
 //!
 //! Both are [rings](super::ring) seen along the normal, and how far inside of the sides of one the corners of
 //! the other are is computed in lanes. A corner of the common area is a corner of one inside the other, or a
@@ -12,12 +12,12 @@
 
 use smallvec::SmallVec;
 
-use super::frame::{Candidate, Candidates, Frame, Which};
+use super::frame::{Candidate, Candidates, Frame, Which, part_beside};
 use super::ring::{LANES, RingCorner, SupportRing};
 use super::{Pair, RawManifold, add_witness, choose, names};
-use crate::math::lanes::{load, with_lanes};
-use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component};
+use crate::math::lanes::{bits, load, with_lanes};
+use crate::math::simd::{Level, Simd};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{FeatureId, Kind};
 
 /// Builds the manifold of two solids within the prediction whose nearest points are known.
@@ -147,8 +147,8 @@ impl<N: Real> Insides<N> {
                 let (from, inward): ([V; 2], [V; 2]) =
                     (load(simd, &block.flats), load(simd, &block.inward));
                 let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
-                let [within, ..] = inside.simd_gt(most).to_bitmask().to_le_bytes();
-                let [beyond, ..] = inside.simd_lt(least).to_bitmask().to_le_bytes();
+                let within = bits(inside.simd_gt(most));
+                let beyond = bits(inside.simd_lt(least));
                 let all = first_bits(sides - at * LANES);
                 let mut row = SideRow {
                     inside: [N::ZERO; LANES],
@@ -354,16 +354,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
         let along = (flat - segment.flat(0)).dot(&side) / length;
-        if along < -tolerance || along > length + tolerance {
-            return None;
-        }
-        Some(if along >= length - tolerance {
-            segment.corner(1).id
-        } else if along <= tolerance {
-            segment.corner(0).id
-        } else {
-            segment.id
-        })
+        let ends = [segment.corner(0).id, segment.corner(1).id];
+        part_beside(along, length, tolerance, ends, segment.id)
     }
 
     /// Adds the points of the surfaces over two points of the cores, once: corners that coincide in both rings
@@ -377,15 +369,6 @@ impl<'a, N: Real> RingClip<'a, N> {
         let (frame, [first, second]) = (self.frame, &self.rings);
         let (normal, lift1) = (frame.normal(), first.lift(&core1, frame));
         let distance = normal.dot(&(core2 - core1)) - lift1 - second.lift(&core2, frame);
-        let found = frame.candidate(core1 + normal * lift1, distance, features);
-        let Some(found) = found else { return };
-        let near = N::lit(4.0) * frame.tolerance;
-        let is_new = |old: &Candidate<N, 3>| {
-            let away = old.flat - found.flat;
-            old.features != found.features || max_component(&away) > near || away.norm() > near
-        };
-        if out.iter().all(is_new) {
-            out.push(found);
-        }
+        frame.push_new(core1 + normal * lift1, distance, features, out);
     }
 }

@@ -4,10 +4,10 @@ use smallvec::SmallVec;
 
 use super::super::{ManifoldRequest, Pair, RawPoint};
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, max, min};
+use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// How many rounding errors of the pair's size are told from nothing.
+/// Lengths up to so many rounding errors of the pair's size count as zero.
 pub(super) const ROUNDING_ERRORS: f64 = 16.0;
 
 /// Supporting features that tilt more than 60° out of the plane of contact count as their nearest point.
@@ -105,8 +105,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 }
 
 impl<N: Real, const D: usize> Frame<N, D> {
-    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in the
-    /// plane.
+    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in 2D.
     pub(super) fn new(
         pair: &Pair<'_, N, D>,
         witness: &Separation<N, D>,
@@ -193,6 +192,44 @@ impl<N: Real, const D: usize> Frame<N, D> {
         let distance = self.admit(distance, &flat)?;
         Some(Candidate { point1, distance, flat, features, kept_id: None })
     }
+
+    /// Adds the candidate of [`Self::candidate`] unless one of the same features is at its position: what
+    /// coincides is found from both solids.
+    #[inline]
+    pub(super) fn push_new(
+        &self,
+        point1: Point<N, D>,
+        distance: N,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let Some(found) = self.candidate(point1, distance, features) else { return };
+        let near = N::lit(4.0) * self.tolerance;
+        let is_new = |old: &Candidate<N, D>| {
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
+        };
+        if out.iter().all(is_new) {
+            out.push(found);
+        }
+    }
+}
+
+/// The feature of a segment that a position along it belongs to, measured from its first end: an end where it is
+/// within the tolerance of one, of both the last; `None` beyond the ends.
+#[inline]
+pub(super) fn part_beside<N: Real>(
+    along: N,
+    length: N,
+    tolerance: N,
+    ends: [FeatureId; 2],
+    segment: FeatureId,
+) -> Option<FeatureId> {
+    if along < -tolerance || along > length + tolerance {
+        return None;
+    }
+    let nearest = if along <= tolerance { ends[0] } else { segment };
+    Some(if along >= length - tolerance { ends[1] } else { nearest })
 }
 
 /// The length below which all is rounding errors of the pair's size.

@@ -2,7 +2,7 @@
 //!
 //! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
 //! with their supporting features; seen along the normal these are points, segments and convex polygons of the
-//! plane ([`ring`]), and the corners of what they have in common ([`clip`]) are the candidates. In the plane
+//! plane ([`ring`]), and the corners of what they have in common ([`clip`]) are the candidates. In 2D
 //! that is an interval ([`stretch`]), and over a [`half_space`] every corner counts. The witness is
 //! always represented, so the smallest distance of a manifold is that of the separation exactly; with
 //! a ball it is all there is.
@@ -42,7 +42,7 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Kind};
 
-/// Builds the manifold of two solids in the plane: at most two points.
+/// Builds the manifold of two solids in 2D: at most two points.
 ///
 /// `out` holds the previous manifold of the pair, whose points hand on their ids; it is empty
 /// afterwards if and only if the solids are farther apart than the prediction or overlap without
@@ -77,13 +77,13 @@ fn build_in_plane<N: Real>(
         return;
     }
     let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
-    if !stretch::build(pair, &frame, (request, limit), out) {
+    if !stretch::build(pair, &frame, limit, out) {
         // A user's solid with a supporting feature that is neither a point nor a side.
         settle_witness(pair, separation, out);
     }
 }
 
-/// Builds the manifold of two solids in space: at most `request.max_points` points.
+/// Builds the manifold of two solids in 3D: at most `request.max_points` points.
 ///
 /// As [`build2`].
 pub(crate) fn build3<N: Real>(
@@ -140,13 +140,13 @@ pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     [u, v]
 }
 
-/// The direction along the line of contact in the plane, and zero for the second that there is not.
+/// The direction along the line of contact in 2D, and zero for the second that there is not.
 #[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in space: by the fused algorithm of its kinds where there is one and it does not
+/// The manifold of a pair in 3D: by the fused algorithm of its kinds where there is one and it does not
 /// decline, else from the separation.
 pub(crate) fn contacts3<N: Space<3>>(
     pair: &Pair<'_, N, 3>,
@@ -158,7 +158,7 @@ pub(crate) fn contacts3<N: Space<3>>(
     }
 }
 
-/// The manifold of a pair in space from its separation.
+/// The manifold of a pair in 3D from its separation.
 fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
@@ -170,7 +170,7 @@ fn contacts_of_separation3<N: Real>(
     }
 }
 
-/// The manifold of a pair in the plane; as [`contacts3`].
+/// The manifold of a pair in 2D; as [`contacts3`].
 pub(crate) fn contacts2<N: Space<2>>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
@@ -181,7 +181,7 @@ pub(crate) fn contacts2<N: Space<2>>(
     }
 }
 
-/// The manifold of a pair in the plane from its separation.
+/// The manifold of a pair in 2D from its separation.
 fn contacts_of_separation2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,

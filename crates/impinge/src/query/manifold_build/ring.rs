@@ -9,13 +9,13 @@ use smallvec::{SmallVec, smallvec};
 
 use super::frame::{Frame, MIN_COSINE, Which, lifted};
 use super::supporting::{FaceBlocks, supporting_feature};
-use crate::math::lanes::{dot, load, minus, spread};
+use crate::math::lanes::{LanePose, dot, load, minus, spread};
 use crate::math::simd::Simd;
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, min};
 use crate::shape::{FaceRing, FeatureId, Kind, Segment};
 
 /// How many corners are side by side.
-pub(super) const LANES: usize = FaceRing::<f32>::MOST;
+pub(super) const LANES: usize = FaceRing::<f32>::MAX;
 
 /// A corner, and the side that leads from it to the next.
 #[derive(Clone, Copy)]
@@ -208,7 +208,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         for face in &self.faces {
             let local: [V; 3] = load(simd, &face.corners);
             let points = match self.pose {
-                Some(pose) => placed(simd, pose, &local),
+                Some(pose) => LanePose::of(simd, pose).point(&local),
                 None => local,
             };
             let arms = minus(&points, &spread(simd, &frame.witness.point1.coords));
@@ -375,23 +375,6 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
         self.top = (least, self.flat(best));
     }
-}
-
-/// Points of a frame in that which a pose leads to.
-#[inline(always)]
-fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    pose: &Pose<N, 3>,
-    local: &[V; 3],
-) -> [V; 3] {
-    let mut all = *local;
-    for (row, value) in all.iter_mut().enumerate() {
-        let turned = V::all(simd, pose.rotation[(row, 0)]) * local[0]
-            + V::all(simd, pose.rotation[(row, 1)]) * local[1]
-            + V::all(simd, pose.rotation[(row, 2)]) * local[2];
-        *value = turned + V::all(simd, pose.translation[row]);
-    }
-    all
 }
 
 /// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.

@@ -16,29 +16,19 @@
 //! The contacts are the ends of the overlap that the request admits, an angle being a number in that test
 //! ([`Frame::admit`]), and the witness where none of them is as near.
 
-use super::frame::{Candidate, Candidates, Frame, Which, lifted};
-use super::{ManifoldRequest, Pair, RawManifold, add_witness, choose};
+use super::frame::{Candidates, Frame, MIN_COSINE, Which, lifted, part_beside};
+use super::{Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
-/// Sides that lean more than 60° count as their nearest end.
-const LEAST_COSINE: f64 = 0.5;
-
-/// Builds the manifold of two solids; answers whether it did: balls and half-spaces are left to others.
+/// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space; false
+/// where one has a supporting feature that is neither a side nor a corner.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 2>,
     frame: &Frame<N, 2>,
-    (request, limit): (&ManifoldRequest<N>, usize),
+    limit: usize,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
-    if matches!(pair.first, Kind::Ball(_)) {
-        return false;
-    }
-    let distance = frame.witness.distance;
-    if !(distance <= request.prediction && distance.is_finite_number()) {
-        out.points.clear();
-        return true;
-    }
     let first = Stretch::of((Which::First, pair.first), None, frame);
     let second = Stretch::of((Which::Second, pair.second), Some(&pair.pose12), frame);
     let (Some(first), Some(second)) = (first, second) else { return false };
@@ -47,6 +37,7 @@ pub(super) fn build<N: Real>(
     if first.is_side && second.is_side {
         Shared { frame, first: &first, second: &second }.candidates(&mut candidates);
     }
+    let distance = frame.witness.distance;
     let level = distance + frame.tolerance;
     if !candidates.iter().any(|candidate| candidate.distance <= level) {
         add_witness(frame, [first.at_witness(frame), second.at_witness(frame)], &mut candidates);
@@ -141,7 +132,7 @@ impl<N: Real> Stretch<N> {
         let flat = to.flat - from.flat;
         (self.along, self.length) = (flat.x, flat.norm());
         self.cosine = self.length / (to.point - from.point).norm();
-        if self.cosine < N::lit(LEAST_COSINE) {
+        if self.cosine < N::lit(MIN_COSINE) {
             let at = |corner: &Corner<N, 2>| corner.point.coords.dot(outward);
             let farthest = if at(to) > at(from) { *to } else { *from };
             (self.id, self.corners, self.is_side) = (farthest.id, [farthest; 2], false);
@@ -184,12 +175,8 @@ impl<N: Real> Stretch<N> {
     fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
         let along = (place - self.corners[0].flat.x) * self.along / self.length;
         let tolerance = N::TWO * tolerance;
-        if along < -tolerance || along > self.length + tolerance {
-            return None;
-        }
-        let end = if along <= tolerance { Some(0) } else { None };
-        let end = if along >= self.length - tolerance { Some(1) } else { end };
-        Some(end.map_or(self.id, |end: usize| self.corners[end].id))
+        let [from, to] = &self.corners;
+        part_beside(along, self.length, tolerance, [from.id, to.id], self.id)
     }
 
     /// The part that contains a place: an end or the side; `None` beyond the ends.
@@ -224,7 +211,7 @@ fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     Point::<N, 2>::new(x, y)
 }
 
-/// The radius by which the core of a solid is swollen.
+/// The radius by which the core of a solid is inflated.
 #[inline]
 fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     match kind {
@@ -284,15 +271,6 @@ impl<N: Real> Shared<'_, N> {
         let lift1 = self.first.lift(core1, self.frame);
         let lift2 = self.second.lift(core2, self.frame);
         let distance = normal.dot(&(core2 - core1)) - lift1 - lift2;
-        let found = self.frame.candidate(core1 + normal * lift1, distance, features);
-        let Some(found) = found else { return };
-        let near = N::lit(4.0) * self.frame.tolerance;
-        let is_new = |old: &Candidate<N, 2>| {
-            let away = old.flat - found.flat;
-            old.features != found.features || max_component(&away) > near || away.norm() > near
-        };
-        if out.iter().all(is_new) {
-            out.push(found);
-        }
+        self.frame.push_new(core1 + normal * lift1, distance, features, out);
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn supporting_feature<N: Real>(
     direction: &Vector<N, 3>,
     faces: &mut FaceBlocks<N>,
 ) -> N {
-    let ((kind, swelling), face) = (bare(kind), &mut faces[0]);
+    let ((kind, radius), face) = (bare(kind), &mut faces[0]);
     let is_filled = match kind {
         Kind::Segment(segment) => fill_segment(segment, face),
         Kind::Capsule(capsule) => fill_segment(capsule.segment(), face),
@@ -36,7 +36,7 @@ pub(super) fn supporting_feature<N: Real>(
     if let Some(map) = map.filter(|_| !is_filled) {
         fill_feature(map, direction, faces);
     }
-    swelling + map.map_or(N::ZERO, SupportMap::rounding)
+    radius + map.map_or(N::ZERO, SupportMap::rounding)
 }
 
 fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, face: &mut FaceRing<N>) -> bool {

@@ -95,7 +95,7 @@ fn by_place<N: Real, const D: usize>(
             part_of(capsule.segment(), &core, N::TWO * noise)
         }
         Kind::Rounded(solid) => {
-            let core = point - outward * solid.swelling();
+            let core = point - outward * solid.radius();
             by_place(solid.inner().0, (&core, outward), noise)
         }
         _ => None,

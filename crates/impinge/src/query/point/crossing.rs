@@ -4,7 +4,7 @@
 //! the point leaves it less the times it enters. Whether it does at a segment or triangle is read off
 //! exact signs. Ties, where the ray meets corners or sides, are settled as if the point were moved by an
 //! infinitesimal step across the ray, the same for all parts (Edelsbrunner and Mücke, "Simulation of
-//! Simplicity", 1990; in the plane this is the half-open rule): so what one part leaves out its
+//! Simplicity", 1990; in 2D this is the half-open rule): so what one part leaves out its
 //! neighbour counts, and no direction of the ray can be unlucky.
 
 use core::cmp::Ordering;
@@ -53,7 +53,7 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: W
     }
 }
 
-/// Of a triangle in space, whose front is outside. The point may lie on a triangle along the ray
+/// Of a triangle in 3D, whose front is outside. The point may lie on a triangle along the ray
 /// unnoticed; then its winding number is that of a point beside it.
 pub(super) fn of_triangle(corners: [Point<f64, 3>; 3], point: &Point<f64, 3>, way: Way) -> Added {
     let seen =

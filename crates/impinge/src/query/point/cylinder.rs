@@ -19,7 +19,7 @@ impl<N: Real> Meridian<N> {
         Self { flat: Point::<N, 2>::new(distance, point.y), away }
     }
 
-    /// A point of the flat problem, back in space.
+    /// A point of the flat problem, back in 3D.
     pub(super) fn lift(&self, flat: &Point<N, 2>) -> Point<N, 3> {
         Point::<N, 3>::new(self.away.x * flat.x, flat.y, self.away.y * flat.x)
     }

@@ -81,7 +81,7 @@ impl<N: Real> Polyline<N, 2> {
     /// The distance from the point, in the frame of the line, to the nearest segment: negative in the area
     /// that the line bounds, zero on the line; `None` if the line [bounds none](Self::is_outline).
     ///
-    /// As for closed meshes in space ([`TriMesh::signed_distance`]): inside are the points around which the
+    /// As for closed meshes in 3D ([`TriMesh::signed_distance`]): inside are the points around which the
     /// line winds, whichever way, and that is decided exactly.
     ///
     /// ```

@@ -59,7 +59,7 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// Questions about a point and a solid; implemented for every [`Shape`].
 ///
 /// A `solid` is the set with its interior; without `solid` only its boundary counts. A point on the
-/// boundary is inside. Sets without thickness (segments; triangles in space) hold the points that
+/// boundary is inside. Sets without thickness (segments; triangles in 3D) hold the points that
 /// lie on them within rounding, which is a few units in the last place of the largest coordinate.
 ///
 /// Where several points are equally near, the answer is fixed: the feature of lowest number wins

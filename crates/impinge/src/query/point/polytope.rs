@@ -20,7 +20,7 @@ fn from_inside<N: Real, const D: usize>(
     })
 }
 
-/// In the plane: from outside, the nearest point of all sides.
+/// In 2D: from outside, the nearest point of all sides.
 pub(super) fn surface_point2<N: Real>(
     solid: &Polytope<N, 2>,
     point: &Point<N, 2>,
@@ -37,7 +37,7 @@ pub(super) fn surface_point2<N: Real>(
     best
 }
 
-/// In space: from outside, the foot on a face that it falls into, else the nearest point of all edges.
+/// In 3D: from outside, the foot on a face that it falls into, else the nearest point of all edges.
 pub(super) fn surface_point3<N: Real>(
     solid: &Polytope<N, 3>,
     point: &Point<N, 3>,

@@ -10,7 +10,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     solid: &dyn RoundedSolid<N, D>,
     point: &Point<N, D>,
 ) -> SurfacePoint<N, D> {
-    let (inner, radius) = (solid.inner(), solid.swelling());
+    let (inner, radius) = (solid.inner(), solid.radius());
     if radius == N::ZERO {
         return (N::tables().surface_point)(inner.0, point);
     }

@@ -1,4 +1,4 @@
-//! The nearest point of a triangle, in the plane and in space, however thin the triangle is.
+//! The nearest point of a triangle, in 2D and 3D, however thin the triangle is.
 
 use super::SurfacePoint;
 use super::segment::{self, feature_at};

@@ -1,4 +1,4 @@
-//! The nearest point of the outline of a filled triangle in the plane.
+//! The nearest point of the outline of a filled triangle in 2D.
 
 use super::SurfacePoint;
 use super::triangle::on_side;

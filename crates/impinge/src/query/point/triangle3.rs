@@ -1,4 +1,4 @@
-//! The nearest point of a triangle in space.
+//! The nearest point of a triangle in 3D.
 
 use super::{SurfacePoint, triangle};
 use crate::math::{Point, Real, cross, max, max_component};

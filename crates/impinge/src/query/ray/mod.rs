@@ -79,7 +79,7 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// A ray that only touches the boundary hits. A ray whose direction is zero is a point: it hits at
 /// time zero if that point is in the set. A ray that is not finite hits nothing.
 ///
-/// Sets without thickness (segments; triangles in space) are hit where the ray meets them within
+/// Sets without thickness (segments; triangles in 3D) are hit where the ray meets them within
 /// rounding: a few units in the last place of the distances involved.
 ///
 /// A composite is the union of its parts, and each part is met as if it were alone. So a ray that starts
@@ -217,7 +217,7 @@ pub trait RayCast<N: Real, const D: usize> {
     /// composite the first hits on its parts are held out, each at most once and in no particular order, and of
     /// a convex solid its first hit. The normals are in the world frame.
     ///
-    /// It culls back faces: a triangle in space is hit on its `Face(0)` from the front, where it is seen
+    /// It culls back faces: a triangle in 3D is hit on its `Face(0)` from the front, where it is seen
     /// counter-clockwise, and on its `Face(1)` from behind.
     ///
     /// ```

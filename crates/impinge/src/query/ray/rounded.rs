@@ -13,7 +13,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
     let inner = solid.inner();
-    if solid.swelling() == N::ZERO {
+    if solid.radius() == N::ZERO {
         return (N::tables().ray_span)(inner.0, ray);
     }
     let point = Ball::new(N::ZERO);

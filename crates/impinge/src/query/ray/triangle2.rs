@@ -1,4 +1,4 @@
-//! A line and a filled triangle in the plane.
+//! A line and a filled triangle in 2D.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;

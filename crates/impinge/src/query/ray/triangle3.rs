@@ -1,4 +1,4 @@
-//! A line and a triangle in space.
+//! A line and a triangle in 3D.
 
 use super::segment::{Names, span as segment_span};
 use super::span::{Crossing, Span};

@@ -34,12 +34,12 @@ impl<N: Real> HalfPlane<N> {
         Self { point: Vector::<N, 2>::new(radial, point.y), away }
     }
 
-    /// A vector of the half-plane, in space.
+    /// A vector of the half-plane, in 3D.
     pub(super) fn lift(&self, v: &Vector<N, 2>) -> Vector<N, 3> {
         Vector::<N, 3>::new(self.away.x * v.x, v.y, self.away.y * v.x)
     }
 
-    /// The projection found in the half-plane, in space.
+    /// The projection found in the half-plane, in 3D.
     pub(super) fn projection(
         &self,
         distance: N,

@@ -1,4 +1,4 @@
-//! Ball against convex polygon in the plane.
+//! Ball against convex polygon in 2D.
 
 use super::projection::{Projection, center_in_second, noise};
 use super::{ball_segment, wrong_kinds};
@@ -9,7 +9,7 @@ use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
 /// The separation of a ball from a convex polygon.
 ///
-/// As from a convex hull in space: inside, the nearest side is the way out; outside, the nearest
+/// As from a convex hull in 3D: inside, the nearest side is the way out; outside, the nearest
 /// point lies on a side that sees the centre in front of it. Cost: linear in the number of sides.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     let (Kind::Ball(ball), Kind::Polytope(polygon)) = (&pair.first, &pair.second) else {

@@ -1,4 +1,4 @@
-//! Ball against convex hull in space.
+//! Ball against convex hull in 3D.
 
 use super::projection::{Projection, center_in_second, noise};
 use super::{ball_segment, wrong_kinds};

@@ -1,4 +1,4 @@
-//! Ball against triangle in space, where a triangle has no thickness.
+//! Ball against triangle in 3D, where a triangle has no thickness.
 
 use super::ball_segment::Foot;
 use super::projection::{Projection, center_in_second, made_perpendicular, noise};
@@ -8,7 +8,7 @@ use crate::math::{Point, Real, Vector, cross, max, unit};
 use crate::query::Pair;
 use crate::shape::Kind;
 
-/// The separation of a ball from a triangle in space.
+/// The separation of a ball from a triangle in 3D.
 ///
 /// A centre on the triangle leaves on the side that sees the corners counter-clockwise; on a
 /// triangle without area, as it would leave the nearest side.

@@ -1,4 +1,4 @@
-//! Ball against triangle in the plane: by the side or corner that is nearest to the centre.
+//! Ball against triangle in 2D: by the side or corner that is nearest to the centre.
 
 use super::projection::{Projection, center_in_second, noise};
 use super::{polygon_polygon, wrong_kinds};

@@ -1,4 +1,4 @@
-//! The separating axis test of two boxes in space.
+//! The separating axis test of two boxes in 3D.
 //!
 //! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions says
 //! so, and if not, the one that says so least badly is the direction of the shortest way out.

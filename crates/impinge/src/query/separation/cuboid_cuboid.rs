@@ -1,4 +1,4 @@
-//! Box against box in space.
+//! Box against box in 3D.
 
 use smallvec::SmallVec;
 

@@ -30,15 +30,15 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
     let meeting = CylinderPair::new(first, second, &pair.pose12, units.shrink);
-    let verdict = meeting.resolve(out_of_reach(&units, limit));
-    match verdict.answer(&units, &pair.pose12) {
+    let result = meeting.resolve(out_of_reach(&units, limit));
+    match result.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
         None => general::separation(pair, limit),
     }
 }
 
 /// How the search ended.
-pub(super) enum Verdict<N: Real> {
+pub(super) enum RevolvedResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
     /// In the frame of the first solid, or that of the second.
@@ -46,7 +46,7 @@ pub(super) enum Verdict<N: Real> {
     Undecided,
 }
 
-impl<N: Real> Verdict<N> {
+impl<N: Real> RevolvedResult<N> {
     /// Tries one direction after the other until one is the answer, or parts the solids by more than
     /// `beyond`; with each goes whether it is seen from the second solid.
     fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
@@ -154,7 +154,7 @@ impl<N: Real> CylinderPair<N> {
         }
     }
 
-    fn resolve(&self, beyond: N) -> Verdict<N> {
+    fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let [first, second] = &self.views;
         let tries: [(Attempt<'_, N>, bool); 6] = [
             (&|| Some(first.cap()), false),
@@ -164,7 +164,7 @@ impl<N: Real> CylinderPair<N> {
             (&|| second.side(), true),
             (&|| first.rims(), false),
         ];
-        Verdict::of(&tries, beyond)
+        RevolvedResult::of(&tries, beyond)
     }
 }
 
@@ -463,7 +463,8 @@ pub(super) mod tests {
             pose12.translation = random.vector() * 1.5;
             let units = Units::of(first.reach(), second.reach(), &pose12.translation);
             let meeting = CylinderPair::new(&first, &second, &pose12, units.shrink);
-            undecided += usize::from(matches!(meeting.resolve(f64::INFINITY), Verdict::Undecided));
+            undecided +=
+                usize::from(matches!(meeting.resolve(f64::INFINITY), RevolvedResult::Undecided));
         }
         assert!(undecided < 400, "{undecided} of 1000 are left to the general algorithm");
     }

@@ -1,27 +1,27 @@
-//! Convex outlines in the plane: what points, segments, triangles, boxes and polygons have in common.
+//! Convex outlines in 2D: what points, segments, triangles, boxes and polygons have in common.
 
 use smallvec::{SmallVec, smallvec};
 
 use super::segment_lanes::is_usual;
-use crate::math::lanes::{dot, either, highest_lane, load, spread};
+use crate::math::lanes::{LanePose, dot, either, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Matrix, Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
 /// How many vertices are looked at side by side.
 pub(super) const LANES: usize = 8;
 
 /// Outlines of more vertices are left to the general algorithm.
-const MOST_BLOCKS: usize = 4;
+const MAX_BLOCKS: usize = 4;
 
 /// A number for each of eight vertices.
 pub(super) type Row<N> = [N; LANES];
 
-/// A convex polygon in some frame, swollen by a radius.
+/// A convex polygon in some frame, inflated by a radius.
 ///
 /// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
 pub(super) struct Outline<N: Real> {
-    blocks: SmallVec<[OutlineBlock<N>; MOST_BLOCKS]>,
+    blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
     /// Of vertices.
     pub(super) count: usize,
     pub(super) rounding: N,
@@ -119,7 +119,7 @@ impl<N: Real> Outline<N> {
     #[inline(always)]
     fn of_polygon(polygon: &Polytope<N, 2>) -> Option<Self> {
         let (vertices, planes) = (polygon.blocks(), polygon.planes());
-        if vertices.len() > MOST_BLOCKS {
+        if vertices.len() > MAX_BLOCKS {
             return None;
         }
         let blocks = vertices.iter().zip(planes);
@@ -156,11 +156,10 @@ impl<N: Real> Outline<N> {
         simd: S,
         pose: &Pose<N, 2>,
     ) -> Self {
-        let at = &pose.translation;
+        let pose: LanePose<V, 2> = LanePose::of(simd, pose);
         for block in &mut self.blocks {
-            let [x, y]: [V; 2] = turned(simd, &block.vertices, &pose.rotation);
-            block.vertices = stored(&[x + V::all(simd, at.x), y + V::all(simd, at.y)]);
-            block.normals = stored(&turned::<S, N, V>(simd, &block.normals, &pose.rotation));
+            block.vertices = stored(&pose.point(&load(simd, &block.vertices)));
+            block.normals = stored(&pose.vector(&load(simd, &block.normals)));
         }
         self
     }
@@ -241,7 +240,7 @@ impl<N: Real> Outline<N> {
         most
     }
 
-    /// The blocks with what [`Self::reach`] says along the normals of their sides.
+    /// All vertices, with the normals of the sides that start there, eight at a time.
     #[inline(always)]
     pub(super) fn blocks(&self) -> &[OutlineBlock<N>] {
         &self.blocks
@@ -251,7 +250,7 @@ impl<N: Real> Outline<N> {
     /// where the angle is sharper than a right one.
     ///
     /// Sides alone would leave gaps of more than a right angle between the directions, so that flat outlines that
-    /// point at each other were not told apart.
+    /// point at each other would count as overlapping.
     #[inline(always)]
     pub(super) fn tips<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -270,18 +269,6 @@ impl<N: Real> Outline<N> {
         let length = dot(&tip, &tip).sqrt();
         ([tip[0] / length, tip[1] / length], is_tip)
     }
-}
-
-/// Vectors in a frame turned by a matrix.
-#[inline(always)]
-fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    vectors: &[Row<N>; 2],
-    by: &Matrix<N, 2>,
-) -> [V; 2] {
-    let v: [V; 2] = load(simd, vectors);
-    let row = |row: usize| [V::all(simd, by[(row, 0)]), V::all(simd, by[(row, 1)])];
-    [dot(&row(0), &v), dot(&row(1), &v)]
 }
 
 #[inline(always)]

@@ -44,7 +44,7 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     distance(pair, limit, way)
 }
 
-/// [`distance_in_space`], in the plane.
+/// [`distance_in_space`], in 2D.
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_in_plane) {
         return (known <= limit).then_some(known);
@@ -63,7 +63,7 @@ fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     }
 }
 
-/// [`known_in_space`], of what is the same in any dimension; of balls that is told by how a solid is seen from
+/// [`known_in_space`], of what is the same in any dimension; of balls it follows from how a solid is seen from
 /// their middle.
 #[inline(always)]
 fn known<N: Real, const D: usize>(
@@ -97,14 +97,14 @@ fn beside_ball_in_space<N: Real>(
         Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
         Kind::Rounded(solid) => {
             let core = beside_ball_in_space(radius, solid.inner().0, center)?;
-            return Some(core - solid.swelling());
+            return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
     };
     Some(apart - radius)
 }
 
-/// [`beside_ball_in_space`], in the plane.
+/// [`beside_ball_in_space`], in 2D.
 fn beside_ball_in_plane<N: Real>(
     radius: N,
     kind: Kind<'_, N, 2>,
@@ -115,7 +115,7 @@ fn beside_ball_in_plane<N: Real>(
         Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
         Kind::Rounded(solid) => {
             let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
-            return Some(core - solid.swelling());
+            return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
     };

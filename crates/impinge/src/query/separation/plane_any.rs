@@ -34,7 +34,7 @@ pub(super) fn distance<N: Real, const D: usize>(
     pose12: &Pose<N, D>,
 ) -> Option<N> {
     if let Kind::Rounded(solid) = kind {
-        return distance(solid.inner().0, plane, pose12).map(|core| core - solid.swelling());
+        return distance(solid.inner().0, plane, pose12).map(|core| core - solid.radius());
     }
     Some(Deepest::of(Geometry(kind).as_support_map()?, plane, pose12).distance)
 }

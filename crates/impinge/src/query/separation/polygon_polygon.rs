@@ -1,4 +1,4 @@
-//! Segments, triangles, boxes and polygons among themselves in the plane, rounded or not.
+//! Segments, triangles, boxes and polygons among themselves in 2D, rounded or not.
 //!
 //! The signed distance of two convex sets is the largest gap that any direction leaves between them
 //! (negative where every direction finds them overlapping). Where they overlap, a normal of one of
@@ -31,7 +31,7 @@ pub(super) struct Axis<N: Real> {
 
 /// How the search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Verdict<N: Real> {
+enum OutlineResult<N: Real> {
     /// The outlines are farther apart than the limit.
     Beyond,
     Found(Separation<N, 2>),
@@ -48,15 +48,23 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Sep
     if let Some(found) = segment_lanes::separation(Level::new(), pair) {
         return Some(found).filter(|found| found.distance <= limit);
     }
+    separation_of_outlines(pair, limit)
+}
+
+/// [`separation`] of what is not two segments that are known to be apart.
+pub(super) fn separation_of_outlines<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    limit: N,
+) -> Option<Separation<N, 2>> {
     match between(Level::new(), pair, limit) {
-        Verdict::Beyond => None,
-        Verdict::Found(found) => Some(found).filter(|found| found.distance <= limit),
-        Verdict::Undecided => general::separation(pair, limit),
+        OutlineResult::Beyond => None,
+        OutlineResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        OutlineResult::Undecided => general::separation(pair, limit),
     }
 }
 
 /// [`search`] with the vectors of an instruction set.
-fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> Verdict<N> {
+fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> OutlineResult<N> {
     let known = known_axis(pair);
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
 }
@@ -76,9 +84,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     pair: &Pair<'_, N, 2>,
     known: Option<Axis<N>>,
     limit: N,
-) -> Verdict<N> {
-    let Some(own) = Outline::of::<S, V>(simd, &pair.first) else { return Verdict::Undecided };
-    let Some(other) = Outline::of::<S, V>(simd, &pair.second) else { return Verdict::Undecided };
+) -> OutlineResult<N> {
+    let Some(own) = Outline::of::<S, V>(simd, &pair.first) else { return OutlineResult::Undecided };
+    let Some(other) = Outline::of::<S, V>(simd, &pair.second) else {
+        return OutlineResult::Undecided;
+    };
     let other = other.placed::<S, V>(simd, &pair.pose12);
     let outlines = [&own, &other];
     let rounding = own.rounding + other.rounding;
@@ -91,7 +101,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     // A lower bound: what it rejects by more than rounding is out of reach.
     let reach = limit + N::lit(16.0) * (noise + N::EPSILON * rounding);
     if sides.gap - rounding > reach {
-        return Verdict::Beyond;
+        return OutlineResult::Beyond;
     }
     let facing = Facing::of::<S, V>(simd, outlines, &sides, noise);
     let found = match facing.settled() {
@@ -100,12 +110,12 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let is_known = known.is_some();
             let best = if is_known { sides } else { best_axis::<S, N, V>(simd, outlines, sides) };
             if best.gap - rounding > reach {
-                return Verdict::Beyond;
+                return OutlineResult::Beyond;
             }
             of_axis::<S, N, V>(simd, outlines, &best, noise)
         }
     };
-    found.map_or(Verdict::Undecided, Verdict::Found)
+    found.map_or(OutlineResult::Undecided, OutlineResult::Found)
 }
 
 /// The separation of two outlines whose best axis is known; `None` if that is not the one of the nearest
@@ -328,7 +338,7 @@ pub(super) mod tests {
             for level in Level::available() {
                 let found = between(level, &pair, N::INFINITY);
                 count += 1;
-                if let Verdict::Found(found) = found {
+                if let OutlineResult::Found(found) = found {
                     let what = || format!("{found:?} not {expected:?}: {kinds:?} {pose12:?}");
                     let close = N::lit(64.0) * N::EPSILON;
                     assert!((found.distance - expected.distance).abs() <= close, "{}", what());

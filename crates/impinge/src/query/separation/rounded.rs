@@ -7,7 +7,7 @@ use crate::shape::Kind;
 
 /// The separation of two solids of which one or both are rounded.
 ///
-/// Exact for solids that overlap as well: swelling a solid moves each of its supporting planes
+/// Exact for solids that overlap as well: inflating a solid moves each of its supporting planes
 /// outwards by the radius, so the order of the normals stays what it is.
 pub(super) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -23,7 +23,7 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
 /// What is rounded, and by how much.
 pub(in crate::query) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
-        Kind::Rounded(solid) => (solid.inner().0, solid.swelling()),
+        Kind::Rounded(solid) => (solid.inner().0, solid.radius()),
         other => (other, N::ZERO),
     }
 }

@@ -18,13 +18,13 @@ pub(crate) fn seen_in_plane<N: Real>(
         Kind::Polytope(polygon) => Some(ball_polygon::project(polygon, point)),
         Kind::Rounded(solid) => {
             let core = seen_in_plane(solid.inner().0, point)?;
-            Some(swollen(&core, solid.swelling()))
+            Some(inflated(&core, solid.radius()))
         }
         other => seen(other, point),
     }
 }
 
-/// [`seen_in_plane`], in space.
+/// [`seen_in_plane`], in 3D.
 pub(crate) fn seen_in_space<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,
@@ -34,7 +34,7 @@ pub(crate) fn seen_in_space<N: Real>(
         Kind::Polytope(hull) => ball_polytope::project(hull, point),
         Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, point),
         Kind::Cone(cone, _) => ball_cone::project(cone, point),
-        Kind::Rounded(solid) => swollen(&seen_in_space(solid.inner().0, point)?, solid.swelling()),
+        Kind::Rounded(solid) => inflated(&seen_in_space(solid.inner().0, point)?, solid.radius()),
         other => return seen(other, point),
     })
 }
@@ -49,12 +49,12 @@ fn seen<N: Real, const D: usize>(
         Kind::Ball(ball) => {
             let (outward, apart) = unit(&point.coords).unwrap_or((first_axis(), N::ZERO));
             let center = Projection { distance: apart, outward, point: Point::origin() };
-            swollen(&center, ball.radius())
+            inflated(&center, ball.radius())
         }
         Kind::Segment(segment) => ball_segment::project(&[*segment.a(), *segment.b()], point),
         Kind::Capsule(capsule) => {
             let core = capsule.segment();
-            swollen(&ball_segment::project(&[*core.a(), *core.b()], point), capsule.radius())
+            inflated(&ball_segment::project(&[*core.a(), *core.b()], point), capsule.radius())
         }
         Kind::Cuboid(cuboid) => ball_cuboid::project(cuboid.half_extents(), point),
         Kind::Ellipsoid(ellipsoid) => ball_ellipsoid::project(ellipsoid, point),
@@ -70,7 +70,7 @@ fn seen<N: Real, const D: usize>(
 
 /// As the solid is seen whose points are no farther than `radius` from one that is seen so.
 #[inline]
-fn swollen<N: Real, const D: usize>(core: &Projection<N, D>, radius: N) -> Projection<N, D> {
+fn inflated<N: Real, const D: usize>(core: &Projection<N, D>, radius: N) -> Projection<N, D> {
     Projection {
         distance: core.distance - radius,
         outward: core.outward,

@@ -1,4 +1,4 @@
-//! Segments and capsules against boxes in space.
+//! Segments and capsules against boxes in 3D.
 //!
 //! The squared distance of a point from a box is a sum over the axes, so that along a segment its slope is
 //! linear between the places where the segment crosses the planes of faces: the nearest place is found

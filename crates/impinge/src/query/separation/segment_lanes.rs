@@ -1,4 +1,4 @@
-//! Segments in lanes: the nearest point of each to a point, and in the plane the separation of two.
+//! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
 //!
 //! A lone pair of the plane is a batch of one, so that what is asked of two segments, and what a manifold of
 //! them says, are the same bits.
@@ -6,7 +6,7 @@
 use super::segments::core;
 use crate::convex::Separation;
 use crate::math::lanes::{
-    dot, either, minus, negated, norm, over, plus, spread, times, with_lanes,
+    dot, either, either_mask, minus, negated, norm, over, plus, spread, times, with_lanes,
 };
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
@@ -103,7 +103,7 @@ impl<V, M> EndAndSide<V, M> {
                 either(is_other, &other.points[0], point1),
                 either(is_other, &other.points[1], point2),
             ],
-            is_inside: (is_other & other.is_inside) | (!is_other & self.is_inside),
+            is_inside: either_mask(is_other, other.is_inside, self.is_inside),
             along: either(is_other, &other.along, &self.along),
             squared: is_other.select(other.squared, self.squared),
         }
@@ -188,7 +188,7 @@ fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) 
     dot(direction, first).smaller(dot(direction, last))
 }
 
-/// The separation of two segments of the plane, swollen or not; `None` of other kinds, and where
+/// The separation of two segments of the plane, inflated or not; `None` of other kinds, and where
 /// [`SegmentGap`] knows none.
 pub(super) fn separation<N: Real>(level: Level, pair: &Pair<'_, N, 2>) -> Option<Separation<N, 2>> {
     let is_segment = |kind: &Kind<'_, N, 2>| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));

@@ -1,4 +1,4 @@
-//! Segments and capsules among themselves, in space.
+//! Segments and capsules among themselves, in 3D.
 
 use super::projection::{first_axis, made_perpendicular, noise, perpendicular_to};
 use super::segments::{core, gap_along, nearest_of_segments};
@@ -6,7 +6,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross, max, unit};
 use crate::query::Pair;
 
-/// The separation of two segments or capsules in space.
+/// The separation of two segments or capsules in 3D.
 ///
 /// Segments that meet are parted along their common perpendicular with depth zero; those on one
 /// line along a fixed perpendicular of it; two points at one place along the first axis.

@@ -41,7 +41,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     (if from_a > N::ZERO { ends[1] } else { ends[0] }, false)
 }
 
-/// The nearest points of two segments in space.
+/// The nearest points of two segments in 3D.
 ///
 /// The candidates are each end against the other segment and, unless the segments are parallel, the
 /// common perpendicular of their lines; the first of equals is taken.
@@ -73,7 +73,7 @@ struct Perpendicular<N: Real> {
 
 /// The nearest points of two segments if at least one of them is an end, in any dimension.
 ///
-/// In the plane these are the nearest points of any two segments that do not cross.
+/// In 2D these are the nearest points of any two segments that do not cross.
 pub(super) fn nearest_of_ends<N: Real, const D: usize>(
     ends1: &[Point<N, D>; 2],
     ends2: &[Point<N, D>; 2],

@@ -1,4 +1,4 @@
-//! Which algorithm serves which pair of kinds in the plane.
+//! Which algorithm serves which pair of kinds in 2D.
 
 use super::{
     Algorithm, Table, ball_ball, ball_cuboid, ball_ellipsoid, ball_polygon, ball_segment,
@@ -49,7 +49,7 @@ impl<N: Real> Table2<N> {
     };
 }
 
-/// The separation of any pair in the plane.
+/// The separation of any pair in 2D.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     look_up(&Table2::<N>::TABLE, pair)(pair, limit)
 }

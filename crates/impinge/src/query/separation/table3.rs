@@ -1,4 +1,4 @@
-//! Which algorithm serves which pair of kinds in space.
+//! Which algorithm serves which pair of kinds in 3D.
 
 use super::{
     Algorithm, Table, ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid,
@@ -58,7 +58,7 @@ impl<N: Real> Table3<N> {
     };
 }
 
-/// The separation of any pair in space.
+/// The separation of any pair in 3D.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     look_up(&Table3::<N>::TABLE, pair)(pair, limit)
 }

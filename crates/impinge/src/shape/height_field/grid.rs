@@ -8,7 +8,7 @@ use super::pyramid::{Block, Pyramid, Span};
 use super::question::Probe;
 use crate::math::{Point, Real, max, min};
 
-/// Heights in rows and columns, and where the rows and columns lie. In the plane there is one row.
+/// Heights in rows and columns, and where the rows and columns lie. In 2D there is one row.
 ///
 /// The points lie at (`xs[column]`, height · `y_scale`, `zs[row]`). Every coordinate comes from here,
 /// so that neighbours have the same bits.
@@ -23,7 +23,7 @@ pub(super) struct Grid<N: Real> {
 }
 
 impl<N: Real> Grid<N> {
-    /// In space: no two of the lines lie at one place.
+    /// In 3D: no two of the lines lie at one place.
     pub(super) fn has_extent(&self) -> bool {
         [&self.xs, &self.zs].iter().all(|lines| {
             let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
@@ -45,7 +45,7 @@ pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
     (0..=last).map(|line| number(2 * line - last) / number(2 * last) * extent).collect()
 }
 
-/// A box: the least and the greatest x, y and z. In the plane z is zero.
+/// A box: the least and the greatest x, y and z. In 2D z is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent<N: Real> {
     pub(super) low: [N; 3],

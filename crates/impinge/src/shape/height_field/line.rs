@@ -1,4 +1,4 @@
-//! Height fields in the plane: one segment per cell.
+//! Height fields in 2D: one segment per cell.
 
 use smallvec::{SmallVec, smallvec};
 

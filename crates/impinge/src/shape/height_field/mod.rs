@@ -1,4 +1,4 @@
-//! Height fields: a line in the plane, a surface in space, given by heights over a grid.
+//! Height fields: a line in 2D, a surface in 3D, given by heights over a grid.
 //!
 //! Triangles, boxes and seams are all made from the heights when they are asked for; what is kept is the
 //! least and the greatest height of ever larger blocks of cells ([`Pyramid`]), which takes the place of
@@ -23,7 +23,7 @@ use super::ShapeError;
 use super::error::finite;
 use crate::math::{Real, Vector};
 
-/// A surface over a grid in the plane y = 0 (in the plane: a line over the x axis), given by its heights.
+/// A surface over a grid in the plane y = 0 (in 2D: a line over the x axis), given by its heights.
 ///
 /// It is as thin as its triangles (segments): below it there is nothing. Heights are multiplied by the
 /// y component of the scale. The other components are the extents of the whole field, which lies
@@ -39,7 +39,7 @@ use crate::math::{Real, Vector};
 ///
 /// **Cells.** Between four neighbouring heights lies a cell of two triangles, parts `2 · cell` and
 /// `2 · cell + 1`; which way they divide it says [`Diagonal`]. The corners of a triangle run
-/// counter-clockwise seen from the front, so that in space `Face(0)` is the front. In the plane a cell,
+/// counter-clockwise seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell,
 /// and part, is the segment from one height to the next. Parts may be removed: such holes keep their
 /// number, but no search finds them, and a seam beside one is a border.
 ///
@@ -143,7 +143,7 @@ impl<N: Real, const D: usize> HeightField<N, D> {
     }
 }
 
-/// The grid of rows and columns with `rows[0]` of them along z, or one row in the plane.
+/// The grid of rows and columns with `rows[0]` of them along z, or one row in 2D.
 fn grid<N: Real, const D: usize>(
     [rows, columns]: [usize; 2],
     heights: Vec<N>,

@@ -1,4 +1,4 @@
-//! Height fields in space: two triangles per cell.
+//! Height fields in 3D: two triangles per cell.
 
 use smallvec::SmallVec;
 

@@ -7,9 +7,9 @@ use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::bend::Bend;
 use crate::shape::seam::{Seam, is_across, leads_up_clearly, slack};
-use crate::shape::siding::Joining;
+use crate::shape::sidedness::Joining;
 use crate::shape::tri_mesh::{inward_of, normal_of};
-use crate::shape::{FeatureId, Siding, Surface};
+use crate::shape::{FeatureId, Sidedness, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
@@ -267,11 +267,11 @@ impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
         Some(if is_front { front } else { -front })
     }
 
-    fn siding(&self) -> Option<Siding> {
+    fn sidedness(&self) -> Option<Sidedness> {
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
-        let (is_left, is_told_by_front) = (!self.is_mirrored(), true);
+        let (is_left, follows_front) = (!self.is_mirrored(), true);
         let joining = Joining::InRow;
-        Some(Siding { is_left, is_one_sided, is_told_by_front, keeps_internal_edges, joining })
+        Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
     }
 
     fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {

@@ -12,7 +12,7 @@ use super::TriMesh;
 use crate::math::{Point, Real, Vector, max, max_component, unit, unit_or};
 
 /// So many sides of triangles without area are crossed in search of what lies beyond.
-const MOST_CROSSED: usize = 32;
+const MAX_CROSSED: usize = 32;
 /// A triangle with a squared height of more than this, of its longest side, is tall.
 const TALL: f64 = 1.0 / 1024.0;
 
@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// The triangle is so tall for its size that nobody doubts its area; not told of all.
+    /// The triangle is so tall for its size that nobody doubts its area; not known of all.
     fn is_plain(&self, triangle: u32) -> bool {
         self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
     }
@@ -140,7 +140,7 @@ fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
 
 /// Whether a side is in the list, or the list is full.
 fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
-    crossed.len() >= MOST_CROSSED || crossed.contains(side)
+    crossed.len() >= MAX_CROSSED || crossed.contains(side)
 }
 
 /// Below this height over its longest side a triangle has no area: the difference of coordinates,

@@ -60,7 +60,7 @@ impl Bends {
     }
 
     /// How much is kept of a triangle.
-    pub(super) fn told_of(&self, triangle: u32) -> u16 {
+    pub(super) fn kept_of(&self, triangle: u32) -> u16 {
         self.sides[triangle as usize].load(Ordering::Relaxed)
     }
 

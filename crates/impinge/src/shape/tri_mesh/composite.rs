@@ -67,7 +67,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     fn expect(&self, part: u32) {
         let beyond = self.topology.all_across(part);
         let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
-        black_box((normal(part), self.bends.told_of(part), self.triangles[part as usize]));
+        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
         // Where there is no triangle across a side there is none of such a number.
         black_box(beyond.map(normal));
     }
@@ -113,7 +113,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
 }
 
 /// So many corners are placed one by one to find the box around them.
-const MOST_PLACED: usize = 192;
+const MAX_PLACED: usize = 192;
 
 /// The box around the vertices of parts placed at `pose`: of each where they are few, else of those
 /// that the tree finds to reach farthest.
@@ -126,7 +126,7 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     let Some(bounds) = tree.bounds() else { return Aabb::unbounded() };
     let size = BoundingSphere::around_box(bounds).farthest_from(&Point::origin());
     let corner = |&vertex: &u32| vertices[vertex as usize].coords;
-    if parts.len() * K <= MOST_PLACED {
+    if parts.len() * K <= MAX_PLACED {
         let turned = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );

@@ -1,4 +1,4 @@
-//! Meshes of triangles: filled in the plane, surfaces in space.
+//! Meshes of triangles: filled in 2D, surfaces in 3D.
 
 mod around;
 mod bends;
@@ -23,17 +23,17 @@ use crate::bvh::Triangles;
 use crate::math::{Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
 
-/// Triangles that share corners: a filled shape in the plane, a surface in space, open or closed.
+/// Triangles that share corners: a filled shape in 2D, a surface in 3D, open or closed.
 ///
 /// Parts are the triangles, in the order given, with the vertices and sides of
 /// [`Triangle`]; all is in the frame of the mesh. Triangles belong together by the positions of their
 /// corners, not by the indices: a mesh whose triangles each bring corners of their own is as smooth as
 /// one that shares them. Corners that lie in the middle of a side of another triangle do not join.
 ///
-/// **Sides.** In space the front of a triangle is the side that sees its corners counter-clockwise.
+/// **Sides.** In 3D the front of a triangle is the side that sees its corners counter-clockwise.
 /// A mesh has two sides, or one if asked by `one_sided`: then nothing touches it from behind, and what
 /// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside in the queries that all
-/// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In the plane
+/// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In 2D
 /// triangles are filled, and their winding means nothing.
 ///
 /// **Seams.** Contacts see the mesh as one surface (see [`Surface`](super::Surface)): at an edge or
@@ -65,11 +65,11 @@ pub struct TriMesh<N: Real, const D: usize> {
     vertices: Vec<Point<N, D>>,
     triangles: Vec<[u32; 3]>,
     topology: Topology,
-    /// By triangle: unit, on the front; zero without area. None in the plane.
+    /// By triangle: unit, on the front; zero without area. None in 2D.
     normals: Vec<Vector<N, D>>,
     bends: Bends,
     tree: BoxTree<N, D>,
-    /// In the order of the tree's blocks: what rays look at. None in the plane.
+    /// In the order of the tree's blocks: what rays look at. None in 2D.
     packed: Vec<Triangles>,
     /// The triangles are a cycle, and corners that belong together lie together.
     is_cycle: bool,
@@ -127,7 +127,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         Neighbor::Triangle { index, is_flipped }
     }
 
-    /// Every side with a length has a neighbour, so that a surface in space has no border. O(n).
+    /// Every side with a length has a neighbour, so that a surface in 3D has no border. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.each_side().all(|(triangle, side)| {

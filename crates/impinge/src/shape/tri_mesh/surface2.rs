@@ -1,4 +1,4 @@
-//! Filled triangles in the plane: which normals their union has at a side or a vertex.
+//! Filled triangles in 2D: which normals their union has at a side or a vertex.
 
 use super::super::seam::{is_flat, slack};
 use super::TriMesh;

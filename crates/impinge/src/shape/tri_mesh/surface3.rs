@@ -1,4 +1,4 @@
-//! Surfaces in space: which normals a mesh has at a face, an edge or a vertex.
+//! Surfaces in 3D: which normals a mesh has at a face, an edge or a vertex.
 
 use super::super::bend::{Bend, Shape};
 use super::super::seam::{Seam, is_across, leads_up_clearly, slack};

@@ -1,4 +1,4 @@
-//! What a mesh does differently in the plane and in space.
+//! What a mesh does differently in 2D and 3D.
 
 use core::fmt;
 

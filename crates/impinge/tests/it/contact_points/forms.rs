@@ -45,15 +45,15 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { precise: Some(precise), ..self }
     }
 
-    /// A solid that the reference knows, swollen by a radius.
-    fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, swelling: f64) -> Self {
+    /// A solid that the reference knows, inflated by a radius.
+    fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, inflation: f64) -> Self {
         let reach = solid.bounding_radius();
-        let reach = if reach.is_finite() { reach + swelling } else { 0.0 };
-        let text = format!("{solid:?} swollen by {swelling}");
+        let reach = if reach.is_finite() { reach + inflation } else { 0.0 };
+        let text = format!("{solid:?} inflated by {inflation}");
         Self {
-            beside: LEANING * swelling,
-            precise: with_all_digits(solid).map(|solid| solid.swollen(swelling)),
-            ..Self::new(shape, text, reach, vec![metered(solid, swelling)])
+            beside: LEANING * inflation,
+            precise: with_all_digits(solid).map(|solid| solid.inflated(inflation)),
+            ..Self::new(shape, text, reach, vec![metered(solid, inflation)])
         }
     }
 
@@ -81,9 +81,9 @@ fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>
     }
 }
 
-fn metered<const D: usize>(solid: &Solid<D>, swelling: f64) -> Off<D> {
+fn metered<const D: usize>(solid: &Solid<D>, inflation: f64) -> Off<D> {
     let meter = PointMeter::new(solid);
-    Box::new(move |point| meter.measure(point).0 - swelling)
+    Box::new(move |point| meter.measure(point).0 - inflation)
 }
 
 /// Which sizes solids have.
@@ -353,8 +353,8 @@ pub(crate) fn space<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> 
     if kind < COMMON {
         return common(kind, &mut draw);
     }
-    let (half, radius, swelling) = (draw.size::<N>(), draw.size::<N>(), draw.size::<N>());
-    let [h, r, s] = [half, radius, swelling].map(N::lit);
+    let (half, radius, inflation) = (draw.size::<N>(), draw.size::<N>(), draw.size::<N>());
+    let [h, r, s] = [half, radius, inflation].map(N::lit);
     let cylinder = Solid::Cylinder { half_height: half, radius };
     let cone = Solid::Cone { half_height: half, radius };
     let exact = [precise::Solid::cylinder(half, radius), precise::Solid::cone(half, radius)];
@@ -362,14 +362,14 @@ pub(crate) fn space<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> 
     match kind - COMMON {
         0 => Form::known(Cylinder::new(h, r), &cylinder, 0.0).with(exact_cylinder),
         1 => Form::known(Cone::new(h, r), &cone, 0.0).with(exact_cone),
-        2 => Form::known(Rounded::new(Cylinder::new(h, r), s), &cylinder, swelling)
-            .with(exact_cylinder.swollen(swelling)),
-        3 => Form::known(Rounded::new(Cone::new(h, r), s), &cone, swelling)
-            .with(exact_cone.swollen(swelling)),
+        2 => Form::known(Rounded::new(Cylinder::new(h, r), s), &cylinder, inflation)
+            .with(exact_cylinder.inflated(inflation)),
+        3 => Form::known(Rounded::new(Cone::new(h, r), s), &cone, inflation)
+            .with(exact_cone.inflated(inflation)),
         4 => hull(&mut draw, 0.0),
-        5 => hull(&mut draw, swelling),
+        5 => hull(&mut draw, inflation),
         6 => {
-            let sizes = [half * 4.0, N::lit(radius / 256.0).as_f64(), swelling * 4.0];
+            let sizes = [half * 4.0, N::lit(radius / 256.0).as_f64(), inflation * 4.0];
             Form::known(Cuboid::new(vector::<N, 3>(&sizes)), &Solid::cuboid(sizes), 0.0)
         }
         7 => floor(half * 8.0, |_| 0.0),
@@ -385,7 +385,7 @@ pub(crate) fn space<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> 
         }
         9 => {
             let heights = (0..9).map(|_| N::lit(draw.random.single(-0.5, 0.5))).collect();
-            let size = vector(&[half * 8.0, swelling, radius * 8.0]);
+            let size = vector(&[half * 8.0, inflation, radius * 8.0]);
             let field = HeightField::<N, 3>::new(3, 3, heights, size);
             let cells =
                 [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| field.triangles(row, column));
@@ -401,8 +401,8 @@ pub(crate) fn space<N: Real>(kind: usize, sizes: Sizes, random: &mut Random) -> 
                 (Isometry3::translation(r, s, h), ShapeHandle::new(Ball::new(r))),
                 (Isometry3::identity(), ShapeHandle::new(Cone::new(h, s))),
             ];
-            let ball = Solid::capsule([radius, swelling, half], [radius, swelling, half], radius);
-            let cone = Solid::Cone { half_height: half, radius: swelling };
+            let ball = Solid::capsule([radius, inflation, half], [radius, inflation, half], radius);
+            let cone = Solid::Cone { half_height: half, radius: inflation };
             Form::composite(Compound::new(children), &[ball, cone])
         }
     }
@@ -418,7 +418,7 @@ fn cross([a, b, c, _]: &[[f64; 3]; 4]) -> [f64; 3] {
 }
 
 /// Ten points about the origin.
-fn hull<N: Real>(draw: &mut Draw<'_>, swelling: f64) -> Form<N, 3> {
+fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     let sizes: [f64; 3] = std::array::from_fn(|_| draw.length::<N>());
     let corners: Vec<[f64; 3]> = (0..10)
         .map(|_| {
@@ -428,8 +428,8 @@ fn hull<N: Real>(draw: &mut Draw<'_>, swelling: f64) -> Form<N, 3> {
         .collect();
     let hull = ConvexHull::<N>::from_points(&corners.iter().map(point).collect::<Vec<_>>());
     let solid = Solid::polytope(hull.vertices().iter().map(wide).collect());
-    if swelling > 0.0 {
-        return Form::known(Rounded::new(hull, N::lit(swelling)), &solid, swelling);
+    if inflation > 0.0 {
+        return Form::known(Rounded::new(hull, N::lit(inflation)), &solid, inflation);
     }
     Form::known(hull, &solid, 0.0)
 }

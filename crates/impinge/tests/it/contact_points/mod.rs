@@ -5,6 +5,7 @@
 use crate::query_support;
 
 pub(crate) mod forms;
+pub(crate) mod turns;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,7 @@ use impinge::shape::{Cone, Cuboid, ShapeKind};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_reference::geometry::vector::scale;
 use impinge_reference::random::Random;
+use turns::{Turns, turned3, turns2, turns3};
 
 /// Points may be off by so many rounding errors of the size of the scene: both bounding radii, the
 /// distance of the origins, and that from the world's origin.
@@ -45,15 +47,11 @@ fn rounds() -> usize {
 const GAPS: [Option<f64>; 7] =
     [Some(0.05), Some(1e-5), Some(0.0), Some(-1e-6), Some(-1e-2), Some(-0.3), None];
 
-/// Ways to turn by a part of a quarter, and solids, of one dimension.
+/// Rotations and solids of one dimension.
 struct Stage<N: Real, R, const D: usize> {
     names: &'static [&'static str],
     form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
-    /// One of the turns that take axes to axes.
-    straight: fn(&mut Random) -> R,
-    /// By an angle about an axis across the second one.
-    tilt: fn(f64, &mut Random) -> R,
-    any: fn(&mut Random) -> R,
+    turns: Turns<R>,
 }
 
 /// What was found wrong of two kinds: how often of how many, the most, and where.
@@ -90,8 +88,8 @@ where
             0 => 0.0,
             _ => 10.0_f64.powf(-random.range(2.0, 17.0)),
         };
-        let aligned = (self.straight)(random) * (self.tilt)(lean, random);
-        let turn = if random.chance(0.25) { (self.any)(random) } else { aligned };
+        let aligned = (self.turns.straight)(random) * (self.turns.tilt)(lean, random);
+        let turn = if random.chance(0.25) { (self.turns.any)(random) } else { aligned };
         // Over the middle, all but over it, or anywhere.
         let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
         let reach = forms[0].reach + forms[1].reach;
@@ -108,7 +106,7 @@ where
             bring(&forms, &mut poses, N::lit(gap * forms[1].reach.max(0.1)));
         }
         if random.chance(0.25) {
-            let turn = (self.any)(random);
+            let turn = (self.turns.any)(random);
             for pose in &mut poses {
                 pose.translation.vector = turn.transform_vector(&pose.translation.vector);
                 pose.rotation = turn.clone() * pose.rotation.clone();
@@ -248,41 +246,18 @@ where
 }
 
 fn in_plane<N: Real>(seed: u64) {
-    let stage = Stage::<N, UnitComplex<N>, 2> {
-        names: &PLANE,
-        form: plane,
-        straight: |random| turned2([0.0, 0.5, 1.0, 1.5][random.below(4)] * core::f64::consts::PI),
-        tilt: |angle, random| turned2(*random.pick(&[angle, -angle])),
-        any: |random| turned2(random.range(-3.0, 3.0)),
-    };
+    let stage =
+        Stage::<N, UnitComplex<N>, 2> { names: &PLANE, form: plane, turns: turns2::<N, false>() };
     stage.check(seed);
-}
-
-fn turned2<N: Real>(angle: f64) -> UnitComplex<N> {
-    UnitComplex::from_cos_sin_unchecked(N::lit(angle.cos()), N::lit(angle.sin()))
 }
 
 fn in_space<N: Real>(seed: u64) {
     let stage = Stage::<N, UnitQuaternion<N>, 3> {
         names: &SPACE,
         form: space,
-        straight: |random| {
-            let axis = random.below(3);
-            let sign = *random.pick(&[0.0, 0.5, 1.0, -0.5]);
-            turned3(Vector::<f64, 3>::ith(axis, sign * core::f64::consts::PI))
-        },
-        tilt: |angle, random| {
-            let [x, y] = random.unit_vector::<2>();
-            turned3(Vector::<f64, 3>::new(x, 0.0, y) * angle)
-        },
-        any: |random| turned3(Vector::<f64, 3>::from(random.vector::<3>(3.0))),
+        turns: turns3::<N, false>(),
     };
     stage.check(seed);
-}
-
-fn turned3<N: Real>(by: Vector<f64, 3>) -> UnitQuaternion<N> {
-    let turn = UnitQuaternion::from_scaled_axis(by);
-    UnitQuaternion::new_normalize(turn.into_inner().cast::<f64>().coords.map(N::lit).into())
 }
 
 /// The point of a cone that stands upright in or on a solid with flat faces is its apex, however little its
@@ -294,7 +269,7 @@ fn apex<N: Real>() {
     let identity = Isometry3::<N>::identity();
     for lean in (0..17).map(|digits| 10.0_f64.powi(-digits) * 0.1).chain([0.0]) {
         let [x, z] = random.unit_vector::<2>();
-        let turn = turned3(Vector::<f64, 3>::new(x, 0.0, z) * lean);
+        let turn = turned3::<N, false>(Vector::<f64, 3>::new(x, 0.0, z) * lean);
         let tilted = Isometry3::from_parts(identity.translation, turn);
         let found = contact(&tilted, &cone, &identity, &cuboid, N::ZERO).expect("deep");
         let top = if found.normal.y > N::ZERO { N::ONE } else { -N::ONE };

@@ -10,7 +10,7 @@
 //! five, the others by what their normals separate and by where their points are. The area that points span is asked
 //! for in `case_manifolds.rs`.
 
-use crate::contact_points::forms;
+use crate::contact_points::{forms, turns};
 
 mod answers;
 mod laws;
@@ -23,12 +23,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use answers::{Batch, Lone, Points};
 use forms::{PLANE, SPACE, plane, space};
 use impinge::math::na::{UnitComplex, UnitQuaternion};
-use impinge::math::{AbstractRotation, Isometry, Real, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Real, Space};
 use impinge_reference::precise;
 use laws::{Judge, are_same, kept};
 use report::Report;
 use scene::{SCENES, Scene, Stage};
 use tolerances::is_known;
+use turns::{turns2, turns3};
 
 /// How many pairs of a world there are: part of a batch, one but for one, a batch, and one more.
 const BATCHES: [usize; 4] = [1, 7, 8, 9];
@@ -153,9 +154,7 @@ fn in_plane<N: Real>(seed: u64) {
     let stage = Stage::<N, UnitComplex<N>, 2> {
         names: &PLANE,
         form: plane,
-        straight: |random| turned2([0.0, 0.5, 1.0, 1.5][random.below(4)] * core::f64::consts::PI),
-        tilt: |angle, random| turned2(*random.pick(&[angle, -angle])),
-        any: |random| turned2(random.range(-3.0, 3.0)),
+        turns: turns2::<N, true>(),
         precise: |pose| {
             let turn = [pose.rotation.re, pose.rotation.im].map(N::as_f64);
             precise::Pose::from_complex(pose.translation.vector.map(N::as_f64).into(), turn)
@@ -164,40 +163,17 @@ fn in_plane<N: Real>(seed: u64) {
     stage.check(seed);
 }
 
-fn turned2<N: Real>(angle: f64) -> UnitComplex<N> {
-    UnitComplex::from_cos_sin_unchecked(without_dust(angle.cos()), without_dust(angle.sin()))
-}
-
-/// A component of a rotation; zero if it is nothing beside the rounding of 1.
-fn without_dust<N: Real>(x: f64) -> N {
-    if x.abs() < N::EPSILON.as_f64() / 64.0 { N::ZERO } else { N::lit(x) }
-}
-
 fn in_space<N: Real>(seed: u64) {
     let stage = Stage::<N, UnitQuaternion<N>, 3> {
         names: &SPACE,
         form: space,
-        straight: |random| {
-            let axis = random.below(3);
-            let sign = *random.pick(&[0.0, 0.5, 1.0, -0.5]);
-            turned3(Vector::<f64, 3>::ith(axis, sign * core::f64::consts::PI))
-        },
-        tilt: |angle, random| {
-            let [x, y] = random.unit_vector::<2>();
-            turned3(Vector::<f64, 3>::new(x, 0.0, y) * angle)
-        },
-        any: |random| turned3(Vector::<f64, 3>::from(random.vector::<3>(3.0))),
+        turns: turns3::<N, true>(),
         precise: |pose| {
             let turn = pose.rotation.coords.map(N::as_f64).into();
             precise::Pose::from_quaternion(pose.translation.vector.map(N::as_f64).into(), turn)
         },
     };
     stage.check(seed);
-}
-
-fn turned3<N: Real>(by: Vector<f64, 3>) -> UnitQuaternion<N> {
-    let turn = UnitQuaternion::from_scaled_axis(by);
-    UnitQuaternion::new_normalize(turn.into_inner().coords.map(without_dust::<N>).into())
 }
 
 #[test]

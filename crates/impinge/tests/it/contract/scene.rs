@@ -8,6 +8,7 @@ use impinge_reference::precise;
 use impinge_reference::random::Random;
 
 use super::forms::{Form, Sizes};
+use super::turns::Turns;
 
 /// How many scenes of each two kinds there are: each gap with each alignment.
 pub(crate) const SCENES: usize = GAPS.len() * 4;
@@ -51,11 +52,7 @@ const SETUPS: [Setup; 6] =
 pub(crate) struct Stage<N: Real, R, const D: usize> {
     pub(crate) names: &'static [&'static str],
     pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
-    /// One of the turns that take axes to axes.
-    pub(crate) straight: fn(&mut Random) -> R,
-    /// By an angle about an axis across the second one.
-    pub(crate) tilt: fn(f64, &mut Random) -> R,
-    pub(crate) any: fn(&mut Random) -> R,
+    pub(crate) turns: Turns<R>,
     /// The same place with all digits.
     pub(crate) precise: fn(&Isometry<N, R, D>) -> precise::Pose<D>,
 }
@@ -147,10 +144,10 @@ where
             Alignment::Hardly => N::EPSILON.as_f64() * 2.0_f64.powf(random.range(-4.0, 4.0)),
         };
         let turn = match alignment {
-            Alignment::Any => (self.any)(random),
-            Alignment::Aligned => (self.straight)(random),
+            Alignment::Any => (self.turns.any)(random),
+            Alignment::Aligned => (self.turns.straight)(random),
             Alignment::Nearly | Alignment::Hardly => {
-                (self.straight)(random) * (self.tilt)(lean, random)
+                (self.turns.straight)(random) * (self.turns.tilt)(lean, random)
             }
         };
         // Over the middle, all but over it, or anywhere.
@@ -172,7 +169,7 @@ where
                 poses.iter_mut().for_each(|pose| pose.translation.vector += far);
             }
             Setup::Turned => {
-                let turn = (self.any)(random);
+                let turn = (self.turns.any)(random);
                 for pose in poses {
                     pose.translation.vector = turn.transform_vector(&pose.translation.vector);
                     pose.rotation = turn.clone() * pose.rotation.clone();

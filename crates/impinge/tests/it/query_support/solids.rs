@@ -4,7 +4,7 @@ use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{Geometry, Shape, SupportMap};
 
-/// The hull of some points, swollen by a radius.
+/// The hull of some points, inflated by a radius.
 #[derive(Debug)]
 pub struct RoundHull<N: Real, const D: usize> {
     pub points: Vec<Point<N, D>>,
@@ -32,7 +32,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundHull<N, D> {
 }
 
 impl<N: Real, const D: usize> RoundHull<N, D> {
-    /// A box swollen by a radius.
+    /// A box inflated by a radius.
     pub fn cuboid(half_extents: &Vector<N, D>, rounding: N) -> Self {
         let corner = |signs: usize| {
             Point::from(Vector::<N, D>::from_fn(|axis, _| {

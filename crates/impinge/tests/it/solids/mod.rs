@@ -214,12 +214,12 @@ pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>>
     let pebble = move |p: &Vector<f64, D>| (p.component_div(&half).norm() - 1.0) * half.min();
     let pebble_of = shape::Ellipsoid::new(narrow(&half));
     solids.push(Solid::new("pebble", pebble_of, half.norm(), Box::new(pebble)));
-    let swollen = shape::Rounded::<N, D>::new(Cuboid::new(narrow(&half)), N::lit(thickness));
+    let inflated = shape::Rounded::<N, D>::new(Cuboid::new(narrow(&half)), N::lit(thickness));
     let level = move |p: &Vector<f64, D>| {
         let out = beyond(p, &half);
         out.map(|x| x.max(0.0)).norm() + out.max().min(0.0) - thickness
     };
-    solids.push(Solid::new("rounded box", swollen, half.norm() + thickness, Box::new(level)));
+    solids.push(Solid::new("rounded box", inflated, half.norm() + thickness, Box::new(level)));
     solids.push(club(rng));
     solids[2].center = (a + b) * 0.5;
     solids[3].center = -normal;

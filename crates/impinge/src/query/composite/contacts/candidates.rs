@@ -29,7 +29,7 @@ pub(super) struct Nearby<N: Real> {
 }
 
 /// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
-/// candidates those that no plane tells to be farther.
+/// candidates those that no plane proves to be farther.
 ///
 /// What is kept `around` must be of the same composite.
 pub(super) fn nearby<N: Space<D>, const D: usize>(
@@ -67,11 +67,11 @@ fn near_kept<N: Space<D>, const D: usize>(
     around: &mut Around<N, D>,
     aabb: &Aabb<N, D>,
 ) -> Nearby<N> {
-    let sight = probe.sight(around, aabb);
+    let query = probe.lower_bound_query(around, aabb);
     let (mut parts, mut near) = (PartPairs::new(), Near::new());
     let mut clearance = depth_in(aabb, probe.center());
     for (block, kept) in around.parts().chunks(LANES).enumerate() {
-        let bounds = around.tiles().get(block).map(|tiles| sight.bounds(tiles));
+        let bounds = around.tiles().get(block).map(|tiles| query.bounds(tiles));
         if let Some(bounds) = bounds {
             clearance = min(clearance, bounds.from_middle);
             // Beyond the last part are copies of it.

@@ -1,16 +1,16 @@
-//! The contacts of a convex solid and a chain of segments in the plane: the general way, which defines them,
+//! The contacts of a convex solid and a chain of segments in 2D: the general way, which defines them,
 //! with what all segments have in common worked out once, and nothing made of those beyond reach.
 
 use super::super::between::Between;
 use super::super::bounds::enclosing;
 use super::around::Around;
 use super::candidates::{depth_in, search_box};
-use super::facts::{Finding, Notes, Standing};
-use super::judge::{Case, Verdict, judge};
 use super::near::relative_slack;
+use super::normal_filter::{Case, FilteredNormal, filter_normal};
+use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use super::{
-    CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::convex::Separation;
@@ -20,7 +20,7 @@ use crate::query::separation::{ChainQuestion, Links, links};
 use crate::query::tiles::{LANES, Tiles};
 use crate::query::{ManifoldRequest, Pair, RawPoint};
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Siding,
+    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Sidedness,
     SupportMap, Surface,
 };
 
@@ -37,8 +37,8 @@ pub(crate) fn update_chain<N: Real>(
     request: &ManifoldRequest<N>,
 ) -> bool {
     let Some(mut chain) = Chain::new(between, request) else { return false };
-    let (mut findings, mut notes) = (Findings::new(), Notes::default());
-    if chain.find(contacts, &mut findings, &mut notes).is_none() {
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    if chain.find(contacts, &mut part_contacts, &mut arena).is_none() {
         return false;
     }
     let (reference, center) = (Some(chain.from), Some(chain.center));
@@ -48,10 +48,10 @@ pub(crate) fn update_chain<N: Real>(
         reference: &reference,
         request: &chain.request,
     };
-    if !is_settled(&findings) {
-        query.settle(&Scene::new(between, query.around), &mut findings, &mut notes);
+    if !is_settled(&part_contacts) {
+        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, reference, center, &findings, &notes);
+    contacts.conclude(request, reference, center, &part_contacts, &arena);
     true
 }
 
@@ -63,7 +63,7 @@ struct Chain<'b, 'a, N: Real> {
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: &'a dyn Surface<N, 2>,
-    siding: Option<Siding>,
+    sidedness: Option<Sidedness>,
     /// The chain's frame in that of the solid, put through one point.
     turn: Pose<N, 2>,
     /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it comes first.
@@ -153,7 +153,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             solid,
             parts,
             surface,
-            siding: surface.siding(),
+            sidedness: surface.sidedness(),
             turn,
             pose12,
             comes_first,
@@ -179,12 +179,12 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
-    /// Finds what is to be said of the segments within reach.
+    /// Finds the contacts of the segments within reach.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 2>,
-        findings: &mut Findings<N, 2>,
-        notes: &mut Notes<N, 2>,
+        part_contacts: &mut PartContacts<N, 2>,
+        arena: &mut Arena<N, 2>,
     ) -> Option<()> {
         let limit = self.request.prediction;
         let around = &mut contacts.around;
@@ -206,7 +206,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let kept = Kept { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
             if let Some(link) = self.link(&kept, *index, found) {
-                link.find(findings, &mut notes.points)?;
+                link.find(part_contacts, &mut arena.points)?;
             }
         }
         Some(())
@@ -223,7 +223,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
             return None;
         }
         let (parts, ends) = ([0, kept.parts[index]], kept.ends(index));
-        let known = KnownSegment::new(self.surface, self.siding, kept, ends);
+        let known = KnownSegment::new(self.surface, self.sidedness, kept, ends);
         if !known.faces(parts[1], &self.from) {
             return None;
         }
@@ -256,19 +256,21 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 }
 
 impl<N: Real> Link<'_, '_, '_, N> {
-    /// Finds what is to be said of the segment, if anything; `None` where that is left to the general way.
-    fn find(&self, findings: &mut Findings<N, 2>, points: &mut Points<N>) -> Option<()> {
+    /// Finds the contact of the segment, if there is one; `None` where that is left to the general way.
+    fn find(&self, part_contacts: &mut PartContacts<N, 2>, points: &mut Points<N>) -> Option<()> {
         let normal = self.chain.outward(&self.found.normal);
-        let verdict = self.verdict(&normal);
+        let filtered = self.filtered_normal(&normal);
         let start = points.len();
         let seen = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
-        let (of_piece, mut standing) = match &verdict {
-            Verdict::Nothing => return Some(()),
-            Verdict::Refused => (normal, Standing::Left),
-            Verdict::Admitted => (self.between(&normal, points)?, Standing::Own),
-            Verdict::Face(face) => (self.between(&seen(face), points)?, Standing::Own),
-            Verdict::Snapped(face) => (self.along(&seen(face), points)?, Standing::Snapped),
-            Verdict::Beyond(face) => (self.along(&seen(face), points)?, Standing::Beyond),
+        let (of_piece, mut status) = match &filtered {
+            FilteredNormal::Nothing => return Some(()),
+            FilteredNormal::Refused => (normal, PartStatus::Left),
+            FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
+            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, PartStatus::Own),
+            FilteredNormal::Snapped(face) => {
+                (self.along(&seen(face), points)?, PartStatus::Snapped)
+            }
+            FilteredNormal::Beyond(face) => (self.along(&seen(face), points)?, PartStatus::Beyond),
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
@@ -276,16 +278,24 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
-            (standing, lowest) = (Standing::Left, N::INFINITY);
+            (status, lowest) = (PartStatus::Left, N::INFINITY);
         }
         let piece = Piece { normal: of_piece, parts, points: start..points.len() };
-        let face = verdict.face().filter(|_| standing != Standing::Left);
-        findings.push(Finding { distance, normal, piece, lowest, standing, face, tolerance });
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
+        part_contacts.push(PartContact {
+            distance,
+            normal,
+            piece,
+            lowest,
+            status,
+            face,
+            tolerance,
+        });
         Some(())
     }
 
     /// What the chain says of a normal of the solid.
-    fn verdict(&self, normal: &Vector<N, 2>) -> Verdict<N, 2> {
+    fn filtered_normal(&self, normal: &Vector<N, 2>) -> FilteredNormal<N, 2> {
         let chain = self.chain;
         let middle = centroid(&[*self.segment.a(), *self.segment.b()]) + chain.origin.coords;
         let unnamed = FeatureId::Edge(0);
@@ -293,7 +303,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
         let (part, outward) = (self.parts[1], -chain.turn.inverse_vector(normal));
         let toward = chain.from - middle;
         let case = Case { part, feature: &feature, is_beside: false, outward, toward };
-        judge(Some(&self.known), &case)
+        filter_normal(Some(&self.known), &case)
     }
 
     /// The segment and the solid, in the order of kinds.

@@ -10,7 +10,7 @@
 use smallvec::SmallVec;
 
 use super::around::corners_of;
-use super::facts::{Finding, Standing};
+use super::part_contact::{PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::{Point, Real, Space, Vector, max, min};
 
@@ -32,7 +32,7 @@ enum Place {
 
 /// A face that is touched.
 struct Face<N: Real, const D: usize> {
-    finding: usize,
+    contact: usize,
     /// How far its part is from the solid.
     distance: N,
     /// Unit, on the side that is touched.
@@ -49,18 +49,18 @@ type Faces<N, const D: usize> = (SmallVec<[Face<N, D>; 8]>, SmallVec<[(u64, usiz
 /// Cost: O(n log n) in the number of faces that are touched.
 pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    findings: &mut [Finding<N, D>],
+    contacts: &mut [PartContact<N, D>],
 ) {
     // Between two composites it is not one solid that is on one side.
     if !scene.first_is_convex() {
         return;
     }
-    let (all, next) = (findings.iter(), findings.iter());
+    let (all, next) = (contacts.iter(), contacts.iter());
     let (all, next) = (all.filter_map(|one| one.face), next.filter_map(|one| one.face).skip(1));
     if all.zip(next).all(|(a, b)| are_alike(&a, &b)) {
         return;
     }
-    let (faces, mut corners) = faces_of(scene, findings);
+    let (faces, mut corners) = faces_of(scene, contacts);
     for star in corners.chunk_by_mut(|a, b| a.0 == b.0) {
         if star.len() > MAX_HIDING {
             let distance = |&(_, face): &(u64, usize)| faces[face].distance.as_f64();
@@ -69,7 +69,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
         for (at, (_, first)) in star.iter().enumerate().take(MAX_HIDING) {
             for (_, second) in &star[at + 1..] {
                 if let Some(hidden) = hidden_of(&faces[*first], &faces[*second]) {
-                    findings[hidden].standing = Standing::Left;
+                    contacts[hidden].status = PartStatus::Left;
                 }
             }
         }
@@ -79,12 +79,12 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
 /// The faces that are touched.
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    findings: &[Finding<N, D>],
+    contacts: &[PartContact<N, D>],
 ) -> Faces<N, D> {
     let (mut faces, mut shared) = Faces::default();
-    faces.reserve(findings.len());
-    shared.reserve(3 * findings.len());
-    for (finding, Finding { distance, face, piece, .. }) in findings.iter().enumerate() {
+    faces.reserve(contacts.len());
+    shared.reserve(3 * contacts.len());
+    for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };
@@ -92,7 +92,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.map(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, faces.len())));
-        faces.push(Face { finding, distance: *distance, normal, corners });
+        faces.push(Face { contact, distance: *distance, normal, corners });
     }
     shared.sort_unstable();
     (faces, shared)
@@ -114,7 +114,7 @@ fn hidden_of<N: Real, const D: usize>(a: &Face<N, D>, b: &Face<N, D>) -> Option<
         _ => return None,
     };
     // What is farther hides nothing, so that the prediction never changes what overlaps.
-    (front.distance <= max(back.distance, N::ZERO)).then_some(back.finding)
+    (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 
 /// Where a part lies to the plane of another.

@@ -1,7 +1,7 @@
 //! Contacts of composites: those of the parts, as the whole has them.
 //!
-//! For every two parts within reach [`facts`] finds their separation and asks the surfaces, if there
-//! are any, whether the normal is one that the whole has there ([`judge`]): if it is that of a seam,
+//! For every two parts within reach [`part_contact`] finds their separation and asks the surfaces, if there
+//! are any, whether the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam,
 //! only contacts with the face of the part count. [`hidden`] drops contacts from behind a face that is
 //! touched from its front, [`resolve`] those that another contact
 //! explains, and makes sure that solids that overlap have a contact. What is left is merged into flat
@@ -15,14 +15,14 @@ mod candidates;
 mod chain;
 #[cfg(test)]
 mod chain_tests;
-mod facts;
 mod hidden;
-mod judge;
+mod lower_bounds;
 mod near;
+mod normal_filter;
 mod over;
+mod part_contact;
 mod resolve;
 mod scene;
-mod sight;
 mod surface_ball;
 #[cfg(test)]
 mod surface_tests;
@@ -33,9 +33,9 @@ use smallvec::SmallVec;
 use self::around::Around;
 use self::candidates::Nearby;
 pub(crate) use self::chain::update_chain;
-use self::facts::{Finding, Notes, Reference, Standing};
 use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
+use self::part_contact::{Arena, PartContact, PartStatus, Reference};
 use self::scene::Scene;
 pub(crate) use self::surface_ball::update_on_surface;
 use super::between::Between;
@@ -124,8 +124,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
-    /// and features stay keep their numbers. Other shapes than before must be told of by
-    /// [`Self::forget_shapes`].
+    /// and features stay keep their numbers. Other shapes than before have to be announced
+    /// by [`Self::forget_shapes`].
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
@@ -152,9 +152,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let reference = center.map(|center| advanced(between, &way, center));
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
-        let mut notes = Notes::default();
-        let findings = query.findings(&nearby, &mut notes);
-        self.conclude(request, reference, center, &findings, &notes);
+        let mut arena = Arena::default();
+        let contacts = query.part_contacts(&nearby, &mut arena);
+        self.conclude(request, reference, center, &contacts, &arena);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
@@ -164,42 +164,42 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
         reference: Reference<N, D>,
         center: Reference<N, D>,
-        findings: &[Finding<N, D>],
-        notes: &Notes<N, D>,
+        contacts: &[PartContact<N, D>],
+        arena: &Arena<N, D>,
     ) {
-        let overlaps = findings.iter().any(|finding| finding.distance <= N::ZERO);
+        let overlaps = contacts.iter().any(|contact| contact.distance <= N::ZERO);
         self.reference = if overlaps { reference } else { center };
-        let tolerances = findings.iter().map(|found| found.tolerance);
-        let tolerance = tolerances.fold(notes.rounding, max);
-        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(findings.len());
-        for found in findings.iter().filter(|found| found.standing != Standing::Left) {
+        let tolerances = contacts.iter().map(|found| found.tolerance);
+        let tolerance = tolerances.fold(arena.rounding, max);
+        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(contacts.len());
+        for found in contacts.iter().filter(|found| found.status != PartStatus::Left) {
             pieces.push(found.piece.clone());
         }
         if !pieces.is_empty() && self.patches.capacity() == 0 {
             // Most pairs never have more than one: what lies close together is read faster.
             self.patches.reserve_exact(1);
         }
-        let merging = Merging { request, tolerance, pieces: &pieces, points: &notes.points };
+        let merging = Merging { request, tolerance, pieces: &pieces, points: &arena.points };
         merge(&merging, &mut self.patches, &mut self.ids);
     }
 }
 
 /// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
-fn is_settled<N: Real, const D: usize>(findings: &[Finding<N, D>]) -> bool {
+fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
-    for finding in findings {
-        let is_alike = match (face, finding.face) {
+    for contact in contacts {
+        let is_alike = match (face, contact.face) {
             (Some(before), Some(own)) => are_alike(&before, &own),
             _ => true,
         };
-        if !(is_alike && finding.standing == Standing::Own) {
+        if !(is_alike && contact.status == PartStatus::Own) {
             return false;
         }
-        face = finding.face.or(face);
-        (distance, lowest) = (min(distance, finding.distance), min(lowest, finding.lowest));
+        face = contact.face.or(face);
+        (distance, lowest) = (min(distance, contact.distance), min(lowest, contact.lowest));
     }
-    findings.is_empty() || lowest <= max(distance, N::ZERO)
+    contacts.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
 /// The middle of a convex first shape, in the frame of the second.
@@ -253,7 +253,7 @@ struct Query<'a, N: Real, const D: usize> {
     request: &'a ManifoldRequest<N>,
 }
 
-type Findings<N, const D: usize> = SmallVec<[Finding<N, D>; 8]>;
+type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
 
 /// Beside more parts than these room is made for all that may be found, so many points at each.
 const MANY_PARTS: usize = 32;
@@ -261,12 +261,12 @@ const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     /// What some pairs of parts say; which of it holds is settled.
-    fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
+    fn part_contacts(&self, nearby: &Nearby<N>, arena: &mut Arena<N, D>) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
-        let (mut findings, mut slot) = (Findings::new(), None);
+        let (mut contacts, mut slot) = (PartContacts::new(), None);
         if nearby.parts.len() > MANY_PARTS {
-            findings.reserve(nearby.parts.len());
-            notes.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+            contacts.reserve(nearby.parts.len());
+            arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
         }
         if let Some(surface) = scene.surfaces[1] {
             nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
@@ -274,27 +274,27 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
             let parts = nearby.parts[index];
             let placed = scene.pair_in(&mut slot, parts);
-            findings.extend(facts::finding(&scene, placed, parts, self, gap, notes));
+            contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, arena));
         };
         if !scene.each_gap(nearby, self.request.prediction, &mut find) {
             (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
-        self.settle(&scene, &mut findings, notes);
-        findings
+        self.settle(&scene, &mut contacts, arena);
+        contacts
     }
 
-    /// Settles which of the findings hold.
+    /// Settles which of the contacts hold.
     fn settle(
         &self,
         scene: &Scene<'_, N, D>,
-        found: &mut [Finding<N, D>],
-        notes: &mut Notes<N, D>,
+        found: &mut [PartContact<N, D>],
+        arena: &mut Arena<N, D>,
     ) {
-        resolve::resolve(scene, found, notes);
-        for finding in found.iter_mut().filter(|finding| finding.is_owing()) {
+        resolve::resolve(scene, found, arena);
+        for contact in found.iter_mut().filter(|contact| contact.is_owing()) {
             let (piece, lowest) =
-                facts::nearest_points(scene, finding.parts(), self.request, notes);
-            finding.note(piece, lowest);
+                part_contact::nearest_points(scene, contact.parts(), self.request, arena);
+            contact.set_piece(piece, lowest);
         }
     }
 }
@@ -414,11 +414,11 @@ fn deepest_in_general<N: Space<D>, const D: usize>(
     let reference = middle_of_first(between);
     let query = Query { between, around: None, reference: &reference, request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
-    let mut notes = Notes::default();
-    let findings = query.findings(&nearby, &mut notes);
-    let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
-    deepest_of(kept.flat_map(|Finding { piece, .. }| {
-        notes.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
+    let mut arena = Arena::default();
+    let contacts = query.part_contacts(&nearby, &mut arena);
+    let kept = contacts.iter().filter(|contact| contact.status != PartStatus::Left);
+    deepest_of(kept.flat_map(|PartContact { piece, .. }| {
+        arena.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
     }))
 }
 

@@ -6,7 +6,7 @@
 
 use super::super::between::Between;
 use super::around::Around;
-use super::sight::Sight;
+use super::lower_bounds::LowerBoundQuery;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::query::Pair;
@@ -67,9 +67,13 @@ impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
         &self.center
     }
 
-    /// What the solid sees of parts that are kept by their corners, in a box.
-    pub(super) fn sight(&self, around: &mut Around<N, D>, within: &Aabb<N, D>) -> Sight<N, D> {
-        Sight {
+    /// The query of parts that are kept by their corners, in a box.
+    pub(super) fn lower_bound_query(
+        &self,
+        around: &mut Around<N, D>,
+        within: &Aabb<N, D>,
+    ) -> LowerBoundQuery<N, D> {
+        LowerBoundQuery {
             center: self.center.coords,
             turn: self.pose21.rotation,
             half: around.half(self.map),
@@ -230,8 +234,8 @@ mod tests {
         let everywhere = Aabb::new(P3::from([-9.0; 3]), P3::from([9.0; 3]));
         let mut around = Around::default();
         assert!(around.reaches(&mesh, &everywhere), "one triangle is kept");
-        let sight = probe.sight(&mut around, &everywhere);
-        let found = sight.bounds(&around.tiles()[0]);
+        let query = probe.lower_bound_query(&mut around, &everywhere);
+        let found = query.bounds(&around.tiles()[0]);
         let is_beyond = found.near & 1 == 0;
         assert_eq!(found.near == u8::MAX, !is_beyond, "the one stands for all eight");
         let together = Bound { from_middle: found.from_middle, is_beyond };
@@ -259,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_told_from_triangles_below_it() {
+    fn a_box_is_separated_from_triangles_below_it() {
         let below = |y: f64| [P3::new(-3.0, y, -3.0), P3::new(3.0, y, -3.0), P3::new(0.0, y, 4.0)];
         let cuboid = Cuboid::new(Vector::<f64, 3>::new(0.5, 0.5, 0.5));
         for near in bounds(&cuboid, below(-0.6), 0.2) {

@@ -1,6 +1,6 @@
 //! Where on a triangle a ball touches, where no rounding can change the answer.
 //!
-//! What a contact lies on is in general told by the supporting features of a manifold. For a ball over a triangle
+//! What a contact lies on follows in general from the supporting features of a manifold. For a ball over a triangle
 //! that is not thin it is plain to see: the middle lies over the inside, beside one side or beside
 //! one corner, each by far more than what counts as rounding.
 
@@ -10,14 +10,14 @@ use crate::shape::{FeatureId, Triangle};
 /// So many tolerances from the border of a region its answer is certain.
 const CERTAIN: f64 = 64.0;
 /// The least ratio of a triangle's height to its longest side.
-const LEAST_HEIGHT: f64 = 1.0 / 32.0;
+const MIN_HEIGHT: f64 = 1.0 / 32.0;
 
-/// In the plane triangles are filled.
+/// In 2D triangles are filled.
 pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Option<FeatureId> {
     None
 }
 
-/// The feature of a triangle in space that is nearest to the middle of a ball, as supporting features would name
+/// The feature of a triangle in 3D that is nearest to the middle of a ball, as supporting features would name
 /// it; of its two faces the one that the ball is on. `None` where that is not certain.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
@@ -32,7 +32,7 @@ pub(crate) fn over3<N: Real>(
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
     // Written so that what is no number is not certain.
-    let is_plain = area > N::lit(LEAST_HEIGHT) * longest * longest && longest > room;
+    let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
     if !is_plain {
         return None;
     }

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::facts::{Finding, Notes, Standing};
+use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::{Real, Space, Vector, max};
 
@@ -33,16 +33,17 @@ struct Ways<N: Real, const D: usize>(SmallVec<[Way<N, D>; MAX_WAYS]>);
 /// solids that overlap always have a contact.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    findings: &mut [Finding<N, D>],
-    notes: &mut Notes<N, D>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
 ) {
-    super::hidden::drop_hidden(scene, findings);
-    let is_asked =
-        |finding: &Finding<N, D>| matches!(finding.standing, Standing::Snapped | Standing::Beyond);
-    if findings.iter().any(is_asked) {
-        leave_explained(scene, findings, notes);
+    super::hidden::drop_hidden(scene, contacts);
+    let is_asked = |contact: &PartContact<N, D>| {
+        matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
+    };
+    if contacts.iter().any(is_asked) {
+        leave_explained(scene, contacts, arena);
     }
-    keep_one(findings, notes);
+    keep_one(contacts, arena);
 }
 
 /// Leaves out contacts with faces that other contacts explain, first such as are none beyond a ridge.
@@ -50,49 +51,49 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
 /// Cost: O(n log n) in the number of contacts, each held against a limited number of ways.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    findings: &mut [Finding<N, D>],
-    notes: &Notes<N, D>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &Arena<N, D>,
 ) {
-    use Standing::{Beyond, Own, Snapped};
+    use PartStatus::{Beyond, Own, Snapped};
     for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
-        let known = shallowest_first(findings, |standing| explaining.contains(&standing));
+        let known = shallowest_first(contacts, |status| explaining.contains(&status));
         let (mut known, mut ways) = (known.into_iter().peekable(), Ways(SmallVec::new()));
-        for index in shallowest_first(findings, |standing| standing == asked) {
-            let is_shallower = |&other: &usize| depth(&findings[other]) <= depth(&findings[index]);
+        for index in shallowest_first(contacts, |status| status == asked) {
+            let is_shallower = |&other: &usize| depth(&contacts[other]) <= depth(&contacts[index]);
             while let Some(other) = known.next_if(is_shallower) {
-                ways.note(&findings[other]);
+                ways.add(&contacts[other]);
             }
-            if is_explained(scene, &findings[index], &ways, notes) {
-                findings[index].standing = Standing::Left;
+            if is_explained(scene, &contacts[index], &ways, arena) {
+                contacts[index].status = PartStatus::Left;
             } else {
-                ways.note(&findings[index]);
+                ways.add(&contacts[index]);
             }
         }
     }
 }
 
 /// How deep a contact is.
-fn depth<N: Real, const D: usize>(finding: &Finding<N, D>) -> N {
-    -finding.lowest
+fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
+    -contact.lowest
 }
 
-/// The findings of some standings.
+/// The contacts with some statuses.
 fn shallowest_first<N: Real, const D: usize>(
-    findings: &[Finding<N, D>],
-    is_meant: impl Fn(Standing) -> bool,
+    contacts: &[PartContact<N, D>],
+    is_meant: impl Fn(PartStatus) -> bool,
 ) -> SmallVec<[usize; 16]> {
-    let mut order = SmallVec::<[usize; 16]>::with_capacity(findings.len());
-    order.extend((0..findings.len()).filter(|&index| is_meant(findings[index].standing)));
-    // Findings come in the order of their parts.
-    order.sort_by(|&a, &b| depth(&findings[a]).as_f64().total_cmp(&depth(&findings[b]).as_f64()));
+    let mut order = SmallVec::<[usize; 16]>::with_capacity(contacts.len());
+    order.extend((0..contacts.len()).filter(|&index| is_meant(contacts[index].status)));
+    // Contacts come in the order of their parts.
+    order.sort_by(|&a, &b| depth(&contacts[a]).as_f64().total_cmp(&depth(&contacts[b]).as_f64()));
     order
 }
 
 impl<N: Real, const D: usize> Ways<N, D> {
-    /// Takes note of a contact that is no shallower than those before, in the place of one along about its
+    /// Adds a contact that is no shallower than those before, in the place of one along about its
     /// normal; or, where there are too many, of the one that was first.
-    fn note(&mut self, finding: &Finding<N, D>) {
-        let (normal, depth) = (finding.piece.normal, depth(finding));
+    fn add(&mut self, contact: &PartContact<N, D>) {
+        let (normal, depth) = (contact.piece.normal, depth(contact));
         if depth <= N::ZERO {
             return;
         }
@@ -110,23 +111,23 @@ impl<N: Real, const D: usize> Ways<N, D> {
 /// is not beyond a ridge one that leads elsewhere.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    finding: &Finding<N, D>,
+    contact: &PartContact<N, D>,
     ways: &Ways<N, D>,
-    notes: &Notes<N, D>,
+    arena: &Arena<N, D>,
 ) -> bool {
-    let normal = finding.piece.normal;
-    if depth(finding) <= finding.tolerance {
+    let normal = contact.piece.normal;
+    if depth(contact) <= contact.tolerance {
         return false;
     }
-    let is_beyond = finding.standing == Standing::Beyond;
+    let is_beyond = contact.status == PartStatus::Beyond;
     // A way that is shorter than the parts are deep in each other does not part them.
-    let least = -finding.distance - finding.tolerance;
+    let least = -contact.distance - contact.tolerance;
     let is_asked = |way: &&Way<N, D>| {
         way.depth >= least && (is_beyond || way.normal.dot(&normal) < N::lit(ALIKE))
     };
     // The plane that is known to part the two best may do so well enough once they are moved.
-    let rest = |way: &Way<N, D>| finding.distance + finding.normal.dot(&way.normal) * way.depth;
-    let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -finding.tolerance);
+    let rest = |way: &Way<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
+    let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -contact.tolerance);
     for way in ways.0.iter().filter(is_asked) {
         if rest(way) > room {
             return true;
@@ -134,18 +135,18 @@ fn is_explained<N: Space<D>, const D: usize>(
         asked.push(way);
     }
     !asked.is_empty() && {
-        let points = &notes.points[finding.piece.points.clone()];
+        let points = &arena.points[contact.piece.points.clone()];
         let mut placed = None;
         asked.into_iter().any(|way| {
             let shift = way.normal * way.depth;
             // A point of the part that is still well within the solid says that they are not parted.
             let is_held = points.iter().any(|point| {
                 let moved = point.point1 + normal * point.distance + shift;
-                scene.is_within(&moved, N::TWO * finding.tolerance)
+                scene.is_within(&moved, N::TWO * contact.tolerance)
             });
             !is_held && {
-                let placed = placed.get_or_insert_with(|| scene.pair(finding.parts()));
-                placed.is_parted(&shift, finding.tolerance)
+                let placed = placed.get_or_insert_with(|| scene.pair(contact.parts()));
+                placed.is_parted(&shift, contact.tolerance)
             }
         })
     }
@@ -153,37 +154,37 @@ fn is_explained<N: Space<D>, const D: usize>(
 
 /// If the contacts that hold are farther than the nearest two parts, adds that of these. What is
 /// apart by rounding only, where parts touch, is made to touch.
-fn keep_one<N: Real, const D: usize>(findings: &mut [Finding<N, D>], notes: &mut Notes<N, D>) {
-    let nearest = least_of(findings, |finding| Some(finding.distance));
+fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: &mut Arena<N, D>) {
+    let nearest = least_of(contacts, |contact| Some(contact.distance));
     let Some(nearest) = nearest else { return };
     let (least, tolerance) =
-        (max(findings[nearest].distance, N::ZERO), findings[nearest].tolerance);
-    let kept = least_of(findings, |finding| {
-        (finding.standing != Standing::Left).then_some(finding.lowest)
+        (max(contacts[nearest].distance, N::ZERO), contacts[nearest].tolerance);
+    let kept = least_of(contacts, |contact| {
+        (contact.status != PartStatus::Left).then_some(contact.lowest)
     });
-    match kept.map(|index| (index, findings[index].lowest)) {
+    match kept.map(|index| (index, contacts[index].lowest)) {
         Some((_, lowest)) if lowest <= least => {}
         Some((index, lowest)) if lowest <= least + tolerance => {
-            for point in &mut notes.points[findings[index].piece.points.clone()] {
+            for point in &mut arena.points[contacts[index].piece.points.clone()] {
                 point.distance = max(point.distance - lowest, N::ZERO) + least;
             }
-            findings[index].lowest = least;
+            contacts[index].lowest = least;
         }
         _ => {
             // Points that it has are of a face's normal, and farther.
-            findings[nearest].standing = Standing::Own;
-            findings[nearest].piece.points = 0..0;
+            contacts[nearest].status = PartStatus::Own;
+            contacts[nearest].piece.points = 0..0;
         }
     }
 }
 
-/// The index of the least of what is said of the findings, the first of equals.
+/// The index of the least of some number of the contacts, the first of equals.
 fn least_of<N: Real, const D: usize>(
-    findings: &[Finding<N, D>],
-    value: impl Fn(&Finding<N, D>) -> Option<N>,
+    contacts: &[PartContact<N, D>],
+    value: impl Fn(&PartContact<N, D>) -> Option<N>,
 ) -> Option<usize> {
-    let all = findings.iter().enumerate();
-    let said = all.filter_map(|(index, finding)| Some((index, value(finding)?)));
+    let all = contacts.iter().enumerate();
+    let said = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
     let least = said.reduce(|best, next| if next.1 < best.1 { next } else { best });
     least.map(|(index, _)| index)
 }

@@ -1,21 +1,21 @@
-//! The contacts of a ball and a surface of triangles in space: the general way, which defines them, with what
+//! The contacts of a ball and a surface of triangles in 3D: the general way, which defines them, with what
 //! all triangles have in common worked out once, and nothing made of those that others hide.
 
 use super::super::between::Between;
 use super::super::bounds::enclosing;
 use super::around::Around;
-use super::facts::{self, Finding, Notes, Standing, is_beside, is_certain, of_ball};
-use super::judge::{Case, Verdict, faces, judge};
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::over::over3;
+use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_certain, of_ball};
 use super::scene::Scene;
 use super::{
-    CompositeContacts, Findings, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
 };
 use crate::bounding_volume::Aabb;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::query::manifold_build::Piece;
-use crate::query::separation::{BallQuestion, Sighted, ball_triangle, sighted};
+use crate::query::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
 use crate::query::tiles::{LANES, PartGap};
 use crate::query::{ManifoldRequest, Pair};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
@@ -23,7 +23,7 @@ use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, T
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
 /// Most of these cost no more than a look at whether their box meets the ball's.
-const MOST_ROOMY: usize = 5 * LANES;
+const MAX_ROOMY: usize = 5 * LANES;
 
 /// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general way,
 /// as of all other solids.
@@ -33,16 +33,18 @@ pub(crate) fn update_on_surface<N: Real>(
     request: &ManifoldRequest<N>,
 ) -> bool {
     let Some(mut rolling) = Rolling::new(between, request) else { return false };
-    let (mut findings, mut notes) = (Findings::new(), Notes::default());
-    let Some(rounding) = rolling.find(contacts, &mut findings, &mut notes) else { return false };
-    notes.rounding = rounding;
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    let Some(rounding) = rolling.find(contacts, &mut part_contacts, &mut arena) else {
+        return false;
+    };
+    arena.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
-    if !is_settled(&findings) {
+    if !is_settled(&part_contacts) {
         let around = Some(&contacts.around);
         let query = Query { between, around, reference: &reference, request: &rolling.request };
-        query.settle(&Scene::new(between, around), &mut findings, &mut notes);
+        query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, reference, center, &findings, &notes);
+    contacts.conclude(request, reference, center, &part_contacts, &arena);
     true
 }
 
@@ -86,17 +88,17 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     fn box_within(&self, around: &mut Around<N, 3>) -> Option<Aabb<N, 3>> {
         let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
-        let is_kept = around.reaches_with(self.parts, &aabb, MOST_ROOMY);
+        let is_kept = around.reaches_with(self.parts, &aabb, MAX_ROOMY);
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
-    /// Finds what is to be said of the triangles that are not hidden; answers what counts as rounding among
+    /// Finds the contacts of the triangles that are not hidden; answers what counts as rounding among
     /// the others, or `None` where they matter.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,
-        findings: &mut Findings<N, 3>,
-        notes: &mut Notes<N, 3>,
+        part_contacts: &mut PartContacts<N, 3>,
+        arena: &mut Arena<N, 3>,
     ) -> Option<N> {
         let within = self.box_within(&mut contacts.around)?;
         let question = BallQuestion {
@@ -107,7 +109,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             limit: self.request.prediction,
             within,
         };
-        let seen = sighted(&question, self.surface.has_plain_seams());
+        let seen = near_triangles(&question, self.surface.has_plain_seams());
         // What is outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, seen.from_middle);
@@ -119,29 +121,30 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             |[near, hidden]| near & !hidden,
             |index| {
                 let one = self.seen(around, index)?;
-                self.add(&one, around, (&mut *findings, &mut *notes));
+                self.add(&one, around, (&mut *part_contacts, &mut *arena));
                 Some(())
             },
         )?;
-        self.rounding_of_hidden(&seen, around, findings)
+        self.rounding_of_hidden(&seen, around, part_contacts)
     }
 
     /// What counts as rounding of the triangles that are hidden, if that matters; `None` where one of them
     /// may be the nearest of all that can be touched.
     fn rounding_of_hidden(
         &self,
-        seen: &Sighted<N>,
+        seen: &NearTriangles<N>,
         around: &Around<N, 3>,
-        findings: &[Finding<N, 3>],
+        part_contacts: &[PartContact<N, 3>],
     ) -> Option<N> {
-        let least = findings.iter().fold(N::INFINITY, |least, found| min(least, found.distance));
+        let least =
+            part_contacts.iter().fold(N::INFINITY, |least, found| min(least, found.distance));
         let from_middle = max(least + self.ball.radius(), N::ZERO);
         let is_nearer = from_middle * from_middle < seen.hidden_from;
         if !is_nearer && seen.hidden_from < N::INFINITY {
             return None;
         }
         let mut most = N::ZERO;
-        if findings.len() > 1 {
+        if part_contacts.len() > 1 {
             each_lane(
                 seen,
                 |[_, hidden]| hidden,
@@ -167,17 +170,17 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Seen { part: around.parts()[index], triangle, tolerance })
     }
 
-    /// Adds what is to be said of a triangle, if anything.
+    /// Adds the contact of a triangle, if there is one.
     fn add(
         &self,
         seen: &Seen<N>,
         around: &Around<N, 3>,
-        (findings, notes): (&mut Findings<N, 3>, &mut Notes<N, 3>),
+        (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
     ) {
         let kind = Kind::Triangle(&seen.triangle);
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
         let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
-        let found = self.plainly(seen, &found, notes).unwrap_or_else(|| {
+        let found = self.plainly(seen, &found, arena).unwrap_or_else(|| {
             let scene = Scene::new(self.between, Some(around));
             let parts = [0, seen.part];
             let query = Query {
@@ -187,52 +190,57 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
                 request: &self.request,
             };
             let gap = PartGap::of(&found);
-            facts::finding(&scene, &scene.pair(parts), parts, &query, Some(&gap), notes)
+            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&gap), arena)
         });
-        findings.extend(found);
+        part_contacts.extend(found);
     }
 
-    /// What is to be said of a triangle over which the ball plainly is, or beside which; `None` of others.
+    /// The contact of a triangle over which the ball plainly is, or beside which; `None` of others.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn plainly(
         &self,
         seen: &Seen<N>,
         found: &Separation<N, 3>,
-        notes: &mut Notes<N, 3>,
-    ) -> Option<Option<Finding<N, 3>>> {
+        arena: &mut Arena<N, 3>,
+    ) -> Option<Option<PartContact<N, 3>>> {
         let over = over3(&seen.triangle, &Point::origin(), seen.tolerance)?;
         if !found.distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
             return Some(None);
         }
-        let verdict = self.verdict(seen, found, over);
-        let (normal, standing) = match &verdict {
-            Verdict::Face(face) => (-self.turn.vector(face), Standing::Own),
-            Verdict::Admitted => (found.normal, Standing::Own),
-            Verdict::Refused => (found.normal, Standing::Left),
-            Verdict::Snapped(_) | Verdict::Beyond(_) if is_beside(Some(over)) => {
-                (found.normal, Standing::Left)
+        let filtered = self.filtered_normal(seen, found, over);
+        let (normal, status) = match &filtered {
+            FilteredNormal::Face(face) => (-self.turn.vector(face), PartStatus::Own),
+            FilteredNormal::Admitted => (found.normal, PartStatus::Own),
+            FilteredNormal::Refused => (found.normal, PartStatus::Left),
+            FilteredNormal::Snapped(_) | FilteredNormal::Beyond(_) if is_beside(Some(over)) => {
+                (found.normal, PartStatus::Left)
             }
             _ => return None,
         };
-        let start = notes.points.len();
+        let start = arena.points.len();
         let mut lowest = N::INFINITY;
-        if standing == Standing::Own {
-            if !is_certain(over, &verdict) {
+        if status == PartStatus::Own {
+            if !is_certain(over, &filtered) {
                 return None;
             }
             let mut point = of_ball(&Separation { normal, ..*found }, over);
             point.point1 = Point::origin() + point.point1.coords;
             lowest = point.distance;
-            notes.points.push(point);
+            arena.points.push(point);
         }
-        let piece = Piece { normal, parts: [0, seen.part], points: start..notes.points.len() };
-        let face = verdict.face().filter(|_| standing != Standing::Left);
+        let piece = Piece { normal, parts: [0, seen.part], points: start..arena.points.len() };
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
         let (distance, normal, tolerance) = (found.distance, found.normal, seen.tolerance);
-        Some(Some(Finding { distance, normal, piece, lowest, standing, face, tolerance }))
+        Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
     /// What the surface says of the way from the ball to a triangle.
-    fn verdict(&self, seen: &Seen<N>, found: &Separation<N, 3>, over: FeatureId) -> Verdict<N, 3> {
+    fn filtered_normal(
+        &self,
+        seen: &Seen<N>,
+        found: &Separation<N, 3>,
+        over: FeatureId,
+    ) -> FilteredNormal<N, 3> {
         let middle = seen.triangle.center() + self.between.pose21.translation;
         let case = Case {
             part: seen.part,
@@ -241,13 +249,13 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             outward: -self.turn.inverse_vector(&found.normal),
             toward: self.from - middle,
         };
-        judge(Some(self.surface), &case)
+        filter_normal(Some(self.surface), &case)
     }
 }
 
 /// Visits some of the triangles by their numbers, in order, given the bits of each eight.
 fn each_lane<N>(
-    seen: &Sighted<N>,
+    seen: &NearTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,
     mut visit: impl FnMut(usize) -> Option<()>,
 ) -> Option<()> {

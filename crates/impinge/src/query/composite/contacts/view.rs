@@ -95,7 +95,7 @@ fn turning<N: Space<D>, const D: usize>(
     is_face_normal(pair.first, part1, &outward1).then_some(false)
 }
 
-/// A surface has the normal, up to rounding, on a face. A line in space has no face.
+/// A surface has the normal, up to rounding, on a face. A line in 3D has no face.
 fn is_face_normal<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     part: u32,

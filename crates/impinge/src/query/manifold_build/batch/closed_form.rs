@@ -4,8 +4,8 @@
 use core::marker::PhantomData;
 
 use super::gather::Inputs;
-use super::masks::{bits, turned};
-use super::vectors::is_finite;
+use super::masks::turned;
+use super::vectors::{bits, is_finite};
 use super::{Batch, LANES, PairQuestion};
 use crate::convex::Separation;
 use crate::math::simd::Simd;

@@ -1,7 +1,8 @@
 //! Eight pairs of solids side by side.
 
-use super::vectors::{by_axis, dot, norm, seen_from};
+use super::vectors::{by_axis, minus, seen_from};
 use super::{Batch, KeptPairs, LANES, PairQuestion};
+use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide};
 
@@ -131,12 +132,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     /// The second solid's place seen from the first, which is its place in the frame of a ball.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
-        let from = load::<S, N, V, D>(simd, &self.translations[0]);
-        let to = load::<S, N, V, D>(simd, &self.translations[1]);
-        by_axis(
-            #[inline(always)]
-            |axis| to[axis] - from[axis],
-        )
+        minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))
     }
 
     /// The second solid's pose in the frame of a ball, as `Pair::new` has it.
@@ -179,17 +175,6 @@ fn put_all<N: Real, const D: usize>(
 }
 
 #[inline(always)]
-fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
-    simd: S,
-    rows: &Rows<N, D>,
-) -> [V; D] {
-    by_axis(
-        #[inline(always)]
-        |axis| V::load(simd, &rows[axis]),
-    )
-}
-
-#[inline(always)]
 fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     columns: &[Rows<N, D>; D],
@@ -198,81 +183,4 @@ fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         #[inline(always)]
         |column| load(simd, &columns[column]),
     )
-}
-
-/// A pose in each lane: a `Pose`, its rotation by columns.
-pub(super) struct LanePose<V, const D: usize> {
-    pub(super) rotation: [[V; D]; D],
-    pub(super) translation: [V; D],
-}
-
-impl<V, const D: usize> LanePose<V, D> {
-    /// `Pose::vector`.
-    #[inline(always)]
-    pub(super) fn vector<S: Simd>(&self, local: &[V; D]) -> [V; D]
-    where
-        V: Wide<S>,
-    {
-        by_axis(
-            #[inline(always)]
-            |row| {
-                let terms: [V; D] = by_axis(
-                    #[inline(always)]
-                    |column| self.rotation[column][row] * local[column],
-                );
-                let mut sum = terms[0];
-                for &term in &terms[1..] {
-                    sum += term;
-                }
-                sum
-            },
-        )
-    }
-
-    /// `Pose::point`.
-    #[inline(always)]
-    pub(super) fn point<S: Simd>(&self, local: &[V; D]) -> [V; D]
-    where
-        V: Wide<S>,
-    {
-        let turned = self.vector(local);
-        by_axis(
-            #[inline(always)]
-            |axis| turned[axis] + self.translation[axis],
-        )
-    }
-
-    /// `Pose::inverse_point`.
-    #[inline(always)]
-    pub(super) fn inverse_point<S: Simd>(&self, outer: &[V; D]) -> [V; D]
-    where
-        V: Wide<S>,
-    {
-        let away = by_axis(
-            #[inline(always)]
-            |axis| outer[axis] - self.translation[axis],
-        );
-        by_axis(
-            #[inline(always)]
-            |column| dot(&self.rotation[column], &away),
-        )
-    }
-
-    /// `Pose::inverse_point` of the origin.
-    #[inline(always)]
-    pub(super) fn inverse_origin<S: Simd, N: Real>(&self, simd: S) -> [V; D]
-    where
-        V: Wide<S, Scalar = N>,
-    {
-        self.inverse_point(&[V::all(simd, N::ZERO); D])
-    }
-
-    /// How far the second solid's origin is from the first's.
-    #[inline(always)]
-    pub(super) fn apart<S: Simd>(&self) -> V
-    where
-        V: Wide<S>,
-    {
-        norm(&self.translation)
-    }
 }

@@ -1,13 +1,5 @@
 //! Bits of eight pairs side by side.
 
-use crate::math::simd::{Simd, SimdMask};
-
-/// A bit for each lane.
-#[inline(always)]
-pub(super) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
-    mask.to_bitmask().to_le_bytes()[0]
-}
-
 /// Eight masks of eight pairs, as a byte for each pair.
 #[inline(always)]
 pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {

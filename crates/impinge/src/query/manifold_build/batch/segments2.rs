@@ -5,7 +5,9 @@ use super::PairQuestion;
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
-use super::vectors::{bits, dot, either, lit, minus, norm, plus, rounding_of, times};
+use super::vectors::{
+    bits, by_axis, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times,
+};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::query::manifold_build::contacts_of_separation2;
@@ -171,8 +173,8 @@ impl<V, M> LaneSide<V, M> {
             is_point,
             is_wide: length.simd_gt(line.tolerance),
             at_witness: [
-                (is_point & !is_last_near) | (!is_point & is_at[0]),
-                (is_point & is_last_near) | (!is_point & is_at[1] & !is_at[0]),
+                either_mask(is_point, !is_last_near, is_at[0]),
+                either_mask(is_point, is_last_near, is_at[1] & !is_at[0]),
             ],
         };
         side.top.0 = side.below_witness(&either(is_last_near, last, first), line);
@@ -283,14 +285,15 @@ impl<V, M> LaneContact<V, M> {
         V: Wide<S, Mask = M>,
         M: SimdMask<S>,
     {
-        let choose = |one: M, other: M| (is_other & other) | (!is_other & one);
-        let [a, b, c, d] = self.parts;
-        let [e, f, g, h] = other.parts;
+        let (own, others) = (&self.parts, &other.parts);
         Self {
             point1: either(is_other, &other.point1, &self.point1),
             distance: is_other.select(other.distance, self.distance),
-            is_admitted: choose(self.is_admitted, other.is_admitted),
-            parts: [choose(a, e), choose(b, f), choose(c, g), choose(d, h)],
+            is_admitted: either_mask(is_other, other.is_admitted, self.is_admitted),
+            parts: by_axis(
+                #[inline(always)]
+                |part| either_mask(is_other, others[part], own[part]),
+            ),
         }
     }
 }

@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
         })
     }
 
-    /// It is a segment, perhaps swollen.
+    /// It is a segment, perhaps inflated.
     pub(super) const fn is_segment(&self) -> bool {
         matches!(self, Self::Segment(_) | Self::Capsule(_))
     }

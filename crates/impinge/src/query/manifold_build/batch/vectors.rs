@@ -1,9 +1,9 @@
 //! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
 
 use super::super::frame::ROUNDING_ERRORS;
-pub(super) use super::masks::bits;
 pub(super) use crate::math::lanes::{
-    by_axis, cross, dot, either, lit, minus, negated, norm, over, plus, seen_from, times,
+    bits, by_axis, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus,
+    seen_from, times,
 };
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};

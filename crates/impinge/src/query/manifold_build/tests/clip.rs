@@ -1,4 +1,4 @@
-//! Faces of any number of corners in space: their contacts are the corners of the common area.
+//! Faces of any number of corners in 3D: their contacts are the corners of the common area.
 
 use super::super::build3;
 use super::scene::fact;

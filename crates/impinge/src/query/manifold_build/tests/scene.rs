@@ -18,7 +18,7 @@ pub(in crate::query) trait Scene<const D: usize>: Simplicial<D> {
         out: &mut RawManifold<Self, D>,
     );
 
-    /// A pose turned by an axis times an angle; in the plane by the last component.
+    /// A pose turned by an axis times an angle; in 2D by the last component.
     fn pose(translation: Vector<Self, D>, turn: [f64; 3]) -> Pose<Self, D>;
 
     /// Polytopes, and the solids of this dimension only, in the order of kinds.

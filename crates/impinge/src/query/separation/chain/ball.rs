@@ -2,8 +2,8 @@
 
 use super::super::ball_segment;
 use super::{ChainQuestion, Eight, Links};
-use crate::math::lanes::with_lanes;
-use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::lanes::{bits, with_lanes};
+use crate::math::simd::{Level, Simd};
 use crate::math::{Real, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
@@ -55,7 +55,6 @@ fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) -> Option<(u8, N)> {
     let eight = Eight::<V>::of(simd, tiles, question)?;
     let distance = eight.from_middle.sqrt() - V::all(simd, radius);
-    let beyond = distance.simd_gt(V::all(simd, question.limit)).to_bitmask();
-    let [beyond, ..] = beyond.to_le_bytes();
-    Some((beyond, eight.least()))
+    let beyond = distance.simd_gt(V::all(simd, question.limit));
+    Some((bits(beyond), eight.least()))
 }

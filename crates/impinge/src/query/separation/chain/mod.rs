@@ -1,8 +1,8 @@
-//! The segments of a chain in the plane against one solid, eight side by side.
+//! The segments of a chain in 2D against one solid, eight side by side.
 //!
 //! The algorithms of [`polygon_polygon`](super::polygon_polygon), [`segment_lanes`](super::segment_lanes) and
 //! [`ball_segment`](super::ball_segment), in the same order of operations, so that the answers have the same bits:
-//! most segments are told to be beyond the limit, the rest by what is known of them then.
+//! most segments are culled as beyond the limit, the rest computed from what is known then.
 
 mod ball;
 mod polygon;

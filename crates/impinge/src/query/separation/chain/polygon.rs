@@ -1,9 +1,9 @@
-//! Eight segments at once against a polygon of up to eight vertices, swollen or not.
+//! Eight segments at once against a polygon of up to eight vertices, inflated or not.
 
 use super::super::outline::{Outline, Row};
 use super::super::polygon_polygon::{Axis, of_axis};
 use super::{ChainQuestion, Eight, Links};
-use crate::math::lanes::{dot, either, negated, over, spread, with_lanes};
+use crate::math::lanes::{bits, dot, either, negated, over, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::query::tiles::LANES;
@@ -126,8 +126,8 @@ impl<N: Real> SegmentAxes<N> {
         let room = noise + V::all(simd, N::EPSILON * rounding);
         let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
         // A lower bound: what it rejects by more than rounding is out of reach.
-        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach).to_bitmask();
-        let ([beyond, ..], zeros) = (beyond.to_le_bytes(), [N::ZERO; LANES]);
+        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
+        let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
         let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
         best.gap.store(&mut axes.gaps);
         best.normal[0].store(&mut axes.normals[0]);

@@ -4,9 +4,9 @@ use super::super::polygon_polygon;
 use super::super::segment_lanes::SegmentGap;
 use super::{ChainQuestion, Eight, Links};
 use crate::convex::Separation;
-use crate::math::lanes::{dot, spread, with_lanes};
-use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide, min};
+use crate::math::lanes::{LanePose, bits, spread, with_lanes};
+use crate::math::simd::{Level, Simd};
+use crate::math::{Point, Real, Vector, Wide, min};
 use crate::query::Pair;
 use crate::query::tiles::{LANES, Tiles};
 use crate::shape::{Kind, Segment};
@@ -40,7 +40,7 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// The separation of one segment of the chain.
+/// The separation of one segment of the chain of which [`SegmentGap`] does not know it.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,
@@ -49,7 +49,8 @@ fn alone<N: Real>(
     let (solid, segment) = (question.solid, Kind::Segment(segment));
     let comes_first = matches!(solid, Kind::Segment(_));
     let (first, second) = if comes_first { (solid, segment) } else { (segment, solid) };
-    polygon_polygon::separation(&Pair { first, second, pose12: question.pose12 }, question.limit)
+    let pair = Pair { first, second, pose12: question.pose12 };
+    polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
 /// What separates eight segments from another, by rows.
@@ -75,20 +76,19 @@ impl<N: Real> Gaps<N> {
         let own: [Point<N, 2>; 2] = [*core.a(), *core.b()];
         let found = if let Kind::Segment(_) = question.solid {
             let own: [[V; 2]; 2] = own.map(|end| spread(simd, &end.coords));
-            let [a, b] = &eight.ends;
-            let chain = [placed(simd, &question.pose12, a), placed(simd, &question.pose12, b)];
+            let pose12 = LanePose::of(simd, &question.pose12);
+            let chain = [pose12.point(&eight.ends[0]), pose12.point(&eight.ends[1])];
             SegmentGap::of(simd, [&own, &chain])
         } else {
             let own = own.map(|end| spread(simd, &question.pose12.point(&end).coords));
             SegmentGap::of(simd, [&eight.ends, &own])
         };
         let row = [N::ZERO; LANES];
-        let [known, ..] = found.is_known.to_bitmask().to_le_bytes();
         let mut gaps = Self {
             gaps: row,
             normals: [row; 2],
             points: [[row; 2]; 2],
-            known,
+            known: bits(found.is_known),
             least: eight.least(),
         };
         found.gap.store(&mut gaps.gaps);
@@ -108,16 +108,4 @@ impl<N: Real> Gaps<N> {
         let is_known = self.known >> lane & 1 == 1;
         is_known.then_some(Separation { distance, normal, point1, point2 })
     }
-}
-
-/// Points of a frame that has a pose.
-#[inline(always)]
-fn placed<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    pose: &Pose<N, 2>,
-    local: &[V; 2],
-) -> [V; 2] {
-    let (turn, at) = (&pose.rotation, &pose.translation);
-    let row = |row: usize| [V::all(simd, turn[(row, 0)]), V::all(simd, turn[(row, 1)])];
-    [dot(&row(0), local) + V::all(simd, at.x), dot(&row(1), local) + V::all(simd, at.y)]
 }

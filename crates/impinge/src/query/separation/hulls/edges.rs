@@ -3,10 +3,10 @@
 
 use super::face::ReferenceFace;
 use super::polyhedral::Polyhedral;
-use super::vertices::{Vertices, rows};
+use super::vertices::Vertices;
 use super::{LANES, noise};
 use crate::convex::Separation;
-use crate::math::lanes::{self, by_axis, dot, highest_lane, load, seen_from, spread};
+use crate::math::lanes::{self, LanePose, by_axis, dot, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, cross, unit};
 use crate::query::separation::segments::nearest_of_segments;
@@ -149,8 +149,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
                 }
             }
         }
-        let rows: [[V; 3]; 3] = rows(simd, &self.pose.rotation);
-        [seen_from(&rows, &load(simd, &normals[0])), seen_from(&rows, &load(simd, &normals[1]))]
+        let pose: LanePose<V, 3> = LanePose::of(simd, &self.pose);
+        [pose.vector(&load(simd, &normals[0])), pose.vector(&load(simd, &normals[1]))]
     }
 
     /// Queries the edge directions: the pair of edges that is a face of the Minkowski difference and parts

@@ -2,9 +2,9 @@
 
 use super::polyhedral::Polyhedral;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
-use crate::math::lanes::{by_axis, dot, highest_lane, load, plus, seen_from, spread};
+use crate::math::lanes::{LanePose, dot, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Matrix, Pose, Real, Vector, Wide};
+use crate::math::{Pose, Real, Vector, Wide};
 use crate::shape::Planes;
 
 /// The vertices of a solid in some frame, in units of the pair.
@@ -80,10 +80,9 @@ impl<N: Real> Vertices<N> {
     ) -> Self {
         let blocks = [[[N::ZERO; LANES]; 3]; BLOCKS];
         let mut placed = Self { blocks, used: self.used, count: self.count };
-        let rows: [[V; 3]; 3] = rows(simd, &pose.rotation);
-        let origin: [V; 3] = spread(simd, &pose.translation);
+        let pose: LanePose<V, 3> = LanePose::of(simd, pose);
         for (block, out) in self.blocks[..self.used].iter().zip(&mut placed.blocks) {
-            let points = plus(&seen_from(&rows, &load(simd, block)), &origin);
+            let points = pose.point(&load(simd, block));
             for (axis, out) in out.iter_mut().enumerate() {
                 points[axis].store(out);
             }
@@ -171,23 +170,6 @@ impl<N: Real> Vertices<N> {
         }
         low
     }
-}
-
-/// The rows of a rotation, each in all lanes.
-#[inline(always)]
-pub(super) fn rows<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    rotation: &Matrix<N, 3>,
-) -> [[V; 3]; 3] {
-    by_axis(
-        #[inline(always)]
-        |row| {
-            by_axis(
-                #[inline(always)]
-                |column| V::all(simd, rotation[(row, column)]),
-            )
-        },
-    )
 }
 
 /// How far a point lies above the highest of some planes.

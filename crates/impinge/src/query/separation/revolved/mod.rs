@@ -19,7 +19,7 @@ mod rounds;
 mod tests;
 
 use self::profile::{Part, Profile, Seen};
-use super::cylinder_cylinder::{Found, Verdict};
+use super::cylinder_cylinder::{Found, RevolvedResult};
 use super::flat_core::FlatCore;
 use super::general;
 use super::hulls::{noise, out_of_reach};
@@ -73,7 +73,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     let profile = Profile::new(Round::new(&pair.second, units.shrink)?);
     let shift = pose12.translation * units.shrink;
     let beyond = out_of_reach(&units, limit + map1.rounding());
-    let verdict = match FlatCore::of(pair.first) {
+    let result = match FlatCore::of(pair.first) {
         Some(flat) => {
             Meeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
         }
@@ -82,14 +82,14 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
             rounds::resolve([first, profile], pose12, shift, beyond)
         }
     };
-    let found = verdict.answer(&units, pose12)?;
+    let found = result.answer(&units, pose12)?;
     let rounded = found.map(|found| found.rounded(map1.rounding(), N::ZERO));
     Some(rounded.filter(|found| found.distance <= limit))
 }
 
-/// The verdict where the answer, if there is one, is in the frame of the second solid.
-fn seen_from_second<N: Real>(found: Option<Found<N>>) -> Verdict<N> {
-    found.map_or(Verdict::Undecided, |found| Verdict::Found(found, true))
+/// The result where the answer, if there is one, is in the frame of the second solid.
+fn seen_from_second<N: Real>(found: Option<Found<N>>) -> RevolvedResult<N> {
+    found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
 /// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
@@ -121,14 +121,14 @@ enum Hull<N: Real> {
 }
 
 impl<N: Real> Meeting<'_, N> {
-    fn resolve(&self, beyond: N) -> Verdict<N> {
+    fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.seen_from(middle).outward);
         let (mut hull, mut place) = self.at_point(first);
         for _ in 0..ROUNDS {
             let low = self.lowest(&place.outward);
-            if let Some(verdict) = place.verdict(&low, beyond) {
-                return verdict;
+            if let Some(result) = place.result(&low, beyond) {
+                return result;
             }
             match self.nearer(&hull, &place, low) {
                 Some(next) => (hull, place) = next,
@@ -251,12 +251,12 @@ impl<N: Real> Place<N> {
         self.outward.dot(&self.point) - self.level
     }
 
-    /// What the place is told by the point that is lowest along its direction: that the solids are farther apart than
+    /// What follows from the point that is lowest along its direction: that the solids are farther apart than
     /// `beyond`, or, if nothing is lower than the place, whether that is the answer. `None` if something is.
-    fn verdict(&self, low: &Vector<N, 3>, beyond: N) -> Option<Verdict<N>> {
+    fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
         let height = self.outward.dot(low) - self.level;
         if height > beyond {
-            return Some(Verdict::Beyond);
+            return Some(RevolvedResult::Beyond);
         }
         let is_lowest = self.outward.dot(&(self.point - low)) <= still();
         is_lowest.then(|| seen_from_second(self.proved(height)))

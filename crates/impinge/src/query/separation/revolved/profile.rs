@@ -1,7 +1,7 @@
 //! A cylinder or a cone as a point sees it, and how the distance changes as the point moves.
 //!
 //! A solid about the y axis is a flat outline in the half-plane of the axis and the point: caps and a side that are
-//! lines, a rim and an apex that are corners. The signed distance from it is convex in space, inside as well.
+//! lines, a rim and an apex that are corners. The signed distance from it is convex in 3D, inside as well.
 
 use crate::math::{Real, Vector, cross2, unit};
 use crate::query::separation::cylinder_cylinder::radial;

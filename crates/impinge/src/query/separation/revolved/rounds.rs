@@ -6,7 +6,7 @@
 //! depth: each in one of the solids.
 
 use super::profile::Profile;
-use super::{Found, Place, Verdict, noise, seen_from_second, still};
+use super::{Found, Place, RevolvedResult, noise, seen_from_second, still};
 use crate::math::{Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 use crate::query::separation::segments::nearest_of_segments;
 
@@ -21,7 +21,7 @@ pub(super) fn resolve<N: Real>(
     pose12: &Pose<N, 3>,
     shift: Vector<N, 3>,
     beyond: N,
-) -> Verdict<N> {
+) -> RevolvedResult<N> {
     let rotation = pose12.rotation.transpose();
     let (from_first, from_second) = (shift, -(rotation * shift));
     let views = [
@@ -30,9 +30,9 @@ pub(super) fn resolve<N: Real>(
     ];
     for (view, is_second) in views.iter().zip([true, false]) {
         match view.corners(beyond) {
-            Verdict::Undecided => {}
-            Verdict::Found(found, _) => return Verdict::Found(found, is_second),
-            Verdict::Beyond => return Verdict::Beyond,
+            RevolvedResult::Undecided => {}
+            RevolvedResult::Found(found, _) => return RevolvedResult::Found(found, is_second),
+            RevolvedResult::Beyond => return RevolvedResult::Beyond,
         }
     }
     seen_from_second(views[0].sides())
@@ -60,16 +60,16 @@ impl<N: Real> RoundView<N> {
     }
 
     /// The apex or a rim of the other solid, if it is nearest.
-    fn corners(&self, beyond: N) -> Verdict<N> {
+    fn corners(&self, beyond: N) -> RevolvedResult<N> {
         let mut low = self.lowest(&self.own.seen_from(self.center).outward);
         for _ in 0..TURNS {
             let Some(place) = self.at_corner(&low) else { break };
             low = self.lowest(&place.outward);
-            if let Some(verdict) = place.verdict(&low, beyond) {
-                return verdict;
+            if let Some(result) = place.result(&low, beyond) {
+                return result;
             }
         }
-        Verdict::Undecided
+        RevolvedResult::Undecided
     }
 
     /// The place of the apex, or that of a rim which is nearest, of that which a point is on.
@@ -121,7 +121,7 @@ impl<N: Real> RoundView<N> {
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
-        // The part in the plane of the axes is told by how the normal leans against each.
+        // The part in the plane of the axes follows from how the normal leans against each.
         let up = Vector::<N, 3>::y();
         let level = (up * (rise1 + rise2 * lean) - self.axis * (rise2 + rise1 * lean)) / squared;
         let left = N::ONE - level.norm_squared();

@@ -7,7 +7,7 @@ use crate::query::separation::hulls::noise;
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
 /// Larger solids are left to the general algorithm, which does not look at all of their parts.
-const MOST_VERTICES: usize = 128;
+const MAX_VERTICES: usize = 128;
 
 /// An edge: its ends, and the ends of the arc of normals along which it is lowest.
 #[derive(Clone, Copy)]
@@ -137,7 +137,7 @@ impl<N: Real> Flat<N> {
     }
 
     fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {
-        if polytope.vertices().len() > MOST_VERTICES {
+        if polytope.vertices().len() > MAX_VERTICES {
             return None;
         }
         self.own_vertices.extend(polytope.vertices().iter().map(|vertex| vertex.coords * shrink));

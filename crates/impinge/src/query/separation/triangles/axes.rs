@@ -8,9 +8,9 @@
 //! the outer side (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes
 //! pairs of edges by their arcs of normals).
 
-use super::{TriangleQuery, low_byte, noise};
+use super::{TriangleQuery, noise};
 use crate::math::lanes::{
-    by_axis, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
+    bits, by_axis, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
 };
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Wide, max, max_component};
@@ -99,7 +99,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         let mut climbs = [[none; 3]; MAX_FACES];
         let of_solid = packet.query_faces(&mut climbs);
         let beyond = packet.is_beyond(of_solid.gap);
-        if low_byte(beyond.to_bitmask()) == u8::MAX {
+        if bits(beyond) == u8::MAX {
             return packet.stored(&of_solid, beyond, none);
         }
         let directions = packet.directions(&self.pose12.rotation);
@@ -207,8 +207,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
         let blank = [N::ZERO; LANES];
         let mut axes = TriangleAxes {
-            beyond: low_byte(beyond.to_bitmask()),
-            known: low_byte(known.to_bitmask()),
+            beyond: bits(beyond),
+            known: bits(known),
             scale: self.scales,
             shrink: self.shrinks,
             corners: [[blank; 3]; 3],

@@ -4,13 +4,12 @@
 //! rises along its normal (see `seam.rs`). Where one of these triangles is nearer to the middle of the ball
 //! than the corner or edge, the way to its nearest point is such a direction, so that distances alone tell
 //! what the normals would: of the triangles around the place where a ball rests on a surface one is left.
-//! What is close is not told.
+//! Close cases are left undecided.
 
 use smallvec::SmallVec;
 
-use super::low_byte;
 use crate::bounding_volume::Aabb;
-use crate::math::lanes::{by_axis, dot, either, load, minus, spread, with_lanes};
+use crate::math::lanes::{bits, by_axis, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, max_component, min};
 use crate::query::tiles::{LANES, Tiles};
@@ -42,8 +41,8 @@ pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) within: Aabb<N, 3>,
 }
 
-/// What a ball sees of some of the triangles.
-pub(crate) struct Sighted<N> {
+/// The triangles near a ball.
+pub(crate) struct NearTriangles<N> {
     /// No triangle in the box is nearer to the middle; zero if that is not known.
     pub(crate) from_middle: N,
     /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
@@ -53,13 +52,16 @@ pub(crate) struct Sighted<N> {
     pub(crate) hidden_from: N,
 }
 
-/// What a ball sees; nothing is hidden unless `has_seams`.
-pub(crate) fn sighted<N: Real>(question: &BallQuestion<'_, N>, has_seams: bool) -> Sighted<N> {
+/// Finds the triangles near a ball; nothing is hidden unless `has_seams`.
+pub(crate) fn near_triangles<N: Real>(
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> NearTriangles<N> {
     at(Level::new(), question, has_seams)
 }
 
 /// By the vectors of an instruction set, on which the answer does not depend.
-fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> Sighted<N> {
+fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
@@ -68,13 +70,13 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> Sighted<N> {
+) -> NearTriangles<N> {
     let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
     let mut seen =
-        Sighted { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
+        NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
-        let within = meant & low_byte(are_within::<S, N, V>(simd, question, tiles).to_bitmask());
+        let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
         if within == 0 {
             continue;
         }
@@ -215,7 +217,7 @@ impl<V> TrianglePacket<V> {
         let [a, b, c, d, e, f, g, h] = known;
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
-        let near = within & low_byte((!is_beyond).to_bitmask());
+        let near = within & bits(!is_beyond);
         let mut places =
             NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
         if near != 0 && has_seams {
@@ -223,7 +225,7 @@ impl<V> TrianglePacket<V> {
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
             let (kind, room) = self.beside(simd);
             let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
-            places.sides = low_byte(is_beside.to_bitmask());
+            places.sides = bits(is_beside);
             kind.store(&mut places.kinds);
             (self.squared - clear).store(&mut places.least);
             let most = is_tall.select(self.squared + clear, V::all(simd, N::INFINITY));
@@ -392,14 +394,14 @@ mod tests {
             let reach = Vector::<N, 3>::repeat(N::lit(1.2));
             let within = Aabb::around(Point::from(center), reach);
             let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
-            let expected = sighted(&question, true);
+            let expected = near_triangles(&question, true);
             for level in Level::available() {
                 let found = at(level, &question, true);
                 assert_eq!(found.near, expected.near, "{level:?}");
                 assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
                 assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
             }
-            let shown = sighted(&question, false);
+            let shown = near_triangles(&question, false);
             for ((_, [near, without]), (_, [same, with])) in shown.near.iter().zip(&expected.near) {
                 assert_eq!((near, *without), (same, 0), "without seams all are shown");
                 hidden += with.count_ones();

@@ -10,7 +10,7 @@ mod axes;
 mod ball;
 
 use self::axes::{AxisFeature, TriangleAxes};
-pub(crate) use self::ball::{BallQuestion, Sighted, sighted};
+pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::math::simd::Level;
 use crate::math::{Pose, Real, Vector, cross, max};
@@ -20,7 +20,7 @@ use crate::shape::{FeatureId, Kind};
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
 const INSIDE: f64 = 1.0 / 32.0;
 /// The least square of the sine of the angle between the two.
-const LEAST_SINE: f64 = 1.0 / 64.0;
+const MIN_SINE: f64 = 1.0 / 64.0;
 /// A triangle with less than this ratio of height to longest side may have its other sides as near.
 const TALL: f64 = 1.0 / 32.0;
 /// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
@@ -31,11 +31,6 @@ const LONG: f64 = 8192.0;
 /// What arithmetic on numbers of size 2 cannot resolve.
 fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
-}
-
-fn low_byte(bits: u64) -> u8 {
-    let [low, ..] = bits.to_le_bytes();
-    low
 }
 
 /// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
@@ -55,7 +50,7 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// In the plane triangles are filled.
+/// In 2D triangles are filled.
 pub(crate) fn gaps2<N: Real>(
     _: &TiledParts<'_, N, 2>,
     _: Kind<'_, N, 2>,
@@ -155,7 +150,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
         // Written so that NaN is not plain.
         let is_plain = is_inside
-            && det > N::lit(LEAST_SINE) * own * other
+            && det > N::lit(MIN_SINE) * own * other
             && own > long * long
             && cross(&way, &third).norm_squared() > tall * tall;
         is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))

@@ -1,14 +1,13 @@
 //! The candidates of eight pairs, each in a slot of its own, and which of them count.
 
 use super::LANES;
-use super::masks::bits;
-use crate::math::lanes::norm;
+use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// The places of eight pairs, and for each of them a bit of a mask.
 pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize> {
-    /// Seen along the normal; in the plane the second coordinate is always zero.
+    /// Seen along the normal; in 2D the second coordinate is always zero.
     pub(super) flat: [[[N; LANES]; COUNT]; 2],
     /// Above the face or side below.
     pub(super) height: [[N; LANES]; COUNT],
@@ -116,7 +115,7 @@ impl<V> Admission<V> {
         (self.lowest - self.limits.gap).abs().simd_le(self.limits.tolerance)
     }
 
-    /// Leaves the candidates that count. Says of these where they are, and how far: `place` is told where a candidate
+    /// Leaves the candidates that count. Says of these where they are, and how far: `place` gets where a candidate
     /// is seen and how high.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize>(

@@ -1,8 +1,8 @@
-//! The separating axis test of eight pairs of boxes in the plane:
+//! The separating axis test of eight pairs of boxes in 2D:
 //! `query/separation/rectangle_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
-use crate::math::lanes::{by_axis, dot, lit};
+use crate::math::lanes::{by_axis, dot, either_mask, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
@@ -28,12 +28,6 @@ struct Side<V, M> {
     is_positive: M,
 }
 
-/// Of two masks the one that a third chooses.
-#[inline(always)]
-fn choose<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
-    (is & one) | (!is & other)
-}
-
 impl<V> Boxes<V, 2> {
     /// What arithmetic on these numbers cannot resolve.
     #[inline(always)]
@@ -57,8 +51,8 @@ impl<V> Boxes<V, 2> {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
         let (first, second) = self.best_sides(simd);
         let is_second = !second.gap.simd_le(first.gap);
-        let is_y = choose(is_second, second.is_y, first.is_y);
-        let is_positive = choose(is_second, second.is_positive, first.is_positive);
+        let is_y = either_mask(is_second, second.is_y, first.is_y);
+        let is_positive = either_mask(is_second, second.is_positive, first.is_positive);
         let unit = [is_y.select(zero, one), is_y.select(one, zero)];
         let normal = by_axis(
             #[inline(always)]
@@ -111,5 +105,5 @@ fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     is_positive: [M; 2],
 ) -> Side<V, M> {
     let gap = is_y.select(gaps[1], gaps[0]);
-    Side { gap, is_y, is_positive: choose(is_y, is_positive[1], is_positive[0]) }
+    Side { gap, is_y, is_positive: either_mask(is_y, is_positive[1], is_positive[0]) }
 }

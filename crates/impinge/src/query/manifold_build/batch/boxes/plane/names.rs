@@ -1,4 +1,4 @@
-//! Names of the slots of one pair in the plane.
+//! Names of the slots of one pair in 2D.
 
 use super::SLOTS;
 use crate::math::Real;

@@ -5,11 +5,10 @@
 //! that is tilted too much the lower end alone counts, the corner that faces the other box.
 
 use super::super::admit::{Admission, Slots};
-use super::super::masks::bits;
 use super::super::{Boxes, other, tolerance};
 use super::SLOTS;
 use super::axis::BestSide;
-use crate::math::lanes::{by_axis, dot, either, lit};
+use crate::math::lanes::{bits, by_axis, dot, either, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;

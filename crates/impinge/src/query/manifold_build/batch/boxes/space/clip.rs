@@ -1,14 +1,14 @@
 //! The corners of the common area of two faces, of eight pairs, each in a place of its own.
 //!
-//! A corner of the parallelogram, a corner of the rectangle and a crossing of two sides are told by
-//! their numbers, so there are places for 4 + 4 + 16 of them and a bit that says which there are:
+//! A corner of the parallelogram, a corner of the rectangle and a crossing of two sides are identified
+//! by their numbers, so there are places for 4 + 4 + 16 of them and a bit that says which there are:
 //! nothing is moved until all is known.
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
-use super::super::masks::bits;
 use super::faces::{Faces, cross};
 use super::shown::Shown;
+use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 

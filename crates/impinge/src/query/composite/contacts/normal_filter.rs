@@ -17,7 +17,7 @@ const A_LITTLE: f64 = 1.0 / 32.0;
 /// What a surface says of a contact of one of its parts. Normals are away from the part, in the
 /// frame of the composite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict<N: Real, const D: usize> {
+pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The part cannot be touched from where the other solid is.
     Nothing,
     /// The surface has this normal there.
@@ -33,7 +33,7 @@ pub(super) enum Verdict<N: Real, const D: usize> {
     Refused,
 }
 
-impl<N: Real, const D: usize> Verdict<N, D> {
+impl<N: Real, const D: usize> FilteredNormal<N, D> {
     /// The normal of the face that a contact would be with.
     pub(super) const fn face(&self) -> Option<Vector<N, D>> {
         match self {
@@ -48,8 +48,8 @@ pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
     /// Where on the part; most cases are settled without it.
     pub(super) feature: &'a dyn Fn() -> FeatureId,
-    /// The other solid is beside the part, so that [`Verdict::Snapped`] says as much as
-    /// [`Verdict::Beyond`].
+    /// The other solid is beside the part, so that [`FilteredNormal::Snapped`] says as much as
+    /// [`FilteredNormal::Beyond`].
     pub(super) is_beside: bool,
     /// Unit, away from the part.
     pub(super) outward: Vector<N, D>,
@@ -67,25 +67,29 @@ pub(super) fn faces<N: Space<D>, const D: usize>(
 }
 
 /// What the surface of a shape, if it has one, says of a contact.
-pub(super) fn judge<N: Space<D>, const D: usize>(
+pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     surface: Option<&dyn Surface<N, D>>,
     case: &Case<'_, N, D>,
-) -> Verdict<N, D> {
-    let Some(surface) = surface else { return Verdict::Admitted };
+) -> FilteredNormal<N, D> {
+    let Some(surface) = surface else { return FilteredNormal::Admitted };
     let is_admitted = |feature| surface.admits(case.part, feature, &case.outward);
     let Some(face) = surface.snapped(case.part, &case.toward) else {
-        return if is_admitted((case.feature)()) { Verdict::Admitted } else { Verdict::Refused };
+        return if is_admitted((case.feature)()) {
+            FilteredNormal::Admitted
+        } else {
+            FilteredNormal::Refused
+        };
     };
     let lean = (case.outward - face).norm();
     if lean <= N::lit(ROUNDING) * N::EPSILON {
-        return Verdict::Face(face);
+        return FilteredNormal::Face(face);
     }
     if case.outward.dot(&face) < N::lit(BEHIND) {
-        return Verdict::Snapped(face);
+        return FilteredNormal::Snapped(face);
     }
     let feature = (case.feature)();
     if is_face(feature) && lean <= N::lit(ON_FACE) {
-        return Verdict::Face(face);
+        return FilteredNormal::Face(face);
     }
     let leaning = if case.is_beside { None } else { leaning(case, &face) };
     let [is_own, is_beyond] = match leaning {
@@ -93,9 +97,9 @@ pub(super) fn judge<N: Space<D>, const D: usize>(
         None => [is_admitted(feature), false],
     };
     match (is_own, is_beyond) {
-        (true, _) => Verdict::Admitted,
-        (false, true) => Verdict::Beyond(face),
-        (false, false) => Verdict::Snapped(face),
+        (true, _) => FilteredNormal::Admitted,
+        (false, true) => FilteredNormal::Beyond(face),
+        (false, false) => FilteredNormal::Snapped(face),
     }
 }
 
@@ -109,7 +113,7 @@ fn leaning<N: Space<D>, const D: usize>(
     unit(&leaning).map(|(leaning, _)| leaning)
 }
 
-/// A flat piece; for the segments of a surface in the plane that is an edge.
+/// A flat piece; for the segments of a surface in 2D that is an edge.
 fn is_face(feature: FeatureId) -> bool {
     matches!(feature, FeatureId::Face(_))
 }

@@ -1,4 +1,4 @@
-//! Pairs that begin and end together, held against a world that is told of them one by one.
+//! Pairs that begin and end together, held against a world that handles them one by one.
 
 use crate::scene_stage;
 
@@ -11,7 +11,7 @@ use impinge_scenes::{Scene, SceneQuery, mixed_shapes, sparse_drift, spawn_and_de
 use scene_stage::{Digest, Play, Player, digest_state};
 use std::hash::Hasher;
 
-/// The default narrow phase, told of pairs one by one: `handle_interactions` is the provided method.
+/// The default narrow phase, given pairs one by one: `handle_interactions` is the provided method.
 struct OneByOne<N: Space<D>, const D: usize>(DefaultNarrowPhase<N, D>);
 
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {

@@ -23,7 +23,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     ///
     /// Pairs lie anywhere in memory: what is known of several is fetched at once. One that begins gets the
     /// place of one that ends, if the same algorithm serves both, so that no third one moves.
-    pub(crate) fn turn_over(
+    pub(crate) fn begin_and_end_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
         interactions: &[Interaction],
@@ -41,12 +41,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 return;
             }
             self.fetch(table, &started, &stopped);
-            self.turn_some_over(table, [&started, &stopped], events);
+            self.begin_and_end_some_pairs(table, [&started, &stopped], events);
         }
     }
 
     /// Takes some pairs in and lets others go.
-    fn turn_some_over(
+    fn begin_and_end_some_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
         [started, stopped]: [&[PairKey]; 2],

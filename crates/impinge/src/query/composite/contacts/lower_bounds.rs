@@ -1,16 +1,16 @@
-//! How near eight parts of a surface are to a convex solid: the bounds of [`near`](super::near), side by
-//! side.
+//! Lower bounds of the distances of eight parts of a surface from a convex solid: those of [`near`](super::near),
+//! side by side.
 //!
 //! Of the solid its core counts by its extents along its own axes alone, as that of a box.
 
 use super::near::{least_length, relative_slack};
-use crate::math::lanes::{by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
+use crate::math::lanes::{bits, by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide, min};
 use crate::query::tiles::{LANES, Tiles};
 
-/// A convex solid as a composite sees it.
-pub(super) struct Sight<N: Real, const D: usize> {
+/// A convex solid in the frame of a composite.
+pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     /// Its middle.
     pub(super) center: Vector<N, D>,
     /// Its frame's axes, as columns.
@@ -26,7 +26,7 @@ pub(super) struct Sight<N: Real, const D: usize> {
     pub(super) size: N,
 }
 
-/// What is found of eight parts.
+/// Which of eight parts may be near, and how near.
 pub(super) struct Bounds<N> {
     /// A bit for each part that may be within reach.
     pub(super) near: u8,
@@ -34,8 +34,8 @@ pub(super) struct Bounds<N> {
     pub(super) from_middle: N,
 }
 
-impl<N: Real, const D: usize> Sight<N, D> {
-    /// What the solid sees of eight parts.
+impl<N: Real, const D: usize> LowerBoundQuery<N, D> {
+    /// The bounds of eight parts.
     pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> Bounds<N> {
         at(Level::new(), tiles, self)
     }
@@ -45,31 +45,31 @@ impl<N: Real, const D: usize> Sight<N, D> {
 fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &Tiles<N, D>,
-    sight: &Sight<N, D>,
+    query: &LowerBoundQuery<N, D>,
 ) -> Bounds<N> {
-    with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, sight))
+    with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query))
 }
 
 #[inline(always)]
 fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     tiles: &Tiles<N, D>,
-    sight: &Sight<N, D>,
+    query: &LowerBoundQuery<N, D>,
 ) -> Bounds<N> {
     let corners: [[V; D]; 3] = [
         load(simd, &tiles.corners[0]),
         load(simd, &tiles.corners[1]),
         load(simd, &tiles.corners[2]),
     ];
-    let is_in = is_in(simd, &corners, sight);
-    let center: [V; D] = spread(simd, &sight.center);
+    let is_in = is_in(simd, &corners, query);
+    let center: [V; D] = spread(simd, &query.center);
     let arms =
         [minus(&center, &corners[0]), minus(&center, &corners[1]), minus(&center, &corners[2])];
     let toward = toward(simd, &arms);
     let heights = [dot(&toward, &arms[0]), dot(&toward, &arms[1]), dot(&toward, &arms[2])];
     let farthest =
         dot(&arms[0], &arms[0]).larger(dot(&arms[1], &arms[1])).larger(dot(&arms[2], &arms[2]));
-    let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, sight.size));
+    let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, query.size));
     let (length, tiny) = (norm(&toward), V::all(simd, least_length()));
     // What is no number bounds nothing.
     let is_bound = length.simd_gt(slack)
@@ -77,12 +77,12 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         & heights[1].simd_gt(tiny)
         & heights[2].simd_gt(tiny);
     let from_middle = heights[0].smaller(heights[1]).smaller(heights[2]) / length - slack;
-    let own = extent(simd, &toward, sight) / length + V::all(simd, sight.rounding);
-    let is_beyond = is_bound & (from_middle - own - slack).simd_gt(V::all(simd, sight.reach));
+    let own = extent(simd, &toward, query) / length + V::all(simd, query.rounding);
+    let is_beyond = is_bound & (from_middle - own - slack).simd_gt(V::all(simd, query.reach));
     let mut known = [N::ZERO; LANES];
     let known_bound = is_bound.select(from_middle, V::all(simd, N::ZERO));
     is_in.select(known_bound, V::all(simd, N::INFINITY)).store(&mut known);
-    let [near, ..] = (is_in & !is_beyond).to_bitmask().to_le_bytes();
+    let near = bits(is_in & !is_beyond);
     Bounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 
@@ -91,7 +91,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     [a, b, c]: &[[V; D]; 3],
-    sight: &Sight<N, D>,
+    query: &LowerBoundQuery<N, D>,
 ) -> V::Mask {
     let all = V::all(simd, N::ZERO);
     let mut is_in = all.simd_eq(all);
@@ -99,8 +99,8 @@ fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         let least = a[axis].smaller(b[axis]).smaller(c[axis]);
         let most = a[axis].larger(b[axis]).larger(c[axis]);
         is_in = is_in
-            & least.simd_le(V::all(simd, sight.high[axis]))
-            & most.simd_ge(V::all(simd, sight.low[axis]));
+            & least.simd_le(V::all(simd, query.high[axis]))
+            & most.simd_ge(V::all(simd, query.low[axis]));
     }
     is_in
 }
@@ -156,15 +156,15 @@ fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D])
 fn extent<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     toward: &[V; D],
-    sight: &Sight<N, D>,
+    query: &LowerBoundQuery<N, D>,
 ) -> V {
     let mut sum = V::all(simd, N::ZERO);
     for axis in 0..D {
         let column: [V; D] = by_axis(
             #[inline(always)]
-            |row| V::all(simd, sight.turn[(row, axis)]),
+            |row| V::all(simd, query.turn[(row, axis)]),
         );
-        sum += dot(&column, toward).abs() * V::all(simd, sight.half[axis]);
+        sum += dot(&column, toward).abs() * V::all(simd, query.half[axis]);
     }
     sum
 }

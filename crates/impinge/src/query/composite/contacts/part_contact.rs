@@ -1,9 +1,9 @@
-//! What is to be said of each pair of parts.
+//! The contact of each pair of parts, by the normals that the surfaces have.
 
 use core::cell::Cell;
 
 use super::Query;
-use super::judge::{Case, Verdict, faces, judge};
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::scene::{PartPair, Scene};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, min};
@@ -14,9 +14,9 @@ use crate::query::tiles::PartGap;
 use crate::query::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::shape::{FeatureId, Kind};
 
-/// How a contact of two parts stands as one of the two shapes.
+/// Whether a contact of two parts is one of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum PartStatus {
     /// It is one.
     Own,
     /// It is one with the face of a part, whose seams the parts alone would touch at.
@@ -27,9 +27,9 @@ pub(super) enum Standing {
     Left,
 }
 
-/// Two parts that are within reach of each other.
+/// The contact of two parts that are within reach of each other.
 #[derive(Clone, Debug)]
-pub(super) struct Finding<N: Real, const D: usize> {
+pub(super) struct PartContact<N: Real, const D: usize> {
     /// How far the two are apart, each taken alone, and along which normal, from the first shape to
     /// the second in the frame of the first; zero where several say so.
     pub(super) distance: N,
@@ -39,7 +39,7 @@ pub(super) struct Finding<N: Real, const D: usize> {
     pub(super) piece: Piece<N, D>,
     /// The least distance of the piece's points.
     pub(super) lowest: N,
-    pub(super) standing: Standing,
+    pub(super) status: PartStatus,
     /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
     /// if it touches otherwise.
     pub(super) face: Option<Vector<N, D>>,
@@ -47,9 +47,9 @@ pub(super) struct Finding<N: Real, const D: usize> {
     pub(super) tolerance: N,
 }
 
-/// What is found, and where manifolds are made.
+/// The memory of one update: the points of all contacts, and the manifold that is being made.
 #[derive(Default)]
-pub(super) struct Notes<N: Real, const D: usize> {
+pub(super) struct Arena<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: Points<N, D>,
     /// What counts as rounding of parts that were passed over.
@@ -57,7 +57,7 @@ pub(super) struct Notes<N: Real, const D: usize> {
     raw: RawManifold<N, D>,
 }
 
-impl<N: Real, const D: usize> Notes<N, D> {
+impl<N: Real, const D: usize> Arena<N, D> {
     /// An empty manifold to be made.
     pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
@@ -65,50 +65,50 @@ impl<N: Real, const D: usize> Notes<N, D> {
     }
 }
 
-impl<N: Real, const D: usize> Finding<N, D> {
+impl<N: Real, const D: usize> PartContact<N, D> {
     pub(super) const fn parts(&self) -> [u32; 2] {
         self.piece.parts
     }
 
     /// It holds, but what it said along a face's normal does not: its nearest points are still to be found.
     pub(super) fn is_owing(&self) -> bool {
-        self.standing != Standing::Left && self.piece.points.is_empty()
+        self.status != PartStatus::Left && self.piece.points.is_empty()
     }
 
-    /// What two parts say in the end.
-    pub(super) fn note(&mut self, piece: Piece<N, D>, lowest: N) {
+    /// Replaces the points.
+    pub(super) fn set_piece(&mut self, piece: Piece<N, D>, lowest: N) {
         (self.piece, self.lowest) = (piece, lowest);
     }
 }
 
-/// Notes a manifold of two parts: the piece and its least distance.
-fn noted<N: Space<D>, const D: usize>(
+/// Appends the manifold of two parts to the points; answers the piece and its least distance.
+fn appended<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
-    notes: &mut Notes<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> (Piece<N, D>, N) {
-    let lowest = notes.raw.points.iter().fold(N::INFINITY, |low, point| min(low, point.distance));
-    (placed.piece(&notes.raw, parts, &mut notes.points), lowest)
+    let lowest = arena.raw.points.iter().fold(N::INFINITY, |low, point| min(low, point.distance));
+    (placed.piece(&arena.raw, parts, &mut arena.points), lowest)
 }
 
 /// Where the solid that meets a surface comes from, where it is not just its middle.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// What is to be said of two parts, of which it may be known how near they are; `None` if they are beyond
+/// The contact of two parts, of which it may be known how near they are; `None` if they are beyond
 /// reach or cannot touch.
-pub(super) fn finding<N: Space<D>, const D: usize>(
+pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
     query: &Query<'_, N, D>,
     known: Option<&PartGap<N, D>>,
-    notes: &mut Notes<N, D>,
-) -> Option<Finding<N, D>> {
+    arena: &mut Arena<N, D>,
+) -> Option<PartContact<N, D>> {
     let (reference, request) = (query.reference, query.request);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
-        return plain(placed, parts, request, notes);
+        return plain(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
         // Of a convex first shape nothing is asked.
@@ -117,8 +117,8 @@ pub(super) fn finding<N: Space<D>, const D: usize>(
     };
     let meeting = Meeting { placed, parts, centers, reference };
     match known {
-        Some(gap) => of_surfaces(scene, &meeting, gap, request, notes),
-        None => of_separation(scene, &meeting, request, notes),
+        Some(gap) => of_surfaces(scene, &meeting, gap, request, arena),
+        None => of_separation(scene, &meeting, request, arena),
     }
 }
 
@@ -127,16 +127,16 @@ fn plain<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
-    notes: &mut Notes<N, D>,
-) -> Option<Finding<N, D>> {
-    (N::tables().contacts)(&placed.pair(), request, notes.blank());
-    if notes.raw.points.is_empty() {
+    arena: &mut Arena<N, D>,
+) -> Option<PartContact<N, D>> {
+    (N::tables().contacts)(&placed.pair(), request, arena.blank());
+    if arena.raw.points.is_empty() {
         return None;
     }
-    let (piece, lowest) = noted(placed, parts, notes);
-    let (standing, tolerance, face) = (Standing::Own, placed.tolerance(), None);
+    let (piece, lowest) = appended(placed, parts, arena);
+    let (status, tolerance, face) = (PartStatus::Own, placed.tolerance(), None);
     let normal = Vector::<N, D>::zeros();
-    Some(Finding { distance: lowest, normal, piece, lowest, standing, face, tolerance })
+    Some(PartContact { distance: lowest, normal, piece, lowest, status, face, tolerance })
 }
 
 /// Two parts, of which one at least belongs to a surface.
@@ -153,13 +153,13 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
     /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
     /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is not
     /// known.
-    fn verdicts(
+    fn filtered_normals(
         &self,
         scene: &Scene<'_, N, D>,
         gap: &PartGap<N, D>,
         tolerance: N,
         over: Option<FeatureId>,
-    ) -> Option<[Verdict<N, D>; 2]> {
+    ) -> Option<[FilteredNormal<N, D>; 2]> {
         // Where the other solid comes from, and the part itself, as the shape of the part sees it.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
@@ -167,7 +167,7 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         let can_touch =
             faces(surface1, self.parts[0], &other1) && faces(surface2, self.parts[1], &other2);
         if !can_touch {
-            return Some([Verdict::Nothing; 2]);
+            return Some([FilteredNormal::Nothing; 2]);
         }
         let [is_second1, is_second2] = self.placed.turned([false, true]);
         let is_owing = Cell::new(false);
@@ -190,8 +190,8 @@ impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
         let (part, toward) = (self.parts[1], other2 - own2);
         let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
-        let verdicts = [judge(surface1, &case1), judge(surface2, &case2)];
-        (!is_owing.get()).then_some(verdicts)
+        let filtered = [filter_normal(surface1, &case1), filter_normal(surface2, &case2)];
+        (!is_owing.get()).then_some(filtered)
     }
 }
 
@@ -200,62 +200,62 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-/// What is to be said of two parts whose separation is not known yet.
+/// The contact of two parts whose separation is not known yet.
 fn of_separation<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
     request: &ManifoldRequest<N>,
-    notes: &mut Notes<N, D>,
-) -> Option<Finding<N, D>> {
+    arena: &mut Arena<N, D>,
+) -> Option<PartContact<N, D>> {
     let found = (N::tables().separation)(&meeting.placed.pair(), request.prediction)?;
-    of_surfaces(scene, meeting, &PartGap::of(&found), request, notes)
+    of_surfaces(scene, meeting, &PartGap::of(&found), request, arena)
 }
 
-/// What is to be said of two parts, of which one at least belongs to a surface.
+/// The contact of two parts, of which one at least belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &Meeting<'_, N, D>,
     gap: &PartGap<N, D>,
     request: &ManifoldRequest<N>,
-    notes: &mut Notes<N, D>,
-) -> Option<Finding<N, D>> {
+    arena: &mut Arena<N, D>,
+) -> Option<PartContact<N, D>> {
     let (placed, parts, distance) = (meeting.placed, meeting.parts, gap.distance);
     if !distance.is_finite_number() {
         return None;
     }
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
-    let Some(verdicts) = meeting.verdicts(scene, gap, tolerance, over) else {
-        return of_separation(scene, meeting, request, notes);
+    let Some(filtered) = meeting.filtered_normals(scene, gap, tolerance, over) else {
+        return of_separation(scene, meeting, request, arena);
     };
     let normal = placed.outward(&gap.normal);
-    let raw = notes.blank();
-    let mut standing = match settled(placed, &verdicts, &normal) {
+    let raw = arena.blank();
+    let mut status = match settled(placed, &filtered, &normal) {
         Settled::Nothing => return None,
-        Settled::Refused => Standing::Left,
-        Settled::Forced(..) if is_beside(over) => Standing::Left,
+        Settled::Refused => PartStatus::Left,
+        Settled::Forced(..) if is_beside(over) => PartStatus::Left,
         Settled::Found(normal) => {
             let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
-            let over = over.filter(|over| is_certain(*over, &verdicts[1]));
+            let over = over.filter(|over| is_certain(*over, &filtered[1]));
             if !touch.build(&pair, over, request, raw) {
-                return of_separation(scene, meeting, request, notes);
+                return of_separation(scene, meeting, request, arena);
             }
-            Standing::Own
+            PartStatus::Own
         }
-        Settled::Forced(normal, standing) => {
+        Settled::Forced(normal, status) => {
             let least = if distance > N::ZERO { distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&normal), least, tolerance };
             build_along(&pair, &along, request, raw);
-            standing
+            status
         }
     };
     if overlooks(raw, distance, tolerance) {
-        standing = Standing::Left;
+        status = PartStatus::Left;
         raw.points.clear();
     }
-    let (piece, lowest) = noted(placed, parts, notes);
-    let face = verdicts[1].face().filter(|_| standing != Standing::Left);
-    Some(Finding { distance, normal, piece, lowest, standing, face, tolerance })
+    let (piece, lowest) = appended(placed, parts, arena);
+    let face = filtered[1].face().filter(|_| status != PartStatus::Left);
+    Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }
 
 /// Two parts that touch at their nearest points, with a normal that the surface has there, in the frame of the
@@ -306,9 +306,9 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
 /// the normal of the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
-    verdict: &Verdict<N, D>,
+    filtered: &FilteredNormal<N, D>,
 ) -> bool {
-    matches!(over, FeatureId::Face(_)) == matches!(verdict, Verdict::Face(_))
+    matches!(over, FeatureId::Face(_)) == matches!(filtered, FilteredNormal::Face(_))
 }
 
 /// The contact of a ball with a known feature.
@@ -326,14 +326,14 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
-    notes: &mut Notes<N, D>,
+    arena: &mut Arena<N, D>,
 ) -> (Piece<N, D>, N) {
     let placed = scene.pair(parts);
-    let (pair, raw) = (placed.pair(), notes.blank());
+    let (pair, raw) = (placed.pair(), arena.blank());
     if let Some(found) = (N::tables().separation)(&pair, request.prediction) {
         build_between(&pair, &found, request, raw);
     }
-    noted(&placed, parts, notes)
+    appended(&placed, parts, arena)
 }
 
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
@@ -354,32 +354,32 @@ enum Settled<N: Real, const D: usize> {
     /// A contact with this normal at the witness.
     Found(Vector<N, D>),
     /// Contacts with a face along this normal, where there are some.
-    Forced(Vector<N, D>, Standing),
+    Forced(Vector<N, D>, PartStatus),
 }
 
-/// Takes the verdicts together; `normal` is the one that both are about. All in the frame of
+/// Combines the results of both surfaces; `normal` is the one that they are about. All in the frame of
 /// the first shape.
 fn settled<N: Space<D>, const D: usize>(
     placed: &PartPair<'_, N, D>,
-    verdicts: &[Verdict<N, D>; 2],
+    filtered: &[FilteredNormal<N, D>; 2],
     normal: &Vector<N, D>,
 ) -> Settled<N, D> {
-    use Verdict::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
+    use FilteredNormal::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
     let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
-    let standing = if verdicts.iter().any(|verdict| matches!(verdict, Beyond(_))) {
-        Standing::Beyond
+    let status = if filtered.iter().any(|filtered| matches!(filtered, Beyond(_))) {
+        PartStatus::Beyond
     } else {
-        Standing::Snapped
+        PartStatus::Snapped
     };
-    match verdicts {
+    match filtered {
         [Nothing, _] | [_, Nothing] => Settled::Nothing,
         [Snapped(face1) | Beyond(face1), Snapped(face2) | Beyond(face2)] => {
             let face2 = of_second(face2);
             let is_first_nearer = face1.dot(normal) > face2.dot(normal);
-            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, standing)
+            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, status)
         }
-        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), standing),
-        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, standing),
+        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), status),
+        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, status),
         [Refused, _] | [_, Refused] => Settled::Refused,
         [_, Face(face)] => Settled::Found(of_second(face)),
         [Face(face), _] => Settled::Found(*face),

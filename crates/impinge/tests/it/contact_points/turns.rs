@@ -1,0 +1,56 @@
+//! Rotations of solids: by quarters, by small angles from these, and any.
+
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{Real, Vector};
+use impinge_reference::random::Random;
+
+/// The rotations of one dimension.
+pub(crate) struct Turns<R> {
+    /// One of those that take axes to axes.
+    pub(crate) straight: fn(&mut Random) -> R,
+    /// By an angle about an axis across the second one.
+    pub(crate) tilt: fn(f64, &mut Random) -> R,
+    pub(crate) any: fn(&mut Random) -> R,
+}
+
+/// Rotations in 2D; `CLEAN` are those of [`component`].
+pub(crate) fn turns2<N: Real, const CLEAN: bool>() -> Turns<UnitComplex<N>> {
+    Turns {
+        straight: |random| {
+            turned2::<N, CLEAN>([0.0, 0.5, 1.0, 1.5][random.below(4)] * core::f64::consts::PI)
+        },
+        tilt: |angle, random| turned2::<N, CLEAN>(*random.pick(&[angle, -angle])),
+        any: |random| turned2::<N, CLEAN>(random.range(-3.0, 3.0)),
+    }
+}
+
+/// Rotations in 3D, as [`turns2`].
+pub(crate) fn turns3<N: Real, const CLEAN: bool>() -> Turns<UnitQuaternion<N>> {
+    Turns {
+        straight: |random| {
+            let axis = random.below(3);
+            let sign = *random.pick(&[0.0, 0.5, 1.0, -0.5]);
+            turned3::<N, CLEAN>(Vector::<f64, 3>::ith(axis, sign * core::f64::consts::PI))
+        },
+        tilt: |angle, random| {
+            let [x, y] = random.unit_vector::<2>();
+            turned3::<N, CLEAN>(Vector::<f64, 3>::new(x, 0.0, y) * angle)
+        },
+        any: |random| turned3::<N, CLEAN>(Vector::<f64, 3>::from(random.vector::<3>(3.0))),
+    }
+}
+
+fn turned2<N: Real, const CLEAN: bool>(angle: f64) -> UnitComplex<N> {
+    let [cos, sin] = [angle.cos(), angle.sin()].map(component::<N, CLEAN>);
+    UnitComplex::from_cos_sin_unchecked(cos, sin)
+}
+
+pub(crate) fn turned3<N: Real, const CLEAN: bool>(by: Vector<f64, 3>) -> UnitQuaternion<N> {
+    let turn = UnitQuaternion::from_scaled_axis(by);
+    UnitQuaternion::new_normalize(turn.into_inner().coords.map(component::<N, CLEAN>).into())
+}
+
+/// A component of a rotation; a clean one is zero if it is nothing beside the rounding of 1.
+fn component<N: Real, const CLEAN: bool>(x: f64) -> N {
+    if CLEAN && x.abs() < N::EPSILON.as_f64() / 64.0 { N::ZERO } else { N::lit(x) }
+}
