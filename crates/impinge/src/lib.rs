@@ -62,6 +62,7 @@
 pub mod bounding_volume;
 pub mod broad_phase;
 pub mod bvh;
+mod collide;
 pub(crate) mod convex;
 pub mod dim2;
 pub mod dim3;

@@ -9,6 +9,19 @@ use core::fmt;
 
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
+use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
+use crate::collide::packet::{GapVisitor, TiledParts};
+use crate::collide::parts::Between;
+use crate::collide::separation::{
+    Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
+    in_world, seen_in_plane, seen_in_space, separation_in_plane, separation_in_space,
+    touching_in_world,
+};
+use crate::collide::{
+    ManifoldRequest, OnFace, Pair, Placed, RawManifold, Solid, between2, build3, contact_in_world,
+    contacts2, contacts3, on_face2, on_face3, tangents2, tangents3, witness_feature2,
+    witness_feature3, witness_features2, witness_features3,
+};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::narrow_phase::{
@@ -17,25 +30,13 @@ use crate::narrow_phase::{
     update_lanes3,
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
-use crate::query::composite::{
-    Between, CompositeContacts, PartPoint, RayQuestion, each_hit, nearest_part, over2, over3,
-    update_chain, update_on_surface,
-};
+use crate::query::composite::{PartPoint, RayQuestion, each_hit, is_crossed, nearest_part};
 use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
-use crate::query::separation::{
-    Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
-    in_world, seen_in_plane, seen_in_space, separation_in_plane, separation_in_space,
-    touching_in_world,
-};
-use crate::query::tiles::{GapVisitor, TiledParts};
 use crate::query::{
-    ContactManifold, Flight, Impact, ImpactOptions, ManifoldRequest, Moving, OnFace, Pair, Placed,
-    PointProjection, Proximity, RawManifold, RayIntersection, Solid, Witness, between2, build3,
-    contact_in_world, contacts2, contacts3, impact_of_flight, impact_of_pair, on_face2, on_face3,
-    tangents2, tangents3, time_of_pair, witness_feature2, witness_feature3, witness_features2,
-    witness_features3, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, Moving, PointProjection, Proximity,
+    RayIntersection, Witness, impact_of_flight, impact_of_pair, time_of_pair, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -84,6 +85,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) nearest_part: NearestPartFn<N, D>,
     /// Calls with each part of a composite that a ray hits.
     pub(crate) each_hit: EachHitFn<N, D>,
+    /// A ray meets a composite by a time.
+    pub(crate) is_crossed: fn(&dyn CompositeShape<N, D>, &Ray<N, D>, N) -> bool,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
     /// Those of some pairs of a group, several at a time, if that can be done.
@@ -330,6 +333,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             surface_point: particular.surface_point,
             nearest_part,
             each_hit,
+            is_crossed,
             contacts: particular.contacts,
             update_lanes: particular.update_lanes,
             tangents: particular.tangents,

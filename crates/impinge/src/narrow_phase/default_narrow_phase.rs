@@ -15,10 +15,10 @@ use super::state::ContactState;
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::Changes;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
+use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::memory::Recent;
 use crate::pairs::PairTable;
-use crate::query::ManifoldRequest;
 use crate::shape::Shape;
 
 /// Contacts and proximities of the pairs of a world, kept from update to update.

@@ -6,10 +6,9 @@ use super::group::Rows;
 use super::reuse::Reference;
 use super::state::ContactState;
 use super::update::{Changes, note_touching};
+use crate::collide::{KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2, update_pairs3};
 use crate::math::Space;
-use crate::query::{
-    ContactManifold, KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2, update_pairs3,
-};
+use crate::query::ContactManifold;
 
 /// The contacts of some pairs of convex solids.
 pub(super) type ContactRows<'a, N, const D: usize> = Rows<

@@ -9,8 +9,9 @@ use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactPrediction, ProximityAlgorithm, ProximityDispatcher,
 };
 use super::{IdAllocator, ObjectTable};
+use crate::collide::ManifoldRequest;
 use crate::math::{Real, Space};
-use crate::query::{ManifoldRequest, Proximity};
+use crate::query::Proximity;
 
 /// What an update, or the end, of a pair means to the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,9 @@ use super::state::{CompositeState, ContactState, Posed, poses_within};
 use super::traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
 };
+use crate::collide::ManifoldRequest;
 use crate::math::{Real, Space};
-use crate::query::{ContactManifold, ManifoldRequest};
+use crate::query::ContactManifold;
 use crate::shape::Shape;
 
 /// How many points a manifold is reduced to unless more are asked for: what it takes to delimit an

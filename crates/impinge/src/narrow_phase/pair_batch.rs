@@ -7,9 +7,9 @@ use super::entry::Change;
 use super::group::PairKey;
 use super::lanes::{Lane, Location};
 use super::{DefaultNarrowPhase, Events, Interaction, ObjectTable, PairQuery};
+use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::pairs::pack;
-use crate::query::ManifoldRequest;
 
 /// Pairs of each sort whose memory is fetched together.
 const AT_ONCE: usize = 16;

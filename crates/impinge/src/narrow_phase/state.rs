@@ -1,14 +1,15 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
 use super::group::PairKey;
-use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::composite::Between;
-use crate::query::far::{Apart, Bounds};
-use crate::query::pair::is_swapped;
-use crate::query::{
-    CompositeContacts, ContactManifold, ManifoldRequest, ManifoldView, Pair, PairQuestion, Placed,
-    Placement, Proximity, RawManifold, Solid, canonical, materialise, own_distance,
+use crate::collide::pair::is_swapped;
+use crate::collide::parts::Between;
+use crate::collide::{
+    CompositeContacts, ManifoldRequest, Pair, PairQuestion, Placed, RawManifold, Solid, canonical,
+    own_distance,
 };
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::query::far::{Apart, Bounds};
+use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.

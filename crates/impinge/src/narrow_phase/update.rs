@@ -11,8 +11,8 @@ use super::lanes::{Lane, Location};
 use super::reuse::{Reference, Reuse};
 use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
+use crate::collide::Solid;
 use crate::math::Space;
-use crate::query::Solid;
 
 /// Below one pair to update in this many, the pairs are found from the objects that changed rather
 /// than by going through all of them.

@@ -1,6 +1,6 @@
 //! The points of two solids that are nearest to each other.
 
-use super::pair::Placed;
+use crate::collide::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
 

@@ -1,6 +1,6 @@
 //! A contact: two points and a normal.
 
-use super::pair::Placed;
+use crate::collide::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 

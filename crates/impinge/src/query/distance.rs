@@ -1,6 +1,6 @@
 //! How far apart two solids are.
 
-use super::pair::Placed;
+use crate::collide::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 

@@ -164,11 +164,11 @@ pub(crate) fn are_beyond<N: Real, const D: usize>(apart: &Apart<'_, N, D>, limit
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::collide::Pair;
+    use crate::collide::separation::hulls::tests::Random;
+    use crate::collide::separation::separation;
     use crate::math::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
     use crate::math::{Point, Pose, Space};
-    use crate::query::Pair;
-    use crate::query::separation::hulls::tests::Random;
-    use crate::query::separation::separation;
     use crate::shape::{
         Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Plane,
         Rounded, Segment, Shape, TaperedCapsule, TriMesh, Triangle,

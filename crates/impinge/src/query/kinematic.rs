@@ -9,7 +9,8 @@ use core::fmt;
 
 pub use self::own::ContactSide;
 use self::side::Side;
-use super::{Contact, Pair, RawPoint};
+use super::Contact;
+use crate::collide::{Pair, RawPoint};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, min, unit};
 use crate::shape::{FeatureId, Geometry};

@@ -1,7 +1,8 @@
 //! Contact manifolds as users see them: world frame, kinematics, ids.
 
 use super::kinematic::Sides;
-use super::{Contact, ContactKinematic, Pair, RawManifold, RawPoint};
+use super::{Contact, ContactKinematic};
+use crate::collide::{Pair, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.

@@ -3,8 +3,9 @@
 use core::fmt;
 
 use super::manifold::placed;
-use super::manifold_build::Patch;
-use super::{Contact, ContactId, ContactManifold, Placement, RawManifold, RawPoint};
+use super::{Contact, ContactId, ContactManifold, Placement};
+use crate::collide::mesh::Patch;
+use crate::collide::{RawManifold, RawPoint};
 use crate::math::{Real, Unit, Vector};
 use crate::shape::FeatureId;
 

@@ -1,6 +1,6 @@
 //! How near two solids are, in three words.
 
-use super::pair::Placed;
+use crate::collide::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 

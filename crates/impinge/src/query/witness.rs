@@ -1,8 +1,8 @@
 //! The nearest points of two shapes with all that is known about them.
 
-use super::composite::{Between, PartPair, PartSeparation, Wanted, nearest_between};
-use super::pair::Placed;
-use super::separation::placed;
+use crate::collide::pair::Placed;
+use crate::collide::parts::{Between, PartPair, PartSeparation, Wanted, nearest_between};
+use crate::collide::separation::placed;
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};

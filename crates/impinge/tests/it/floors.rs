@@ -7,13 +7,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up.
-const FLOORS: [&[&str]; 10] = [
+const FLOORS: [&[&str]; 11] = [
     &["generation", "math", "memory"],
     &["bounding_volume", "pairs"],
     &["bvh"],
     &["partitioning"],
     &["shape"],
     &["convex", "transformation", "procedural"],
+    &["collide"],
     &["query"],
     &["broad_phase", "narrow_phase"],
     &["world"],

@@ -3,11 +3,11 @@
 use core::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use super::between::{Between, PartPair, by_number};
-use super::bounds::loosened;
 use super::mover::Mover;
-use super::separation::{Wanted, nearest_between};
 use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::collide::parts::between::{Between, PartPair, by_number};
+use crate::collide::parts::bounds::loosened;
+use crate::collide::parts::{Wanted, nearest_between};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Path, advance_from};

@@ -1,9 +1,9 @@
 //! When a convex solid on a straight path can first be as near to parts as it is asked to come.
 
-use super::between::Between;
-use super::bounds::aabb_of;
-use super::slabs::{across, corners, range};
 use crate::bounding_volume::Aabb;
+use crate::collide::parts::between::Between;
+use crate::collide::parts::bounds::aabb_of;
+use crate::collide::parts::slabs::{across, corners, range};
 use crate::math::{Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{Geometry, Part, SupportMap};
 

@@ -1,7 +1,7 @@
 //! Where a point lies to a composite: as it lies to the nearest part.
 
-use super::between::recentred;
-use super::bounds::{around_point, loosened};
+use crate::collide::parts::between::recentred;
+use crate::collide::parts::bounds::{around_point, loosened};
 use crate::math::{Point, Real, Space, Vector, max};
 use crate::query::point::{SurfacePoint, length};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Part, PartSolid};
@@ -103,7 +103,7 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
 }
 
 /// The entry of the table of shapes.
-pub(in crate::query) fn surface_point<N: Space<D>, const D: usize>(
+pub(crate) fn surface_point<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
 ) -> SurfacePoint<N, D> {

@@ -4,8 +4,8 @@
 //! for zero, which counts for both sides (see `triangle3`), and the search is asked with a box around
 //! the ray's origin that holds what rounding makes of times and boxes.
 
-use super::bounds::{around_point, loosened};
 use crate::bounding_volume::Ray;
+use crate::collide::parts::bounds::{around_point, loosened};
 use crate::math::{Real, Space, max};
 use crate::query::{RayCast, RayIntersection};
 use crate::shape::CompositeShape;
@@ -44,4 +44,18 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
         }
         if latest < N::ZERO { latest } else { loosened(max(latest, N::ZERO)) }
     });
+}
+
+/// A ray meets a composite by a time.
+pub(crate) fn is_crossed<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    ray: &Ray<N, D>,
+    max_time: N,
+) -> bool {
+    let mut is_hit = false;
+    each_hit(parts, &RayQuestion { ray: *ray, max_time, solid: false }, &mut |_| {
+        is_hit = true;
+        -N::ONE
+    });
+    is_hit
 }

@@ -7,8 +7,8 @@
 
 use super::motion::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
+use crate::collide::parts::{PartPair, Sweep};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
-use crate::query::composite::{PartPair, Sweep};
 use crate::shape::{Geometry, Shape};
 
 /// At most so many spans are tried to find how far a bound carries.

@@ -1,10 +1,10 @@
 //! The first touch of two solids that do not turn: the kernel, on one pair.
 
 use super::ImpactStatus;
+use crate::collide::Pair;
+use crate::collide::separation::separation;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
-use crate::query::Pair;
-use crate::query::separation::separation;
 use crate::shape::{FeatureId, Geometry, Kind};
 
 /// At most so many steps are made.
@@ -247,7 +247,7 @@ pub(super) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::query::separation::hulls::tests::Random;
+    use crate::collide::separation::hulls::tests::Random;
     use crate::shape::{Ball, Shape};
 
     /// Balls that fly past each other at all distances: those that meet do when steps find that they do.

@@ -17,9 +17,10 @@ pub use motion::{ConstantVelocities, RigidMotion};
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
-use super::composite::{Between, PartArrival, first_arrival};
+use super::composite::{PartArrival, first_arrival};
 use super::far::Apart;
-use super::pair::{Ordered, Pair, Placed, order};
+use crate::collide::pair::{Ordered, Pair, Placed, order};
+use crate::collide::parts::Between;
 use crate::math::{
     AbstractRotation, Isometry, Point, Real, Space, Unit, Vector, max, max_component,
 };

@@ -5,13 +5,13 @@ use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use core::cmp::Ordering;
 use core::iter;
 
-use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
-use crate::query::Pair;
-use crate::query::composite::{
+use crate::collide::Pair;
+use crate::collide::pair::{Placed, order};
+use crate::collide::parts::{
     Between, PairVisitor, PartSeparation, Sweep, Wanted, nearest_between, visit_near_pairs,
 };
-use crate::query::pair::{Placed, order};
-use crate::query::separation::separation;
+use crate::collide::separation::separation;
+use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
 use crate::shape::Shape;
 
 /// At most so many steps are made.

@@ -1,12 +1,13 @@
 //! A predicted contact against the contact that a new query finds.
 
 use super::ContactKinematic;
-use crate::convex::Separation;
-use crate::math::{Isometry3, Point, Pose, Real, Unit, Vector};
-use crate::query::manifold_build::tests::scene::{
+use crate::collide::manifold::tests::scene::{
     Random, Scene, describe, fact, for_all_pairs, manifold, request,
 };
-use crate::query::{Pair, Placement, RawManifold, materialise};
+use crate::collide::{Pair, RawManifold};
+use crate::convex::Separation;
+use crate::math::{Isometry3, Point, Pose, Real, Unit, Vector};
+use crate::query::{Placement, materialise};
 use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape};
 
 fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
@@ -60,7 +61,8 @@ where
     }
 
     fn followed(&self, raw: &RawManifold<f64, D>) -> usize {
-        let is_it = |p: &crate::query::RawPoint<f64, D>| [p.feature1, p.feature2] == self.followed;
+        let is_it =
+            |p: &crate::collide::RawPoint<f64, D>| [p.feature1, p.feature2] == self.followed;
         raw.points
             .iter()
             .position(is_it)

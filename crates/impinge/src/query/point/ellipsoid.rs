@@ -1,8 +1,8 @@
 //! The nearest point of the surface of an ellipsoid.
 
 use super::SurfacePoint;
+use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Point, Real};
-use crate::query::separation::ball_ellipsoid::project;
 use crate::shape::{Ellipsoid, FeatureId, SupportMap};
 
 /// What a ball of no radius there would touch. One without thickness is the set it is flattened to.

@@ -1,8 +1,9 @@
 //! The nearest point of the surface of a rounded solid.
 
 use super::SurfacePoint;
+use crate::collide::Pair;
+use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Space};
-use crate::query::{Pair, separation::separation};
 use crate::shape::{Ball, FeatureId, Geometry, Kind, RoundedSolid};
 
 /// Beyond the nearest point of what is rounded. A radius of zero changes nothing.

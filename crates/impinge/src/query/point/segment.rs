@@ -8,7 +8,7 @@ use crate::shape::{FeatureId, Segment, SupportMap};
 /// second, between them inside. Equal ends are a point.
 ///
 /// Measured from the nearer end, so that long segments lose nothing there.
-pub(in crate::query) fn nearest<N: Real, const D: usize>(
+pub(crate) fn nearest<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     point: &Point<N, D>,
 ) -> (Point<N, D>, N) {
@@ -45,11 +45,7 @@ fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 
 }
 
 /// The name of a place on a segment: an end, or what lies between.
-pub(in crate::query) fn feature_at<N: Real>(
-    fraction: N,
-    ends: [u32; 2],
-    between: FeatureId,
-) -> FeatureId {
+pub(crate) fn feature_at<N: Real>(fraction: N, ends: [u32; 2], between: FeatureId) -> FeatureId {
     if fraction <= N::ZERO {
         FeatureId::Vertex(ends[0])
     } else if fraction >= N::ONE {

@@ -48,10 +48,7 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
 
     /// The public form. A point that is its own projection is inside, whatever the arithmetic of
     /// the shape has found: distance zero and being inside are one thing.
-    pub(in crate::query) fn projection(
-        self,
-        asked: &Point<N, D>,
-    ) -> (PointProjection<N, D>, FeatureId) {
+    pub(crate) fn projection(self, asked: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         let finite = asked.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(asked - self.point)) == N::ZERO;
         let is_inside = finite && touches;
@@ -60,7 +57,7 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
 }
 
 /// The length of a vector, right also where its square is no number of the type; NaN for NaN.
-pub(in crate::query) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+pub(crate) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     unit(v).map_or_else(|| v.norm(), |(_, length)| length)
 }
 

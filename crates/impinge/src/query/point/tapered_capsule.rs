@@ -2,8 +2,8 @@
 
 use super::SurfacePoint;
 use super::segment::surface_point as segment_point;
+use crate::collide::separation::balls::ball_tapered::project;
 use crate::math::{Point, Real};
-use crate::query::separation::ball_tapered::project;
 use crate::shape::TaperedCapsule;
 
 /// What a ball of no radius there would touch. Without any radius it is a segment.

@@ -3,8 +3,8 @@
 use super::ball::roots;
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
+use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Real, Vector, max, max_component, min, unit_or};
-use crate::query::separation::ball_ellipsoid::project;
 use crate::shape::{Ellipsoid, FeatureId};
 
 /// In units of the half axes it is a ball. One without thickness is met in one point, unless the line

@@ -3,8 +3,9 @@
 use super::Span;
 use super::support_map::Seen;
 use crate::bounding_volume::Ray;
+use crate::collide::Pair;
+use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
-use crate::query::{Pair, separation::separation};
 use crate::shape::{Ball, Geometry, Kind, RoundedSolid, ShapeKind};
 
 /// Searched by the distances of what is rounded; without a radius the line and that.

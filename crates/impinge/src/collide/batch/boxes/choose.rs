@@ -1,0 +1,217 @@
+//! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
+
+use super::LANES;
+use super::admit::Slots;
+use crate::collide::manifold::reduce::{Projected, Projections, chosen};
+use crate::collide::{RawManifold, RawPoint};
+use crate::math::{Real, Vector};
+use crate::shape::FeatureId;
+
+/// The most slots of a pair: those of space.
+pub(super) const SLOTS: usize = 24;
+
+/// The slots of one pair.
+pub(super) struct Choice<'a, N: Real, const D: usize, const COUNT: usize> {
+    pub(super) slots: &'a Slots<N, D, COUNT>,
+    pub(super) lane: usize,
+    /// The slots that hold a candidate, by bits.
+    pub(super) valid: u32,
+    /// Those with the smallest distance but for rounding.
+    pub(super) level: u32,
+    pub(super) gap: N,
+    pub(super) tolerance: N,
+}
+
+/// How the slots of one pair are named.
+pub(super) trait Naming {
+    /// The features of a candidate, of the first and the second box.
+    fn features(&self, slot: usize) -> [FeatureId; 2];
+
+    /// The candidate with the features of a point, among those that there are.
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
+
+    /// A number, not zero, that no candidate of any pair has but in this slot with these features;
+    /// the slot is in the lowest bits.
+    fn code(&self, slot: usize) -> u32;
+}
+
+/// The bits of a code that are the slot.
+const SLOT_BITS: u32 = 31;
+
+/// The slot that a code tells.
+#[inline(always)]
+const fn slot_of(code: u32) -> usize {
+    (code & SLOT_BITS) as usize
+}
+
+/// The numbers of the old points, for the slots that have their names.
+struct Kept {
+    slots: u32,
+    /// All of the old points are candidates again, and in the same slots.
+    is_still: bool,
+    ids: [u32; SLOTS],
+}
+
+impl Kept {
+    /// Takes over the numbers; no two old points share their names, nor do two slots.
+    #[inline(always)]
+    fn of<N: Real, const D: usize>(
+        old: &[RawPoint<N, D>],
+        naming: &impl Naming,
+        valid: u32,
+    ) -> Self {
+        let mut kept = Self { slots: 0, is_still: true, ids: [0; SLOTS] };
+        for point in old {
+            let own = slot_of(point.code);
+            let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
+            kept.is_still &= is_same;
+            let slot = if is_same { Some(own) } else { naming.slot(point, valid & !kept.slots) };
+            if let Some(slot) = slot {
+                kept.slots |= 1 << slot;
+                kept.ids[slot] = point.id;
+            }
+        }
+        kept
+    }
+
+    #[inline(always)]
+    const fn has(&self, slot: usize) -> bool {
+        self.slots >> slot & 1 == 1
+    }
+}
+
+/// The numbers of the bits that are set, upwards.
+#[inline(always)]
+const fn ones(bits: u32) -> Ones {
+    Ones(bits)
+}
+
+#[derive(Clone)]
+struct Ones(u32);
+
+impl Iterator for Ones {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let slot = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
+        (slot < SLOTS).then_some(slot)
+    }
+
+    #[inline(always)]
+    fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
+}
+
+impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
+    /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates.
+    #[inline(always)]
+    pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
+        let kept = Kept::of(&raw.points, naming, self.valid);
+        let is_full = self.valid.count_ones() as usize <= limit;
+        let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
+        let deepest = self.deepest(slots, kept.slots);
+        if kept.is_still && kept.slots == slots {
+            self.put_all(deepest, raw);
+        } else {
+            self.replace(slots, deepest, (&kept, naming), raw);
+        }
+    }
+
+    /// Nothing has changed but places.
+    #[inline(always)]
+    fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
+        for point in &mut raw.points {
+            self.put(slot_of(point.code), deepest, point);
+        }
+    }
+
+    /// Puts the points of some slots, by bits, in the place of those there are.
+    #[inline(always)]
+    fn replace(
+        &self,
+        slots: u32,
+        deepest: usize,
+        (kept, naming): (&Kept, &impl Naming),
+        raw: &mut RawManifold<N, D>,
+    ) {
+        raw.points.resize(slots.count_ones() as usize, RawPoint::default());
+        let (mut last, mut is_sorted) = (0, true);
+        for (slot, point) in ones(slots).zip(&mut raw.points) {
+            point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
+            is_sorted &= last <= point.id;
+            last = point.id;
+            self.put(slot, deepest, point);
+            [point.feature1, point.feature2] = naming.features(slot);
+            point.code = naming.code(slot);
+        }
+        if !is_sorted {
+            raw.points.sort_by_key(|point| point.id);
+        }
+    }
+
+    /// Says where the candidate of a slot is.
+    #[inline(always)]
+    fn put(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
+        let lane = self.lane & (LANES - 1);
+        for (x, row) in point.point1.iter_mut().zip(&self.slots.points1[slot]) {
+            *x = row[lane];
+        }
+        point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+    }
+
+    #[inline(always)]
+    fn distance(&self, slot: usize) -> N {
+        self.slots.distances[slot][self.lane & (LANES - 1)]
+    }
+
+    #[inline(always)]
+    fn flat(&self, slot: usize) -> Vector<N, 2> {
+        let [x, y] = &self.slots.flat;
+        let lane = self.lane & (LANES - 1);
+        Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
+    }
+
+    /// Of some slots the one that stands for the witness: of those whose distance is the smallest but for
+    /// rounding one that the previous manifold held, then the deepest.
+    #[inline(always)]
+    fn deepest(&self, slots: u32, kept: u32) -> usize {
+        let level = self.level & slots;
+        let preferred = [level & kept, level, slots];
+        self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
+    }
+
+    /// The first of some slots with the smallest distance of them.
+    #[inline(always)]
+    fn lowest(&self, slots: u32) -> usize {
+        let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
+        if slots.count_ones() > 1 {
+            for slot in ones(slots) {
+                let new = self.distance(slot);
+                if new < distance {
+                    (lowest, distance) = (slot, new);
+                }
+            }
+        }
+        lowest
+    }
+
+    /// At most `limit` slots, by bits, as `reduce::chosen` has them.
+    #[inline(always)]
+    fn chosen(&self, limit: usize, kept: u32) -> u32 {
+        let mut level = self.level;
+        if level == 0 {
+            let least = self.distance(self.lowest(self.valid));
+            let lowest = ones(self.valid).filter(|&slot| self.distance(slot) <= least);
+            level = lowest.fold(0, |slots, slot| slots | 1 << slot);
+        }
+        let mut points = Projections::new();
+        for slot in ones(self.valid) {
+            let [is_deepest, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
+            points.push(Projected { at: self.flat(slot), index: slot, is_deepest, is_kept });
+        }
+        chosen(&mut points, limit, self.tolerance).iter().fold(0, |slots, slot| slots | 1 << slot)
+    }
+}

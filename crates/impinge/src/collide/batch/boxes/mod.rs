@@ -1,0 +1,108 @@
+//! Boxes against boxes.
+//!
+//! What depends on the pair is chosen by masks, and a corner of the common area has a slot of its own whether it is
+//! there or not ([`admit`]). Only the choice of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs
+//! whose nearest points are off the faces that face each other, fall back to the builder for one pair.
+
+mod admit;
+mod choose;
+mod plane;
+mod space;
+
+pub(super) use self::plane::Boxes2;
+pub(super) use self::space::Boxes3;
+use super::gather::Inputs;
+use super::{LANES, PairQuestion, Solid, masks};
+use crate::collide::manifold::frame::ROUNDING_ERRORS;
+use crate::math::lanes::{by_axis, either, lit, norm, seen_from};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Real, Wide};
+
+impl<N: Real, const D: usize> Inputs<N, D> {
+    /// Two boxes and where they are; answers whether both are.
+    #[inline(always)]
+    fn put_boxes(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+        let [Solid::Cuboid(box1), Solid::Cuboid(box2)] = pair.solids else { return false };
+        self.put_poses(lane, pair);
+        self.put_sine(lane, pair.request.sine);
+        self.put_end(lane, (0, 0), box1.half_extents());
+        self.put_end(lane, (1, 0), box2.half_extents());
+        true
+    }
+
+    /// The boxes, the second of each pair in the frame of the first.
+    #[inline(always)]
+    fn boxes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Boxes<V, D> {
+        let (pose12, half1, half2) =
+            (self.pose12::<S, V>(simd), self.end(simd, (0, 0)), self.end(simd, (1, 0)));
+        Boxes { rotation: pose12.rotation, translation: pose12.translation, half1, half2 }
+    }
+}
+
+/// Eight pairs of boxes, the second of each placed in the frame of the first.
+pub(super) struct Boxes<V, const D: usize> {
+    /// By columns: the axes of the second box.
+    pub(super) rotation: [[V; D]; D],
+    pub(super) translation: [V; D],
+    pub(super) half1: [V; D],
+    pub(super) half2: [V; D],
+}
+
+/// What a box of the pair sees of the other, the second where the mask says so: the other's axes and
+/// its translation, as `Pose::inverse` has them for the second.
+#[inline(always)]
+pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
+    boxes: &Boxes<V, D>,
+    is_second: V::Mask,
+) -> ([[V; D]; D], [V; D]) {
+    let (r, t) = (&boxes.rotation, &boxes.translation);
+    let inverse = seen_from(r, t);
+    let rotation = by_axis(
+        #[inline(always)]
+        |j| {
+            let row = by_axis(
+                #[inline(always)]
+                |axis| r[axis][j],
+            );
+            either(is_second, &row, &r[j])
+        },
+    );
+    let shift = by_axis(
+        #[inline(always)]
+        |axis| is_second.select(-inverse[axis], t[axis]),
+    );
+    (rotation, shift)
+}
+
+/// Lengths below this are rounding errors, as for the general builder.
+#[inline(always)]
+pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    boxes: &Boxes<V, D>,
+) -> V {
+    let size = norm(&boxes.half1) + norm(&boxes.half2) + norm(&boxes.translation);
+    lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
+}
+
+/// The lanes all of whose numbers are finite, and so is the sum of their magnitudes.
+#[inline(always)]
+pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    boxes: &Boxes<V, D>,
+) -> V::Mask {
+    let mut all = size(&boxes.translation);
+    for axis in &boxes.rotation {
+        all += size(axis);
+    }
+    all.simd_lt(V::all(simd, N::INFINITY))
+}
+
+/// The sum of the magnitudes.
+#[inline(always)]
+fn size<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
+    let mut sum = v[0].abs();
+    for x in &v[1..] {
+        sum += x.abs();
+    }
+    sum
+}

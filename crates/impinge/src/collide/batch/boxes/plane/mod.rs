@@ -1,0 +1,165 @@
+//! 2D boxes: the separating axis test and the overlap of the sides in lanes.
+
+mod axis;
+mod names;
+mod sides;
+
+use self::names::Names;
+use self::sides::Sides;
+use super::admit::{Admission, Limits, Slots};
+use super::choose::Choice;
+use super::masks::turned;
+use super::{Inputs, LANES};
+use crate::collide::batch::{Batch, PairQuestion};
+use crate::collide::manifold::contacts_of_separation2;
+use crate::collide::{ManifoldRequest, Pair, RawManifold};
+use crate::math::lanes::{bits, lit};
+use crate::math::simd::Simd;
+use crate::math::{Real, Vector, Wide};
+
+/// The ends of the upper side, the one with the smaller place first, and of the lower one.
+const SLOTS: usize = 4;
+
+/// What is known of eight pairs before points are chosen.
+pub(in super::super) struct EightSides<N: Real> {
+    slots: Slots<N, 2, SLOTS>,
+    gap: [N; LANES],
+    tolerance: [N; LANES],
+    normal: [[N; LANES]; 2],
+    /// The lanes: the axis across the lower side is the second, the side is on the positive side of
+    /// it; the same of the upper side; the lower side is the second box's; the upper side's first
+    /// end is the one on the positive side of its box; too far apart; the slots are filled.
+    sides: [u8; 8],
+    /// Of each slot, whether it is at the first end of the other side, and at the second.
+    at_ends: [u8; 2 * SLOTS],
+    /// For each pair the slots that hold a candidate, and those with the smallest distance.
+    filled: [u8; LANES],
+}
+
+/// Pairs of 2D boxes.
+pub(in super::super) struct Boxes2;
+
+impl<N: Real> EightSides<N> {
+    fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            slots: Slots::new(),
+            gap: row,
+            tolerance: row,
+            normal: [row; 2],
+            sides: [0; 8],
+            at_ends: [0; 2 * SLOTS],
+            filled: [0; LANES],
+        }
+    }
+}
+
+impl<N: Real> Batch<N, 2> for Boxes2 {
+    type Found = EightSides<N>;
+
+    fn blank() -> EightSides<N> {
+        EightSides::new()
+    }
+
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
+        inputs.put_boxes(lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 2>,
+        found: &mut EightSides<N>,
+    ) {
+        found.find::<S, V>(simd, inputs);
+        found.turn();
+    }
+
+    #[inline(always)]
+    fn settle(
+        found: &EightSides<N>,
+        lane: usize,
+        max_points: usize,
+        raw: &mut RawManifold<N, 2>,
+    ) -> bool {
+        found.settle(lane & (LANES - 1), max_points, raw)
+    }
+
+    fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
+        contacts_of_separation2(pair, request, raw);
+    }
+}
+
+impl<N: Real> EightSides<N> {
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2>) {
+        let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
+        let axis = boxes.best_side(simd);
+        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
+        let is_apart = bits(is_apart & axis.is_finite);
+        let is_asked = bits(is_near) & inputs.is_usable;
+        self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
+        if is_asked == 0 {
+            return;
+        }
+        let sides = Sides::meeting(simd, &boxes, &axis);
+        let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
+        let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
+        self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
+        let is_built = bits(admission.is_found() & sides.is_fit) & is_asked;
+        self.sides = [
+            bits(sides.is_y),
+            bits(sides.is_upward),
+            bits(sides.is_own_y),
+            bits(sides.is_positive),
+            bits(axis.is_second),
+            bits(sides.is_turned),
+            is_apart,
+            is_built,
+        ];
+        axis.gap.store(&mut self.gap);
+        sides.tolerance.store(&mut self.tolerance);
+        axis.normal[0].store(&mut self.normal[0]);
+        axis.normal[1].store(&mut self.normal[1]);
+        let is_second = axis.is_second;
+        admission.admit(
+            simd,
+            &mut self.slots,
+            #[inline(always)]
+            |[place, _], height| sides.point1(simd, &boxes, is_second, (place, height)),
+        );
+    }
+
+    /// From masks of eight pairs to a byte for each pair.
+    #[inline(always)]
+    fn turn(&mut self) {
+        let [a, b, c, d] = self.slots.valid;
+        let [e, f, g, h] = self.slots.level;
+        self.filled = turned([a, b, c, d, e, f, g, h]);
+        (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
+    }
+
+    #[inline(always)]
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
+        let names = Names { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
+        if is_apart {
+            raw.points.clear();
+        } else if is_built {
+            let slots = u32::from(self.filled[lane]);
+            let choice = Choice {
+                slots: &self.slots,
+                lane,
+                valid: slots & 15,
+                level: slots >> SLOTS,
+                gap: self.gap[lane],
+                tolerance: self.tolerance[lane],
+            };
+            choice.settle(&names, max_points.clamp(1, 2), raw);
+            raw.normal = Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane]);
+        }
+        is_apart | is_built
+    }
+}

@@ -1,0 +1,255 @@
+//! Boxes in 3D: the separating axis test, and the corners of the area that the two faces share.
+
+mod axis;
+mod clip;
+mod faces;
+mod names;
+mod shown;
+
+use self::clip::{Clip, Corners};
+use self::faces::Faces;
+use self::names::{Names, Side, parts_at};
+use super::admit::{Limits, Slots};
+use super::choose::{Choice, SLOTS};
+use super::masks::turned;
+use super::{Boxes, Inputs, LANES};
+use crate::collide::batch::{Batch, PairQuestion};
+use crate::collide::manifold::contacts_of_separation3;
+use crate::collide::{ManifoldRequest, Pair, RawManifold};
+use crate::math::lanes::{bits, lit};
+use crate::math::simd::Simd;
+use crate::math::{Real, Vector, Wide};
+
+/// What is known of eight pairs before points are chosen.
+pub(in super::super) struct EightFaces<N: Real> {
+    slots: Slots<N, 3, SLOTS>,
+    corners: Corners,
+    gap: [N; LANES],
+    tolerance: [N; LANES],
+    normal: [[N; LANES]; 3],
+    /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
+    /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
+    sides: [u8; 8],
+    /// The lanes that are too far apart, and those whose slots are filled.
+    is_apart: u8,
+    is_built: u8,
+    columns: Columns,
+}
+
+/// Pairs of 3D boxes.
+pub(in super::super) struct Boxes3;
+
+impl<N: Real> EightFaces<N> {
+    fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            slots: Slots::new(),
+            corners: Corners::new(),
+            gap: row,
+            tolerance: row,
+            normal: [row; 3],
+            sides: [0; 8],
+            is_apart: 0,
+            is_built: 0,
+            columns: Columns([[0; LANES]; 7]),
+        }
+    }
+}
+
+impl<N: Real> Batch<N, 3> for Boxes3 {
+    type Found = EightFaces<N>;
+
+    fn blank() -> EightFaces<N> {
+        EightFaces::new()
+    }
+
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
+        inputs.put_boxes(lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 3>,
+        found: &mut EightFaces<N>,
+    ) {
+        found.find::<S, V>(simd, inputs);
+        found.turn();
+    }
+
+    #[inline(always)]
+    fn settle(
+        found: &EightFaces<N>,
+        lane: usize,
+        max_points: usize,
+        raw: &mut RawManifold<N, 3>,
+    ) -> bool {
+        found.settle(lane & (LANES - 1), max_points, raw)
+    }
+
+    fn fall_back(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 3>) {
+        contacts_of_separation3(pair, request, raw);
+    }
+}
+
+impl<N: Real> EightFaces<N> {
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3>) {
+        let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
+        let axis = boxes.best_axis(simd);
+        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
+        self.is_apart = bits(is_apart & axis.is_finite);
+        let is_asked = bits(is_near) & inputs.is_usable;
+        self.is_built = 0;
+        if is_asked == 0 {
+            return;
+        }
+        let faces = Faces::meeting(simd, &boxes, &axis);
+        let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
+        let limits = Limits { gap, prediction, sine, tolerance };
+        let is_found = if bits(!faces.is_whole) & is_asked == 0 {
+            self.fill::<S, V, false>(simd, &boxes, &faces, &limits)
+        } else {
+            self.fill::<S, V, true>(simd, &boxes, &faces, &limits)
+        };
+        self.is_built = bits(is_found & faces.is_fit) & is_asked;
+        self.sides = [
+            bits(faces.is_w[0]),
+            bits(faces.is_w[1]),
+            bits(faces.is_upward),
+            bits(faces.is_m[0]),
+            bits(faces.is_m[1]),
+            bits(faces.is_positive),
+            bits(faces.is_second),
+            0,
+        ];
+        axis.gap.store(&mut self.gap);
+        faces.tolerance.store(&mut self.tolerance);
+        for (row, along) in self.normal.iter_mut().zip(axis.normal) {
+            along.store(row);
+        }
+    }
+
+    /// From masks of eight pairs to a byte for each pair.
+    #[inline(always)]
+    fn turn(&mut self) {
+        self.columns = Columns::of(self);
+    }
+
+    #[inline(always)]
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
+        let is_apart = self.is_apart >> lane & 1 == 1;
+        let is_built = self.is_built >> lane & 1 == 1;
+        if is_apart {
+            raw.points.clear();
+        } else if is_built {
+            self.choose(lane, max_points, raw);
+        }
+        is_apart | is_built
+    }
+
+    /// Fills the slots, `PARTIAL` where one of the faces leans too far; answers where they hold the
+    /// separation.
+    #[inline(always)]
+    fn fill<S: Simd, V: Wide<S, Scalar = N>, const PARTIAL: bool>(
+        &mut self,
+        simd: S,
+        boxes: &Boxes<V, 3>,
+        faces: &Faces<V, V::Mask>,
+        limits: &Limits<V>,
+    ) -> V::Mask {
+        let (slots, corners) = (&mut self.slots, &mut self.corners);
+        let found = Clip::<_, _, _, _, PARTIAL>::new(simd, faces, limits, slots, corners).run();
+        found.admit(
+            simd,
+            &mut self.slots,
+            #[inline(always)]
+            |flat, height| faces.point1::<_, _, PARTIAL>(simd, boxes, (flat, height)),
+        );
+        found.is_found()
+    }
+
+    #[inline(always)]
+    fn choose(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) {
+        let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
+        let sides = Sides::of(bits);
+        let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
+        let choice = Choice {
+            slots: &self.slots,
+            lane,
+            valid: columns.slots(0, lane),
+            level: columns.slots(3, lane),
+            gap: self.gap[lane],
+            tolerance: self.tolerance[lane],
+        };
+        choice.settle(&Names::new(&sides, bits, parts), max_points.max(1), raw);
+        let [x, y, z] = &self.normal;
+        raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
+    }
+}
+
+/// The faces of one pair.
+struct Sides {
+    rectangle: Side,
+    parallelogram: Side,
+    is_second: bool,
+}
+
+impl Sides {
+    /// From the bits of `EightFaces::sides`.
+    #[inline(always)]
+    fn of(bits: u8) -> Self {
+        const AXES: [usize; 4] = [2, 0, 1, 0];
+        let side =
+            |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+        Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
+    }
+}
+
+/// The masks of eight pairs, turned so that a byte has the bits of one pair: three bytes of the slots
+/// that are there, three of those that are level, one of the faces.
+struct Columns([[u8; LANES]; 7]);
+
+impl Columns {
+    #[inline(always)]
+    fn of<N: Real>(found: &EightFaces<N>) -> Self {
+        let Slots { valid, level, .. } = &found.slots;
+        let rows = [
+            part(valid, 0),
+            part(valid, 8),
+            part(valid, 16),
+            part(level, 0),
+            part(level, 8),
+            part(level, 16),
+            found.sides,
+        ];
+        let mut columns = [[0; LANES]; 7];
+        for (column, row) in columns.iter_mut().zip(rows) {
+            *column = turned(row);
+        }
+        Self(columns)
+    }
+
+    #[inline(always)]
+    fn byte(&self, row: usize, lane: usize) -> u8 {
+        self.0[row][lane & (LANES - 1)]
+    }
+
+    /// The bits of all slots.
+    #[inline(always)]
+    fn slots(&self, row: usize, lane: usize) -> u32 {
+        let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
+        u32::from_le_bytes(bytes)
+    }
+}
+
+/// Eight bytes in a row.
+#[inline(always)]
+fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
+    core::array::from_fn(
+        #[inline(always)]
+        |index| bytes[first + index],
+    )
+}

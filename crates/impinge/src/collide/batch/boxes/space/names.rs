@@ -1,0 +1,274 @@
+//! Names of the slots of one pair, and the slots of names.
+
+use super::super::choose::{Naming, SLOTS};
+use super::Sides;
+use super::clip::{CORNERS, SIGNS};
+use crate::collide::RawPoint;
+use crate::math::Real;
+use crate::shape::FeatureId;
+
+/// The parts of a face: three times the place along its first axis plus that along its second, where
+/// a place is at the negative end, between, at the positive end.
+const PARTS: usize = 9;
+/// A box has fewer features of each kind than that.
+const NUMBERS: usize = 12;
+/// What is no part, and no slot.
+const NONE: u8 = u8::MAX;
+
+/// A face of a box.
+struct FaceNames {
+    parts: [FeatureId; PARTS],
+    /// The part of each feature by kind and number.
+    part_of: [u8; 3 * NUMBERS],
+}
+
+/// By axis, and whether the face is on its positive side.
+static FACES: [[FaceNames; 2]; 3] = [
+    [FaceNames::new(0, false), FaceNames::new(0, true)],
+    [FaceNames::new(1, false), FaceNames::new(1, true)],
+    [FaceNames::new(2, false), FaceNames::new(2, true)],
+];
+
+impl FaceNames {
+    const fn new(axis: usize, is_positive: bool) -> Self {
+        let mut parts = [face(axis, is_positive); PARTS];
+        let mut part_of = [NONE; 3 * NUMBERS];
+        let mut part: u8 = 0;
+        while (part as usize) < PARTS {
+            let id = part_of_face(axis, is_positive, [part / 3, part % 3]);
+            parts[part as usize] = id;
+            part_of[index_of(id)] = part;
+            part += 1;
+        }
+        Self { parts, part_of }
+    }
+
+    /// The part that bears a name; [`NONE`] for another face's.
+    #[inline(always)]
+    fn part(&self, id: FeatureId) -> u8 {
+        self.part_of.get(index_of(id)).copied().unwrap_or(NONE)
+    }
+}
+
+/// Where a feature stands in a list by kind and number; beyond it for what is no part of a box.
+#[inline(always)]
+const fn index_of(id: FeatureId) -> usize {
+    let (kind, number) = match id {
+        FeatureId::Vertex(number) => (0, number as usize),
+        FeatureId::Edge(number) => (1, number as usize),
+        FeatureId::Face(number) => (2, number as usize),
+    };
+    if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
+}
+
+/// The number of the vertex with these positive coordinates.
+const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
+    FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
+}
+
+/// The number of the edge along an axis, given the signs of the next axis and the one after.
+const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 4, 8];
+    FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
+}
+
+/// The number of the face on one side of an axis.
+const fn face(axis: usize, is_positive: bool) -> FeatureId {
+    const FIRST: [u32; 3] = [0, 2, 4];
+    FeatureId::Face(FIRST[axis] + !is_positive as u32)
+}
+
+const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
+    let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+    match (first, second) {
+        (1, 1) => face(w, is_positive),
+        (_, 1) => edge(v, is_positive, first == 2),
+        (1, _) => edge(u, second == 2, is_positive),
+        _ => vertex([(u, first == 2), (v, second == 2), (w, is_positive)]),
+    }
+}
+
+/// The four sides in the order of the slots: at the ends of the first axis, then of the second.
+const SIDES: [u8; 4] = [7, 1, 5, 3];
+/// The part that a corner is of its own face.
+const OWN: [u8; 4] = own_parts();
+/// Two parts, of rectangle and parallelogram, in one number: that many of the first, and the second.
+const PAIRS: usize = PARTS * PARTS;
+
+const fn own_parts() -> [u8; 4] {
+    let mut own = [0; 4];
+    let mut corner = 0;
+    while corner < 4 {
+        let [x, y] = SIGNS[corner];
+        own[corner] = 6 * x as u8 + 2 * y as u8;
+        corner += 1;
+    }
+    own
+}
+
+/// The pairs of parts that the slots stand for; of a corner only what its own part adds.
+const OWN_PAIRS: [u8; PLACES] = own_pairs();
+
+const fn own_pairs() -> [u8; PLACES] {
+    let mut pairs = [NONE; PLACES];
+    let mut slot = 0;
+    while slot < SLOTS {
+        pairs[slot] = if slot < 4 {
+            OWN[slot]
+        } else if slot < CORNERS {
+            9 * OWN[slot - 4]
+        } else {
+            9 * SIDES[(slot - CORNERS) % 4] + SIDES[(slot - CORNERS) / 4]
+        };
+        slot += 1;
+    }
+    pairs
+}
+
+/// The two parts of a pair.
+static PARTS_OF: [[u8; 2]; PAIRS] = parts_of();
+
+const fn parts_of() -> [[u8; 2]; PAIRS] {
+    let mut all = [[0; 2]; PAIRS];
+    let mut pair: u8 = 0;
+    while (pair as usize) < PAIRS {
+        all[pair as usize] = [pair / 9, pair % 9];
+        pair += 1;
+    }
+    all
+}
+
+/// The slots that may stand for two parts: of a corner of the parallelogram or a crossing, and of a
+/// corner of the rectangle.
+static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
+
+const fn slots_of() -> [[u8; 2]; PAIRS] {
+    let mut all = [[NONE; 2]; PAIRS];
+    let mut slot: u8 = 0;
+    while (slot as usize) < SLOTS {
+        let own = OWN_PAIRS[slot as usize] as usize;
+        let mut part = 0;
+        while part < PARTS {
+            if slot < 4 {
+                all[own + PARTS * part][0] = slot;
+            } else if (slot as usize) < CORNERS {
+                all[own + part][1] = slot;
+            } else {
+                all[own][0] = slot;
+            }
+            part += 1;
+        }
+        slot += 1;
+    }
+    all
+}
+
+/// One in each byte.
+const ONES: u64 = 0x0101_0101_0101_0101;
+
+/// How the slots of one pair are named.
+pub(super) struct Names {
+    rectangle: &'static FaceNames,
+    parallelogram: &'static FaceNames,
+    is_second: bool,
+    /// The faces as a code has them.
+    faces: u32,
+    pairs: [u8; PLACES],
+}
+
+/// As many as a code may name slots.
+const PLACES: usize = 32;
+/// Where the two parts stand in a code, and the faces; every code has the last bit.
+const PARTS_AT: u32 = 5;
+const FACES_AT: u32 = 12;
+const MARK: u32 = 1 << 31;
+/// The bits of the two parts.
+const PAIR_BITS: u32 = 127;
+
+impl Names {
+    /// From the two faces, as bits too.
+    #[inline(always)]
+    pub(super) fn new(sides: &Sides, bits: u8, parts: u64) -> Self {
+        let mut pairs = OWN_PAIRS;
+        let own = u64::from_le_bytes([
+            pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
+        ]);
+        let below = parts & 0xffff_ffff;
+        let corners = own + 9 * below + (parts - below);
+        pairs[..CORNERS].copy_from_slice(&corners.to_le_bytes());
+        let names = |side: Side| &FACES[side.axis][usize::from(side.is_positive)];
+        Self {
+            rectangle: names(sides.rectangle),
+            parallelogram: names(sides.parallelogram),
+            is_second: sides.is_second,
+            faces: MARK | u32::from(bits) << FACES_AT,
+            pairs,
+        }
+    }
+}
+
+impl Names {
+    /// The two parts that bear these names, as one number.
+    #[inline(always)]
+    fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
+        let (below, above) = if self.is_second { (second, first) } else { (first, second) };
+        let (below, above) = (self.rectangle.part(below), self.parallelogram.part(above));
+        let is_there = below != NONE && above != NONE;
+        is_there.then(|| PARTS * usize::from(below) + usize::from(above))
+    }
+}
+
+impl Naming for Names {
+    #[inline(always)]
+    fn features(&self, slot: usize) -> [FeatureId; 2] {
+        let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];
+        let below = self.rectangle.parts[usize::from(below)];
+        let above = self.parallelogram.parts[usize::from(above)];
+        if self.is_second { [above, below] } else { [below, above] }
+    }
+
+    #[inline(always)]
+    fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize> {
+        let pair = if point.code >> FACES_AT == self.faces >> FACES_AT {
+            (point.code >> PARTS_AT & PAIR_BITS) as usize
+        } else {
+            self.pair([point.feature1, point.feature2])?
+        };
+        let is_it = |slot: u8| {
+            let slot = usize::from(slot);
+            slot < SLOTS && usize::from(self.pairs[slot]) == pair && valid >> slot & 1 == 1
+        };
+        let [one, other] = SLOTS_OF[pair];
+        let slot = if is_it(one) { one } else { other };
+        is_it(slot).then_some(usize::from(slot))
+    }
+
+    #[inline(always)]
+    fn code(&self, slot: usize) -> u32 {
+        let pair = u32::from(self.pairs[slot & (PLACES - 1)]);
+        self.faces | pair << PARTS_AT | u32::from(slot.to_le_bytes()[0])
+    }
+}
+
+/// A face of a box.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    pub(super) axis: usize,
+    pub(super) is_positive: bool,
+}
+
+/// The part of the other face that each of eight corners lies on, a byte for each: from the bits of
+/// one lane, of which `at_end` and `beyond` have a byte for each corner.
+#[inline(always)]
+pub(super) fn parts_at(
+    lane: usize,
+    at_end: &[[u8; CORNERS]; 2],
+    beyond: &[[u8; CORNERS]; 2],
+) -> u64 {
+    let third = |axis: usize| {
+        let at_end = u64::from_le_bytes(at_end[axis]) >> lane & ONES;
+        let beyond = u64::from_le_bytes(beyond[axis]) >> lane;
+        ONES - at_end + 2 * (at_end & beyond)
+    };
+    3 * third(0) + third(1)
+}

@@ -1,0 +1,202 @@
+//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule, and segments
+//! and capsules. Their manifold is one point, of segments of the plane perhaps two.
+
+use core::marker::PhantomData;
+
+use super::gather::Inputs;
+use super::masks::turned;
+use super::vectors::{bits, is_finite};
+use super::{Batch, LANES, PairQuestion};
+use crate::collide::manifold::{Candidate, choose, ids};
+use crate::collide::{ManifoldRequest, Pair, RawManifold};
+use crate::convex::Separation;
+use crate::math::simd::Simd;
+use crate::math::{Point, Real, Space, Vector, Wide};
+use crate::shape::FeatureId;
+
+/// A closed form in lanes.
+pub(super) trait Form<N: Real, const D: usize> {
+    /// As [`Batch::gather`].
+    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool;
+
+    /// The contacts of eight pairs.
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, D>,
+        found: &mut EightContacts<N, D>,
+    );
+
+    /// The features of the two solids that a pair's byte of [`EightContacts::parts`] stands for.
+    fn features(parts: u8) -> [FeatureId; 2];
+
+    /// As [`Batch::fall_back`].
+    #[inline(never)]
+    fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>)
+    where
+        N: Space<D>,
+    {
+        (N::tables().contacts)(pair, request, raw);
+    }
+}
+
+/// A batch of pairs with such a form.
+pub(super) struct ClosedForm<F>(PhantomData<F>);
+
+impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
+    type Found = EightContacts<N, D>;
+
+    fn blank() -> Self::Found {
+        EightContacts::new()
+    }
+
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+        F::gather(inputs, lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, D>,
+        found: &mut EightContacts<N, D>,
+    ) {
+        F::find::<S, V>(simd, inputs, found);
+        found.is_found &= inputs.is_usable;
+        found.is_apart &= inputs.is_usable;
+        found.parts = turned(found.parts);
+    }
+
+    #[inline(always)]
+    fn settle(
+        found: &EightContacts<N, D>,
+        lane: usize,
+        _: usize,
+        raw: &mut RawManifold<N, D>,
+    ) -> bool {
+        found.settle::<F>(lane, raw)
+    }
+
+    fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>) {
+        F::fall_back(pair, request, raw);
+    }
+}
+
+/// The contacts of eight pairs.
+pub(super) struct EightContacts<N: Real, const D: usize> {
+    pub(super) normal: [[N; LANES]; D],
+    pub(super) gap: [N; LANES],
+    /// The first and the second contact: the points on the first solid, and the distances, of which that of a
+    /// lone contact is the gap.
+    pub(super) points1: [[[N; LANES]; D]; 2],
+    pub(super) distances: [[N; LANES]; 2],
+    /// Lengths up to this are rounding errors, where there are two contacts.
+    pub(super) tolerance: [N; LANES],
+    /// Eight masks that tell what the points lie on, then a byte for each pair; what the bits mean is up to the
+    /// form. Where there are two contacts, four are of the first.
+    pub(super) parts: [u8; LANES],
+    /// The lanes that are too far apart, those that have a contact, and those that have two. The others are
+    /// declined.
+    pub(super) is_apart: u8,
+    pub(super) is_found: u8,
+    pub(super) is_two: u8,
+}
+
+impl<N: Real, const D: usize> EightContacts<N, D> {
+    const fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            normal: [row; D],
+            gap: row,
+            points1: [[row; D]; 2],
+            distances: [row; 2],
+            tolerance: row,
+            parts: [0; LANES],
+            is_apart: 0,
+            is_found: 0,
+            is_two: 0,
+        }
+    }
+
+    /// What is known of eight pairs, where that is usual: the distance, the normal and the point on the
+    /// first solid.
+    #[inline(always)]
+    pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        inputs: &Inputs<N, D>,
+        (distance, is_usual): (V, V::Mask),
+        [normal, point1]: [&[V; D]; 2],
+    ) {
+        let prediction = inputs.prediction::<S, V>(simd);
+        let is_usual = is_usual & is_finite(simd, distance);
+        self.is_apart = bits(distance.simd_gt(prediction) & is_usual);
+        self.is_found = bits(distance.simd_le(prediction) & is_usual);
+        distance.store(&mut self.gap);
+        for axis in 0..D {
+            normal[axis].store(&mut self.normal[axis]);
+            point1[axis].store(&mut self.points1[0][axis]);
+        }
+    }
+
+    /// Replaces the manifold of one pair; answers whether that was possible.
+    #[inline(always)]
+    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
+        let parts = self.parts[lane & (LANES - 1)];
+        let [is_found, is_apart, is_two] =
+            [self.is_found, self.is_apart, self.is_two].map(|lanes| lanes >> lane & 1 == 1);
+        if is_found {
+            raw.normal = vector(&self.normal, lane);
+            if is_two {
+                self.settle_two([F::features(parts), F::features(parts >> 4)], lane, raw);
+                return true;
+            }
+            let (point1, distance) = (vector(&self.points1[0], lane), self.gap[lane & (LANES - 1)]);
+            let features = F::features(parts);
+            match raw.points.as_mut_slice() {
+                [old] if [old.feature1, old.feature2] == features => {
+                    old.point1 = Point::from(point1);
+                    old.distance = distance;
+                }
+                _ => replace((point1, distance), features, raw),
+            }
+        } else if is_apart {
+            raw.points.clear();
+        }
+        is_found | is_apart
+    }
+
+    /// Two contacts, whose normal is given.
+    fn settle_two(&self, features: [[FeatureId; 2]; 2], lane: usize, raw: &mut RawManifold<N, D>) {
+        let lane = lane & (LANES - 1);
+        let mut candidates = [0, 1].map(|which| Candidate {
+            point1: Point::from(vector(&self.points1[which], lane)),
+            distance: self.distances[which][lane],
+            flat: Vector::<N, 2>::zeros(),
+            features: features[which],
+            kept_id: None,
+        });
+        choose(&mut candidates, self.gap[lane], self.tolerance[lane], 2, raw);
+    }
+}
+
+/// Makes a point the only one of a manifold which had another, or others.
+#[inline(never)]
+fn replace<N: Real, const D: usize>(
+    (point, distance): (Vector<N, D>, N),
+    features: [FeatureId; 2],
+    raw: &mut RawManifold<N, D>,
+) {
+    let (point1, point2) = (Point::from(point), Point::from(point));
+    let found = Separation { distance, normal: raw.normal, point1, point2 };
+    ids::settle_alone(&Candidate::alone(&found, features), raw);
+}
+
+/// The vector of one lane.
+#[inline(always)]
+fn vector<N: Real, const D: usize>(rows: &[[N; LANES]; D], lane: usize) -> Vector<N, D> {
+    let mut vector = Vector::<N, D>::zeros();
+    for axis in 0..D {
+        vector[axis] = rows[axis][lane & (LANES - 1)];
+    }
+    vector
+}

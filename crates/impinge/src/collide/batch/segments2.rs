@@ -1,0 +1,369 @@
+//! Segments and capsules of the plane: the interval in which their cores face each other, as `stretch.rs` has
+//! it for all flat-sided solids, in lanes.
+
+use super::PairQuestion;
+use super::closed_form::{EightContacts, Form};
+use super::gather::Inputs;
+use super::nearest::{END_OR_SIDE, farther};
+use super::vectors::{
+    bits, by_axis, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times,
+};
+use crate::collide::manifold::contacts_of_separation2;
+use crate::collide::separation::SegmentGap;
+use crate::collide::{ManifoldRequest, Pair, RawManifold};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Real, Wide};
+use crate::shape::FeatureId;
+
+/// Segments and capsules whose cores are apart and are seen as more than points.
+pub(super) struct Segments2;
+
+impl<N: Real> Form<N, 2> for Segments2 {
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
+        inputs.put_cores(lane, pair) && pair.request.max_points > 1
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 2>,
+        found: &mut EightContacts<N, 2>,
+    ) {
+        let pose12 = inputs.pose12::<S, V>(simd);
+        let ends1 = [inputs.end::<S, V>(simd, (0, 0)), inputs.end::<S, V>(simd, (0, 1))];
+        let local2 = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
+        let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
+        let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
+        let apart = SegmentGap::of(simd, [&ends1, &ends2]);
+        let ((reach1, is_usual1), (reach2, is_usual2)) =
+            (farther(simd, &ends1), farther(simd, &local2));
+        let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
+        let normal = apart.normal;
+        let line = ContactLine {
+            normal,
+            tangent: [normal[1], -normal[0]],
+            point1: plus(&apart.points[0], &times(&normal, radii[0])),
+            distance: apart.gap - radii[0] - radii[1],
+            tolerance: rounding_of::<S, N, V>(simd, size),
+            prediction: inputs.prediction(simd),
+            sine: inputs.sine(simd),
+        };
+        let sides = [
+            LaneSide::of(simd, &line, &ends1, radii[0], true),
+            LaneSide::of(simd, &line, &ends2, radii[1], false),
+        ];
+        let contacts = Contacts::of(simd, &line, &sides);
+        contacts.store(found);
+        line.tolerance.store(&mut found.tolerance);
+        let is_apart = apart.is_known & line.distance.simd_gt(line.prediction);
+        let is_fit = apart.is_known & is_usual1 & is_usual2 & contacts.is_known;
+        found.put(
+            simd,
+            inputs,
+            (line.distance, is_fit | is_apart),
+            [&normal, &contacts.first.point1],
+        );
+    }
+
+    #[inline(always)]
+    fn features(parts: u8) -> [FeatureId; 2] {
+        [END_OR_SIDE[usize::from(parts & 3)], END_OR_SIDE[usize::from(parts >> 2 & 3)]]
+    }
+
+    fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
+        contacts_of_separation2(pair, request, raw);
+    }
+}
+
+/// A point or vector of the plane in each lane.
+type Plane<V> = [V; 2];
+
+/// The line perpendicular to the normal through the nearest point of the first solid, and what is asked for: a
+/// [`Frame`](crate::collide::manifold::frame::Frame) in lanes.
+struct ContactLine<V> {
+    normal: Plane<V>,
+    tangent: Plane<V>,
+    point1: Plane<V>,
+    distance: V,
+    tolerance: V,
+    prediction: V,
+    sine: V,
+}
+
+impl<V> ContactLine<V> {
+    /// The place on the line where a point is seen.
+    #[inline(always)]
+    fn flat<S: Simd>(&self, point: &Plane<V>) -> V
+    where
+        V: Wide<S>,
+    {
+        dot(&self.tangent, &minus(point, &self.point1))
+    }
+
+    /// The distance to give to a pair of points seen at a place, and where it is admitted.
+    #[inline(always)]
+    fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
+    where
+        V: Wide<S>,
+    {
+        let distance = distance.larger(self.distance);
+        let is_near = distance.simd_le(self.prediction);
+        let is_at = distance.simd_le(self.prediction + self.tolerance);
+        let is_turned = distance.simd_le(self.prediction + self.sine * flat.abs());
+        let beyond = is_at.select(self.prediction, distance);
+        (is_near.select(distance, beyond), is_near | is_at | is_turned)
+    }
+}
+
+/// A segment as seen along the normal, perhaps with a radius around it.
+struct LaneSide<V, M> {
+    is_first: bool,
+    /// The ends in the order of their places, and these.
+    ends: [Plane<V>; 2],
+    places: [V; 2],
+    /// They are in the opposite order of the segment's.
+    is_turned: M,
+    radius: V,
+    /// Between the segment and the line of contact.
+    cosine: V,
+    /// How far the end nearest to the other solid is below the supporting line, and where it is seen.
+    top: (V, V),
+    /// It leans so much that it counts as its nearest end.
+    is_point: M,
+    /// Its ends are seen apart from each other.
+    is_wide: M,
+    /// The nearest point lies at the segment's first end; at its last.
+    at_witness: [M; 2],
+}
+
+impl<V, M> LaneSide<V, M> {
+    #[inline(always)]
+    fn of<S: Simd, N: Real>(
+        simd: S,
+        line: &ContactLine<V>,
+        ends: &[Plane<V>; 2],
+        radius: V,
+        is_first: bool,
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let [first, last] = ends;
+        let flats = [line.flat(first), line.flat(last)];
+        let is_turned = flats[1].simd_lt(flats[0]);
+        let places = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
+        let length = places[1] - places[0];
+        let cosine = length / norm(&minus(last, first));
+        let is_point = cosine.simd_lt(lit::<S, N, V>(simd, 0.5));
+        let heights = [dot(&line.normal, first), dot(&line.normal, last)];
+        let is_higher = heights[1].simd_gt(heights[0]);
+        let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
+        let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
+        let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
+        let mut side = Self {
+            is_first,
+            ends: [either(is_turned, last, first), either(is_turned, first, last)],
+            places,
+            is_turned,
+            radius,
+            cosine,
+            top: (radius, is_last_near.select(flats[1], flats[0])),
+            is_point,
+            is_wide: length.simd_gt(line.tolerance),
+            at_witness: [
+                either_mask(is_point, !is_last_near, is_at[0]),
+                either_mask(is_point, is_last_near, is_at[1] & !is_at[0]),
+            ],
+        };
+        side.top.0 = side.below_witness(&either(is_last_near, last, first), line);
+        side
+    }
+
+    /// How far a point of the core is below the nearest point of the surface.
+    #[inline(always)]
+    fn below_witness<S: Simd>(&self, point: &Plane<V>, line: &ContactLine<V>) -> V
+    where
+        V: Wide<S>,
+    {
+        let height = dot(&line.normal, &minus(point, &line.point1));
+        if self.is_first { -height } else { height - line.distance }
+    }
+
+    /// The point of the core that is seen at a place.
+    #[inline(always)]
+    fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> Plane<V>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let share = (place - self.places[0]) / (self.places[1] - self.places[0]);
+        let share = share.larger(V::all(simd, N::ZERO)).smaller(V::all(simd, N::ONE));
+        plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
+    }
+
+    /// How far the rounded surface is above a point of the core, along the normal.
+    #[inline(always)]
+    fn lift<S: Simd, N: Real>(&self, simd: S, core: &Plane<V>, line: &ContactLine<V>) -> V
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let room = self.below_witness(core, line);
+        let away = line.flat(core) - self.top.1;
+        let (away_squared, radius) = (away * away, self.radius);
+        let turns_squared = radius * radius * (one - self.cosine * self.cosine);
+        let round = room - self.top.0 + (radius * radius - away_squared).sqrt();
+        let is_round = away_squared.simd_lt(turns_squared);
+        let lift = is_round.select(round, radius / self.cosine);
+        let lift = lift.smaller(room).larger(zero);
+        radius.simd_le(zero).select(zero, lift)
+    }
+
+    /// Where one of the ends, by the order of places, is the first of the segment, and where the last.
+    #[inline(always)]
+    fn names<S: Simd>(&self, end: usize) -> [M; 2]
+    where
+        M: SimdMask<S>,
+    {
+        let (turned, straight) = (self.is_turned, !self.is_turned);
+        if end == 0 { [straight, turned] } else { [turned, straight] }
+    }
+}
+
+/// A pair of points that face each other.
+struct LaneContact<V, M> {
+    point1: Plane<V>,
+    distance: V,
+    is_admitted: M,
+    /// At the first end of the first segment; at the last; the same of the second segment.
+    parts: [M; 4],
+}
+
+impl<V, M> LaneContact<V, M> {
+    /// One of the ends of the interval in which two sides face each other, by the order of places.
+    #[inline(always)]
+    fn of<S: Simd, N: Real>(
+        simd: S,
+        line: &ContactLine<V>,
+        sides: &[LaneSide<V, M>; 2],
+        end: usize,
+        place: V,
+    ) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let [first, second] = sides;
+        let is_at = [first, second].map(|side| {
+            // The segment ends here, or but for rounding.
+            (side.places[end] - place).abs().simd_le(line.tolerance)
+        });
+        let cores = [first.under(simd, place), second.under(simd, place)];
+        let gap = minus(&cores[1], &cores[0]);
+        let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
+        let half = times(&across, V::all(simd, N::HALF));
+        let cores = [plus(&cores[0], &half), minus(&cores[1], &half)];
+        let lifts = [first.lift(simd, &cores[0], line), second.lift(simd, &cores[1], line)];
+        let distance = dot(&line.normal, &minus(&cores[1], &cores[0])) - lifts[0] - lifts[1];
+        let point1 = plus(&cores[0], &times(&line.normal, lifts[0]));
+        let (distance, is_admitted) = line.admit(distance, line.flat(&point1));
+        let (names1, names2) = (first.names(end), second.names(end));
+        let parts = [
+            is_at[0] & names1[0],
+            is_at[0] & names1[1],
+            is_at[1] & names2[0],
+            is_at[1] & names2[1],
+        ];
+        Self { point1, distance, is_admitted, parts }
+    }
+
+    /// The other one where a mask says so.
+    #[inline(always)]
+    fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
+    where
+        V: Wide<S, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let (own, others) = (&self.parts, &other.parts);
+        Self {
+            point1: either(is_other, &other.point1, &self.point1),
+            distance: is_other.select(other.distance, self.distance),
+            is_admitted: either_mask(is_other, other.is_admitted, self.is_admitted),
+            parts: by_axis(
+                #[inline(always)]
+                |part| either_mask(is_other, others[part], own[part]),
+            ),
+        }
+    }
+}
+
+/// One contact or two.
+struct Contacts<V, M> {
+    first: LaneContact<V, M>,
+    second: LaneContact<V, M>,
+    is_two: M,
+    /// There are no others.
+    is_known: M,
+}
+
+impl<V, M> Contacts<V, M> {
+    /// The ends of the interval that are admitted, the nearest points if there are none.
+    ///
+    /// Not known is what rounding would decide, and what takes the nearest points besides an end.
+    #[inline(always)]
+    fn of<S: Simd, N: Real>(simd: S, line: &ContactLine<V>, sides: &[LaneSide<V, M>; 2]) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let [first, second] = sides;
+        let from = first.places[0].larger(second.places[0]);
+        let to = first.places[1].smaller(second.places[1]);
+        let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
+        let is_side = !first.is_point & !second.is_point;
+        let is_shared = (to - from).simd_gt(few) & is_side;
+        let is_beside = (from - to).simd_gt(few) | !is_side;
+        let mut low = LaneContact::of(simd, line, sides, 0, from);
+        let mut high = LaneContact::of(simd, line, sides, 1, to);
+        low.is_admitted &= is_shared;
+        high.is_admitted &= is_shared;
+        let is_two = low.is_admitted & high.is_admitted;
+        let is_any = low.is_admitted | high.is_admitted;
+        let level = line.distance + line.tolerance;
+        let is_level = (low.is_admitted & low.distance.simd_le(level))
+            | (high.is_admitted & high.distance.simd_le(level));
+        let [[a, b], [c, d]] = [first.at_witness, second.at_witness];
+        let witness = LaneContact {
+            point1: line.point1,
+            distance: line.distance,
+            is_admitted: !is_any,
+            parts: [a, b, c, d],
+        };
+        let is_wide = first.is_wide & second.is_wide;
+        Self {
+            first: high.or(&low, low.is_admitted).or(&witness, !is_any),
+            second: high,
+            is_two,
+            is_known: (is_shared | is_beside) & (is_level | !is_any) & is_wide,
+        }
+    }
+
+    #[inline(always)]
+    fn store<S: Simd, N: Real>(&self, found: &mut EightContacts<N, 2>)
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let parts = self.first.parts.iter().chain(&self.second.parts);
+        for (row, part) in found.parts.iter_mut().zip(parts) {
+            *row = bits(*part);
+        }
+        self.first.distance.store(&mut found.distances[0]);
+        self.second.distance.store(&mut found.distances[1]);
+        for axis in 0..2 {
+            self.second.point1[axis].store(&mut found.points1[1][axis]);
+        }
+        found.is_two = bits(self.is_two);
+    }
+}

@@ -1,0 +1,235 @@
+//! Segments and capsules of space: `separation/segment_segment.rs` and `segments.rs` in lanes.
+
+use super::PairQuestion;
+use super::closed_form::{EightContacts, Form};
+use super::gather::Inputs;
+use super::nearest::{END_OR_SIDE, farther};
+use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
+use crate::collide::separation::nearest_on_segment;
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Real, Wide};
+use crate::shape::FeatureId;
+
+/// Segments and capsules whose cores are some way apart and cross when seen along the normal.
+pub(super) struct Segments3;
+
+/// The ends of a segment in each lane.
+type Ends<V> = [[V; 3]; 2];
+
+impl<N: Real> Form<N, 3> for Segments3 {
+    #[inline(always)]
+    fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
+        inputs.put_cores(lane, pair)
+    }
+
+    #[inline(always)]
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        inputs: &Inputs<N, 3>,
+        found: &mut EightContacts<N, 3>,
+    ) {
+        let pose12 = inputs.pose12::<S, V>(simd);
+        let ends1 = [inputs.end::<S, V>(simd, (0, 0)), inputs.end::<S, V>(simd, (0, 1))];
+        let local2 = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
+        let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
+        let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
+        let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
+        let (normal, distance, is_best) = best_normal(simd, [&ends1, &ends2], &points);
+        let rounded = [
+            plus(&points[0], &times(&normal, radii[0])),
+            minus(&points[1], &times(&normal, radii[1])),
+        ];
+        let ((reach1, is_usual1), (reach2, is_usual2)) =
+            (farther(simd, &ends1), farther(simd, &local2));
+        let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
+        let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        let core1 = minus(&rounded[0], &times(&normal, radii[0]));
+        let core2 = plus(&rounded[1], &times(&normal, radii[1]));
+        let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
+        let has_part1 = found.put_end_or_side(0, &core1, &ends1, noise);
+        let has_part2 = found.put_end_or_side(2, &core2, &ends2, noise);
+        let signed = distance - radii[0] - radii[1];
+        let is_apart = is_moderate & signed.simd_gt(inputs.prediction::<S, V>(simd));
+        let is_found =
+            is_moderate & is_best & is_usual1 & is_usual2 & is_crossing & has_part1 & has_part2;
+        found.put(simd, inputs, (signed, is_found | is_apart), [&normal, &rounded[0]]);
+    }
+
+    #[inline(always)]
+    fn features(parts: u8) -> [FeatureId; 2] {
+        [END_OR_SIDE[usize::from(parts & 3)], END_OR_SIDE[usize::from(parts >> 2 & 3)]]
+    }
+}
+
+/// Two points and the square of their distance.
+struct Points<V> {
+    points: Ends<V>,
+    squared: V,
+}
+
+impl<V> Points<V> {
+    #[inline(always)]
+    fn new<S: Simd>(points: Ends<V>) -> Self
+    where
+        V: Wide<S>,
+    {
+        let between = minus(&points[1], &points[0]);
+        Self { points, squared: dot(&between, &between) }
+    }
+
+    /// The other points, where they are among the admitted lanes and nearer.
+    #[inline(always)]
+    fn or_nearer<S: Simd>(&self, other: &Self, is_admitted: Option<V::Mask>) -> Self
+    where
+        V: Wide<S>,
+    {
+        let is_nearer = other.squared.simd_lt(self.squared);
+        let is_nearer = match is_admitted {
+            Some(is_admitted) => is_nearer & is_admitted,
+            None => is_nearer,
+        };
+        let points = [
+            either(is_nearer, &other.points[0], &self.points[0]),
+            either(is_nearer, &other.points[1], &self.points[1]),
+        ];
+        Self { points, squared: is_nearer.select(other.squared, self.squared) }
+    }
+}
+
+/// `nearest_of_segments`; the mask says where lengths are such that it is.
+#[inline(always)]
+fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    ends1: &Ends<V>,
+    ends2: &Ends<V>,
+) -> (Ends<V>, V::Mask) {
+    let on1 = [
+        nearest_on_segment(simd, ends1, &ends2[0]).point,
+        nearest_on_segment(simd, ends1, &ends2[1]).point,
+    ];
+    let on2 = [
+        nearest_on_segment(simd, ends2, &ends1[0]).point,
+        nearest_on_segment(simd, ends2, &ends1[1]).point,
+    ];
+    let mut best = Points::new([ends1[0], on2[0]]);
+    for points in [[ends1[1], on2[1]], [on1[0], ends2[0]], [on1[1], ends2[1]]] {
+        best = best.or_nearer(&Points::new(points), None);
+    }
+    let (common, is_common, is_moderate) = common_perpendicular(simd, ends1, ends2);
+    (best.or_nearer(&Points::new(common), Some(is_common)).points, is_moderate)
+}
+
+/// The power of two at or below a number from 2⁻¹⁶ to 2¹⁶, and where it is one.
+#[inline(always)]
+fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    number: V,
+) -> (V, V::Mask) {
+    let (least, most) = (lit::<S, N, V>(simd, 1.0 / 65536.0), lit::<S, N, V>(simd, 65536.0));
+    let mut power = least;
+    for factor in [65536.0, 256.0, 16.0, 4.0, 2.0] {
+        let next = power * lit::<S, N, V>(simd, factor);
+        power = next.simd_le(number).select(next, power);
+    }
+    (power, number.simd_ge(least) & number.simd_lt(most))
+}
+
+/// A vector divided by the power of two below its `max_component`, and what to multiply by to divide
+/// another number so: powers of two have exact reciprocals.
+#[inline(always)]
+fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
+    let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
+    let (size, is_moderate) = power_of_two_below(simd, largest);
+    let inverse = V::all(simd, N::ONE) / size;
+    (times(v, inverse), inverse, is_moderate)
+}
+
+/// `common_perpendicular`: its ends, where it is one, and where lengths are such that it is known.
+#[inline(always)]
+fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    ends1: &Ends<V>,
+    ends2: &Ends<V>,
+) -> (Ends<V>, V::Mask, V::Mask) {
+    let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
+    let (toward1, inverse1, is_moderate1) = scaled(simd, &along1);
+    let (toward2, inverse2, is_moderate2) = scaled(simd, &along2);
+    let across = cross(&toward1, &toward2);
+    let squared = dot(&across, &across);
+    let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+    let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON);
+    let least = tiny * dot(&toward1, &toward1) * dot(&toward2, &toward2);
+    let (mut s, mut t, mut between) = (zero, zero, minus(&ends2[0], &ends1[0]));
+    let mut points = [ends1[0], ends2[0]];
+    for _ in 0..3 {
+        s += dot(&cross(&between, &toward2), &across) / squared * inverse1;
+        t += dot(&cross(&between, &toward1), &across) / squared * inverse2;
+        points = [plus(&ends1[0], &times(&along1, s)), plus(&ends2[0], &times(&along2, t))];
+        between = minus(&points[1], &points[0]);
+    }
+    let is_inside = s.simd_ge(zero) & s.simd_le(one) & t.simd_ge(zero) & t.simd_le(one);
+    (points, is_inside & squared.simd_gt(least), is_moderate1 & is_moderate2)
+}
+
+/// `best_normal` where that is the direction between the points, and their distance.
+#[inline(always)]
+fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [ends1, ends2]: [&Ends<V>; 2],
+    points: &Ends<V>,
+) -> ([V; 3], V, V::Mask) {
+    let mut reach = V::all(simd, N::ZERO);
+    for end in [&ends1[0], &ends1[1], &ends2[0], &ends2[1]] {
+        reach = norm(end).larger(reach);
+    }
+    let noise = lit::<S, N, V>(simd, 8.0) * V::all(simd, N::EPSILON) * reach;
+    let (normal, distance, is_usual) = unit(simd, &minus(&points[1], &points[0]));
+    let high = dot(&normal, &ends1[1]).larger(dot(&normal, &ends1[0]));
+    let low = dot(&normal, &ends2[1]).smaller(dot(&normal, &ends2[0]));
+    let is_best = (low - high + noise / lit::<S, N, V>(simd, 4.0)).simd_ge(distance);
+    (normal, distance, is_best & is_usual)
+}
+
+/// The lanes whose segments are not nearly parallel when seen along the normal.
+#[inline(always)]
+fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [ends1, ends2]: [&Ends<V>; 2],
+    normal: &[V; 3],
+    sine: V,
+) -> V::Mask {
+    let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
+    let (flat1, flat2) = (flat(&along1, normal), flat(&along2, normal));
+    let noise = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
+    let least = lit::<S, N, V>(simd, 2.0) * sine.larger(noise);
+    let turn = dot(normal, &cross(&along1, &along2));
+    (turn * turn).simd_gt(least * least * flat1 * flat2)
+}
+
+/// The square of the length of a vector seen along a normal.
+#[inline(always)]
+fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
+    let high = dot(normal, along);
+    dot(along, along) - high * high
+}
+
+impl<N: Real> EightContacts<N, 3> {
+    /// `part_at`: whether a point of a segment is at the first end and at the last, in two masks.
+    /// Answers the lanes where it is not at both.
+    #[inline(always)]
+    fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        place: usize,
+        point: &[V; 3],
+        [first, last]: &Ends<V>,
+        noise: V,
+    ) -> V::Mask {
+        let along = minus(last, first);
+        let (squared, reached) = (dot(&along, &along), dot(&minus(point, first), &along));
+        let slack = noise * squared.sqrt();
+        let (is_first, is_last) = (reached.simd_le(slack), (squared - reached).simd_le(slack));
+        self.parts[place] = bits(is_first);
+        self.parts[place + 1] = bits(is_last);
+        !(is_first & is_last)
+    }
+}

@@ -1,0 +1,367 @@
+//! Eight at a time against one by one, on every instruction set: bit for bit.
+
+use super::{
+    BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, PairQuestion,
+    Segments2, Segments3, Solid, update_at,
+};
+use crate::collide::manifold::tests::scene::{Random, Scene};
+use crate::collide::{ManifoldRequest, RawManifold};
+use crate::math::simd::Level;
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::shape::{Ball, Capsule, Cuboid, Segment};
+
+/// A pair and what is asked of it; not all need an update.
+#[derive(Clone)]
+struct Case<N: Real, const D: usize> {
+    poses: [Pose<N, D>; 2],
+    solids: [Solid<N, D>; 2],
+    request: ManifoldRequest<N>,
+    is_due: bool,
+}
+
+impl<N: Real, const D: usize> Case<N, D> {
+    fn question(&self) -> PairQuestion<'_, N, D> {
+        let (poses, solids) = (self.poses.each_ref(), self.solids.each_ref());
+        PairQuestion { poses, solids, request: &self.request }
+    }
+}
+
+/// Pairs with their manifolds, those that are due, and how many were begun, declined and ended.
+struct Kept<'a, N: Real, const D: usize> {
+    cases: &'a [Case<N, D>],
+    due: Vec<usize>,
+    raws: &'a mut [RawManifold<N, D>],
+    counts: [usize; 3],
+}
+
+impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
+    fn len(&self) -> usize {
+        self.due.len()
+    }
+
+    fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
+        self.counts[0] += 1;
+        self.cases[self.due[index]].question()
+    }
+
+    fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
+        self.counts[1] += 1;
+        let place = self.due[index];
+        (self.cases[place].question(), &mut self.raws[place])
+    }
+
+    fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
+        &mut self.raws[self.due[index]]
+    }
+
+    fn end(&mut self, _: usize) {
+        self.counts[2] += 1;
+    }
+}
+
+/// Numbers as bits, but for NaN, which has many.
+fn bits<N: Real>(value: N) -> u64 {
+    if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
+}
+
+/// All that a manifold says.
+fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
+    let mut facts: Vec<u64> = Vec::new();
+    for point in &raw.points {
+        facts.extend(point.point1.coords.iter().map(|&x| bits(x)));
+        facts.extend([bits(point.distance), u64::from(point.id)]);
+        for feature in [point.feature1, point.feature2] {
+            facts.extend(format!("{feature:?}").bytes().map(u64::from));
+        }
+    }
+    if !raw.points.is_empty() {
+        facts.extend(raw.normal.iter().map(|&x| bits(x)));
+    }
+    facts
+}
+
+/// Number by number, so that zeros have no sign, or bit by bit, as NaN is.
+fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifold<N, D>) -> bool {
+    one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
+}
+
+/// Some steps of the same pairs, so that names are inherited; answers how many points there were and
+/// how many pairs were declined, of how many.
+fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
+    steps: &[Vec<Case<N, D>>],
+    what: &str,
+) -> [usize; 3] {
+    let mut sums = [0; 3];
+    for level in Level::available() {
+        let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
+        let (mut expected, mut found) = (fresh(), fresh());
+        sums = [0; 3];
+        for (step, cases) in steps.iter().enumerate() {
+            for (case, raw) in cases.iter().zip(&mut expected).filter(|(case, _)| case.is_due) {
+                (N::tables().contacts)(&case.question().pair(), &case.request, raw);
+            }
+            let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
+            for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
+                let case = &cases[index];
+                assert!(
+                    are_same(one, other),
+                    "{what}, {level:?}, {step}, {index}: {one:?} {other:?} {:?}",
+                    (case.poses, case.solids, case.request)
+                );
+                sums[0] += one.points.len();
+            }
+            (sums[1], sums[2]) = (sums[1] + declined, sums[2] + begun);
+        }
+    }
+    sums
+}
+
+fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
+    level: Level,
+    cases: &[Case<N, D>],
+    raws: &mut [RawManifold<N, D>],
+) -> [usize; 2] {
+    let due = (0..cases.len()).filter(|&index| cases[index].is_due).collect();
+    let mut kept = Kept { cases, due, raws, counts: [0; 3] };
+    update_at::<F, _, N, D>(level, &mut kept);
+    let [begun, declined, ended] = kept.counts;
+    assert_eq!(begun, ended, "all that began ended");
+    [begun, declined]
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sort {
+    Ball,
+    Segment,
+    Capsule,
+    Cuboid,
+}
+
+/// A draw of two solids near each other, in 64 bits.
+#[derive(Clone)]
+struct Draw<const D: usize> {
+    sorts: [Sort; 2],
+    radii: [f64; 2],
+    /// The ends of a segment; the half extents of a box are the magnitudes of the last.
+    ends: [[Vector<f64, D>; 2]; 2],
+    places: [Vector<f64, D>; 2],
+    turns: [[f64; 3]; 2],
+}
+
+impl<const D: usize> Draw<D> {
+    /// `snapped` solids have sizes and places on a grid and no turn.
+    fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
+        let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
+        let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
+        let place = vector(9.0);
+        let (ends, aside) = ([[vector(1.0), vector(1.0)], [vector(1.0), vector(1.0)]], vector(1.2));
+        let radii = [snap(random.between(0.1, 0.8)), snap(random.between(0.1, 0.8))];
+        let mut turn = || [0.0; 3].map(|_: f64| random.between(-3.0, 3.0));
+        let turns = if snapped { [[0.0; 3]; 2] } else { [turn(), turn()] };
+        Self { sorts, radii, ends, places: [place, place + aside], turns }
+    }
+
+    /// The same, moved a little.
+    fn shaken(&self, random: &mut Random, by: f64) -> Self {
+        let mut shaken = self.clone();
+        for which in 0..2 {
+            shaken.places[which] += Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
+            shaken.turns[which] = shaken.turns[which].map(|x| x + random.between(-by, by));
+        }
+        shaken
+    }
+
+    /// In another unit of length.
+    fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
+        let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
+        let poses = [0, 1].map(|at| N::pose(vector(&self.places[at]), self.turns[at]));
+        let solids = [0, 1].map(|at| {
+            let radius = N::lit(self.radii[at] * unit);
+            let ends = self.ends[at].map(|end| Point::from(vector(&end)));
+            match self.sorts[at] {
+                Sort::Ball => Solid::Ball(Ball::new(radius)),
+                Sort::Segment => Solid::Segment(Segment::new(ends[0], ends[1])),
+                Sort::Capsule => Solid::Capsule(
+                    Capsule::try_from_ends(ends[0], ends[1], radius).expect("finite"),
+                ),
+                Sort::Cuboid => Solid::Cuboid(Cuboid::new(ends[1].coords.abs())),
+            }
+        });
+        Case { poses, solids, request, is_due: true }
+    }
+}
+
+/// 203 pairs of a kind, in four steps of which the last is far from the others.
+fn drawn<N: Scene<D>, const D: usize>(
+    (seed, unit): (u64, f64),
+    sorts: [Sort; 2],
+    request: &ManifoldRequest<N>,
+) -> Vec<Vec<Case<N, D>>> {
+    let mut random = Random(seed);
+    let snaps = (0..203).map(|index| index % 3 == 0);
+    let mut draws: Vec<_> = snaps.map(|snap| Draw::new(&mut random, sorts, snap)).collect();
+    let mut steps = Vec::new();
+    for (step, by) in [0.002, 0.002, 0.4, 0.0].into_iter().enumerate() {
+        let asked = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
+        let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, asked)).collect();
+        let rests = |index: usize| (index * 7 + step) % 11 == 3;
+        cases.iter_mut().enumerate().for_each(|(index, case)| case.is_due = !rests(index));
+        steps.push(cases);
+        draws = draws.iter().map(|draw| draw.shaken(&mut random, by)).collect();
+    }
+    steps
+}
+
+fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
+    ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
+}
+
+/// Poses that are no numbers, equal or far away; solids without any size; any prediction.
+fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
+    let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
+    let value = strange[number / 7 % strange.len()];
+    let (which, axis) = (number % 2, number / 2 % D);
+    match number % 7 {
+        0 => case.poses[which].translation[axis] = value,
+        // What is a number, but no rotation, may be named by another feature.
+        1 | 2 => {
+            let strange = if value.is_finite_number() { N::lit(f64::NAN) } else { value };
+            case.poses[which].rotation[(axis, number / 6 % D)] = strange;
+        }
+        3 => case.solids[which] = with_length(&case.solids[which], value),
+        4 => case.solids[which] = with_length(&case.solids[which], N::ZERO),
+        5 => case.poses[1] = case.poses[0],
+        _ => {
+            case.request.prediction = [N::ZERO, N::INFINITY, N::MAX][number / 7 % 3];
+            case.request.sine = if number.is_multiple_of(4) { N::HALF } else { N::ZERO };
+        }
+    }
+}
+
+/// A solid of the same kind of which one length is another, or zero if that is none.
+fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid<N, D> {
+    let is_length = length.is_finite_number() && length >= N::ZERO;
+    let length = if is_length { length } else { N::ZERO };
+    let mut end = Point::<N, D>::origin();
+    end[1] = length;
+    match solid {
+        Solid::Ball(_) => Solid::Ball(Ball::new(length)),
+        Solid::Segment(segment) => Solid::Segment(Segment::new(*segment.a(), end)),
+        Solid::Capsule(_) => Solid::Capsule(Capsule::new(length, length)),
+        Solid::Cuboid(cuboid) => {
+            let mut half = *cuboid.half_extents();
+            half[1] = length;
+            Solid::Cuboid(Cuboid::new(half))
+        }
+    }
+}
+
+/// All of the above for one form.
+fn check<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
+    for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
+        let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));
+        let [points, declined, begun] = compare::<F, N, D>(&steps, "drawn");
+        assert!(points > 40, "{points} points, {sorts:?}");
+        assert!(declined * 2 < begun, "{declined} of {begun} declined, {sorts:?}, {sine}");
+    }
+    for unit in [1e-30, 1e-15, 1e-4, 1e4, 1e12, 1e18, 1e30] {
+        compare::<F, N, D>(&drawn((5, unit), sorts, &request(0.1, 0.0)), "in another unit");
+    }
+    for seed in 11..15 {
+        let mut steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.1, 0.0));
+        for (number, case) in steps.iter_mut().flatten().enumerate() {
+            spoiled(case, number + usize::try_from(seed).expect("small"));
+        }
+        let [_, declined, begun] = compare::<F, N, D>(&steps, "spoiled");
+        let are_boxes = sorts == [Sort::Cuboid, Sort::Cuboid];
+        assert!(are_boxes || declined * 20 > begun, "{declined} of {begun} declined, {sorts:?}");
+    }
+    let steps = drawn::<N, D>((21, 1.0), sorts, &request(0.1, 0.0));
+    for count in 0..20 {
+        let some: Vec<_> = steps.iter().map(|cases| cases[..count].to_vec()).collect();
+        compare::<F, N, D>(&some, "some");
+    }
+}
+
+fn balls<N: Scene<D> + Space<D>, const D: usize>() {
+    check::<ClosedForm<BallBall>, N, D>([Sort::Ball, Sort::Ball]);
+    check::<ClosedForm<BallCuboid>, N, D>([Sort::Ball, Sort::Cuboid]);
+    check::<ClosedForm<BallSegment>, N, D>([Sort::Ball, Sort::Segment]);
+    check::<ClosedForm<BallSegment>, N, D>([Sort::Ball, Sort::Capsule]);
+}
+
+#[test]
+fn eight_pairs_with_balls_are_as_one() {
+    balls::<f32, 2>();
+    balls::<f32, 3>();
+    #[cfg(feature = "f64")]
+    {
+        balls::<f64, 2>();
+        balls::<f64, 3>();
+    }
+}
+
+fn segments<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
+    check::<F, N, D>([Sort::Segment, Sort::Segment]);
+    check::<F, N, D>([Sort::Segment, Sort::Capsule]);
+    check::<F, N, D>([Sort::Capsule, Sort::Capsule]);
+}
+
+#[test]
+fn eight_pairs_of_segments_are_as_one() {
+    segments::<ClosedForm<Segments2>, f32, 2>();
+    segments::<ClosedForm<Segments3>, f32, 3>();
+    #[cfg(feature = "f64")]
+    {
+        segments::<ClosedForm<Segments2>, f64, 2>();
+        segments::<ClosedForm<Segments3>, f64, 3>();
+    }
+}
+
+fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
+    for (seed, sine) in [(1, 0.0), (2, 0.01), (3, 0.3)] {
+        for lean in [0.005, 0.1, 3.0] {
+            let steps = faced::<N, D>(seed, lean, &request(0.1, sine));
+            let [points, declined, begun] = compare::<F, N, D>(&steps, "faced");
+            assert!(points > 200, "{points} points, lean {lean}");
+            assert!(declined * 2 < begun, "{declined} of {begun} declined, lean {lean}");
+        }
+    }
+    check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
+}
+
+/// Boxes of which faces are close together, in three steps.
+fn faced<N: Scene<D>, const D: usize>(
+    seed: u64,
+    lean: f64,
+    request: &ManifoldRequest<N>,
+) -> Vec<Vec<Case<N, D>>> {
+    let mut random = Random(seed);
+    let mut draw = || {
+        let mut draw = Draw::<D>::new(&mut random, [Sort::Cuboid, Sort::Cuboid], false);
+        draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * lean / 3.0));
+        let [half1, half2] = draw.ends.map(|ends| ends[1].abs());
+        let gap = random.between(-0.1, 0.2);
+        draw.places[1] = draw.places[0] + half1 * random.between(-0.5, 0.5);
+        draw.places[1][0] = draw.places[0][0] + half1[0] + half2[0] + gap;
+        draw
+    };
+    let mut draws: Vec<Draw<D>> = (0..203).map(|_| draw()).collect();
+    let mut steps = Vec::new();
+    for _ in 0..3 {
+        steps.push(draws.iter().map(|draw| draw.case(1.0, *request)).collect());
+        draws = draws.iter().map(|draw| draw.shaken(&mut random, 0.002)).collect();
+    }
+    steps
+}
+
+#[test]
+fn eight_pairs_of_boxes_are_as_one() {
+    boxes::<Boxes2, f32, 2>();
+    boxes::<Boxes3, f32, 3>();
+    #[cfg(feature = "f64")]
+    {
+        boxes::<Boxes2, f64, 2>();
+        boxes::<Boxes3, f64, 3>();
+    }
+}

@@ -1,0 +1,48 @@
+//! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
+
+use crate::collide::manifold::frame::ROUNDING_ERRORS;
+use crate::collide::separation::is_usual;
+pub(super) use crate::math::lanes::{
+    bits, by_axis, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus,
+    seen_from, times,
+};
+use crate::math::simd::Simd;
+use crate::math::{Real, Wide};
+
+/// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
+#[inline(always)]
+pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
+    V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
+}
+
+/// `unit` of vectors of usual length, which the mask says: direction and length.
+#[inline(always)]
+pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    v: &[V; D],
+) -> ([V; D], V, V::Mask) {
+    let squared = dot(v, v);
+    let length = squared.sqrt();
+    (over(v, length), length, is_usual(simd, squared))
+}
+
+/// The length of a vector that is zero or of usual length, which the mask says.
+#[inline(always)]
+pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    v: &[V; D],
+) -> (V, V::Mask) {
+    let squared = dot(v, v);
+    let mut sum = v[0].abs();
+    for coordinate in &v[1..] {
+        sum += coordinate.abs();
+    }
+    let is_zero = sum.simd_le(V::all(simd, N::ZERO));
+    (squared.sqrt(), is_usual(simd, squared) | is_zero)
+}
+
+/// The lanes whose number is neither infinite nor NaN.
+#[inline(always)]
+pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> V::Mask {
+    number.abs().simd_lt(V::all(simd, N::INFINITY))
+}

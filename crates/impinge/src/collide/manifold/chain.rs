@@ -1,0 +1,129 @@
+//! The contacts of a segment of a chain and a solid of the plane, in no more room than they take.
+//!
+//! The same as [`build_between`](super::build_between) and [`build_along`](super::build_along), which define
+//! them, bit for bit.
+
+use super::along::extremes;
+use super::frame::{Candidate, Candidates, Frame, Which};
+use super::stretch::{Shared, Stretch};
+use super::witness::beside_ball;
+use super::{Along, Pair, add_witness, deepest, tangents2};
+use crate::collide::RawPoint;
+use crate::convex::Separation;
+use crate::math::{Real, Space, max};
+use crate::shape::{FeatureId, Kind};
+
+/// A segment of a chain and a solid that is no half-space, in the order of kinds: behind another segment.
+pub(crate) struct SegmentPair<'a, N: Real> {
+    pub(crate) pair: Pair<'a, N, 2>,
+    /// Lengths below this are rounding errors.
+    pub(crate) tolerance: N,
+    /// Points beyond this are not asked for.
+    pub(crate) prediction: N,
+}
+
+impl<N: Real> SegmentPair<'_, N> {
+    /// The part of the chain's segment that a separation's point lies on.
+    pub(crate) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
+        if let Kind::Ball(_) = self.pair.first {
+            return beside_ball(&self.pair, found);
+        }
+        let frame = self.frame(found);
+        let own = match self.pair.second {
+            Kind::Segment(_) => self.second(&frame)?,
+            _ => self.first(&frame)?,
+        };
+        Some(own.at_witness(&frame))
+    }
+
+    /// The contacts that belong to a separation; `None` of solids that show more than a side.
+    pub(crate) fn between(
+        &self,
+        witness: &Separation<N, 2>,
+        mut visit: impl FnMut(RawPoint<N, 2>),
+    ) -> Option<()> {
+        if !(witness.distance <= self.prediction && witness.distance.is_finite_number()) {
+            return Some(());
+        }
+        if let Kind::Ball(_) = self.pair.first {
+            let touched = beside_ball(&self.pair, witness)?;
+            visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).named(0));
+            return Some(());
+        }
+        let frame = self.frame(witness);
+        let (first, second) = (self.first(&frame)?, self.second(&frame)?);
+        let mut candidates = Candidates::new();
+        if first.is_side && second.is_side {
+            Shared { frame: &frame, first: &first, second: &second }.candidates(&mut candidates);
+        }
+        let level = witness.distance + self.tolerance;
+        if !candidates.iter().any(|candidate| candidate.distance <= level) {
+            let parts = [first.at_witness(&frame), second.at_witness(&frame)];
+            add_witness(&frame, parts, &mut candidates);
+        }
+        let nearest = deepest(&candidates, level);
+        candidates[nearest].distance = witness.distance;
+        candidates.iter().for_each(|candidate| visit(candidate.named(0)));
+        Some(())
+    }
+
+    /// The contacts along a normal; `None` of solids that show more than a side.
+    pub(crate) fn along(
+        &self,
+        along: &Along<N, 2>,
+        mut visit: impl FnMut(RawPoint<N, 2>),
+    ) -> Option<()>
+    where
+        N: Space<2>,
+    {
+        let frame = self.frame(&extremes(&self.pair, &along.normal, None)?);
+        let (first, second) = (self.first(&frame)?, self.second(&frame)?);
+        let shared = Shared { frame: &frame, first: &first, second: &second };
+        let (mut candidates, tolerance) = (Candidates::new(), self.tolerance);
+        let (at1, at2) = (&first.corners[0], &second.corners[0]);
+        match (first.is_side, second.is_side) {
+            (true, true) => shared.candidates(&mut candidates),
+            (false, false) => {
+                if (at1.flat - at2.flat).norm() <= N::TWO * tolerance {
+                    let parts = [at1.id, at2.id];
+                    shared.push_facing(&at1.point, &at2.point, parts, &mut candidates);
+                }
+            }
+            (false, true) => {
+                if let Some(on) = second.locate(at1.flat.x, tolerance) {
+                    let under = second.under(at1.flat.x);
+                    shared.push_facing(&at1.point, &under, [at1.id, on], &mut candidates);
+                }
+            }
+            (true, false) => {
+                if let Some(on) = first.locate(at2.flat.x, tolerance) {
+                    let under = first.under(at2.flat.x);
+                    shared.push_facing(&under, &at2.point, [on, at2.id], &mut candidates);
+                }
+            }
+        }
+        let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
+        for candidate in kept {
+            let point = candidate.named(0);
+            visit(RawPoint { distance: max(point.distance, along.least), ..point });
+        }
+        Some(())
+    }
+
+    fn frame(&self, witness: &Separation<N, 2>) -> Frame<N, 2> {
+        Frame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
+    }
+
+    #[inline]
+    fn first(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+        match self.pair.first {
+            Kind::Segment(segment) => Some(Stretch::of_segment(segment, frame)),
+            other => Stretch::of((Which::First, other), None, frame),
+        }
+    }
+
+    #[inline]
+    fn second(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+        Stretch::of((Which::Second, self.pair.second), Some(&self.pair.pose12), frame)
+    }
+}

@@ -1,0 +1,374 @@
+//! The corners of the common area of two supporting features in 3D: points, segments or faces.
+//!
+//! Both are [rings](super::ring) seen along the normal, and how far inside of the sides of one the corners of
+//! the other are is computed in lanes. A corner of the common area is a corner of one inside the other, or a
+//! crossing of two sides: both solids are treated alike, no reference face can flip, and every point has the
+//! same ids whichever solid is first. A place within the tolerance of a side lies on it, which keeps the ids
+//! still when sides or corners coincide. A segment has one side, whose line a corner must lie on. A point, and
+//! two segments that are not parallel, meet at the nearest points alone.
+//!
+//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of the other,
+//! which makes one solid the reference.
+
+use smallvec::SmallVec;
+
+use super::frame::{Candidate, Candidates, Frame, Which, part_beside};
+use super::ring::{LANES, RingCorner, SupportRing};
+use super::{Pair, RawManifold, add_witness, choose, ids};
+use crate::math::lanes::{bits, load, with_lanes};
+use crate::math::simd::{Level, Simd};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::shape::{FeatureId, Kind};
+
+/// Builds the manifold of two solids within the prediction whose nearest points are known.
+pub(super) fn build<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    frame: &Frame<N, 3>,
+    limit: usize,
+    out: &mut RawManifold<N, 3>,
+) {
+    let mut clip = RingClip::blank(pair, frame);
+    clip.project(pair);
+    let mut candidates = Candidates::new();
+    if clip.has_area_or_length() {
+        clip.candidates(&mut candidates);
+    }
+    out.normal = frame.normal();
+    let (nearest, tolerance) = (frame.witness.distance, frame.tolerance);
+    if !candidates.iter().any(|candidate| candidate.distance <= nearest + tolerance) {
+        let parts = [clip.part_at_witness(0), clip.part_at_witness(1)];
+        if candidates.is_empty() {
+            return ids::settle_alone(&Candidate::alone(&frame.witness, parts), out);
+        }
+        add_witness(frame, parts, &mut candidates);
+    }
+    choose(&mut candidates, nearest, tolerance, limit, out);
+}
+
+/// The part of one of two solids that the nearest point lies on, of those that face the other.
+pub(super) fn part_at_witness<N: Real>(
+    kind: Kind<'_, N, 3>,
+    which: Which,
+    pose: Option<&Pose<N, 3>>,
+    frame: &Frame<N, 3>,
+) -> FeatureId {
+    let (mut rings, mut insides) = ([SupportRing::blank(which, pose)], [Insides::new()]);
+    rings[0].fill(kind, frame);
+    project_rings(Level::new(), &mut rings, frame, &mut insides);
+    let ([ring], [insides]) = (&rings, &insides);
+    ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
+}
+
+/// Adds the corners of the common area of two solids along the normal of a frame, whose witness need not be
+/// the nearest points: none where the supporting features do not lie above each other.
+pub(super) fn candidates<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    frame: &Frame<N, 3>,
+    out: &mut Candidates<N, 3>,
+) {
+    let mut clip = RingClip::blank(pair, frame);
+    clip.project(pair);
+    clip.candidates(out);
+}
+
+/// [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
+fn project_rings<N: Real>(
+    level: Level,
+    rings: &mut [SupportRing<'_, N>],
+    frame: &Frame<N, 3>,
+    insides: &mut [Insides<N>],
+) {
+    with_lanes!(level, simd =>
+        project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, insides));
+}
+
+/// Projects one ring or two, and measures how far inside of the sides of each the corners of the other are.
+#[inline(always)]
+fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    rings: &mut [SupportRing<'_, N>],
+    frame: &Frame<N, 3>,
+    insides: &mut [Insides<N>],
+) {
+    for ring in rings.iter_mut() {
+        ring.project::<S, V>(simd, frame);
+    }
+    for (which, (ring, insides)) in rings.iter().zip(insides).enumerate() {
+        let other = if which == 0 { rings.get(1) } else { rings.first() };
+        insides.measure::<S, V>(simd, ring, other, frame.tolerance);
+    }
+}
+
+/// How far a place is inside of up to eight sides of a ring, and what the numbers say as bits.
+#[derive(Clone, Copy)]
+struct SideRow<N: Real> {
+    inside: [N; LANES],
+    /// By more than the tolerance; outside by more; neither.
+    within: u8,
+    beyond: u8,
+    touched: u8,
+}
+
+/// How far inside of the sides of a ring the corners of another one are, and at last the nearest point.
+struct Insides<N: Real> {
+    /// Each place has so many rows.
+    width: usize,
+    rows: SmallVec<[SideRow<N>; LANES + 1]>,
+}
+
+impl<N: Real> Insides<N> {
+    fn new() -> Self {
+        Self { width: 1, rows: SmallVec::new() }
+    }
+
+    /// Of a corner, or of the nearest point after the last corner.
+    fn row(&self, place: usize) -> &[SideRow<N>] {
+        &self.rows[place * self.width..][..self.width]
+    }
+
+    #[inline(always)]
+    fn measure<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        own: &SupportRing<'_, N>,
+        other: Option<&SupportRing<'_, N>>,
+        tolerance: N,
+    ) {
+        let (count, sides) = (other.map_or(0, |other| other.count), own.side_count());
+        let (most, least) = (V::all(simd, tolerance), V::all(simd, -tolerance));
+        self.width = own.count.div_ceil(LANES);
+        for place in 0..=count {
+            let flat = match other {
+                Some(other) if place < count => other.flat(place),
+                _ => Vector::<N, 2>::zeros(),
+            };
+            let [x, y] = [V::all(simd, flat.x), V::all(simd, flat.y)];
+            for (at, block) in own.blocks.iter().enumerate().take(self.width) {
+                let (from, inward): ([V; 2], [V; 2]) =
+                    (load(simd, &block.flats), load(simd, &block.inward));
+                let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
+                let within = bits(inside.simd_gt(most));
+                let beyond = bits(inside.simd_lt(least));
+                let all = first_bits(sides - at * LANES);
+                let mut row = SideRow {
+                    inside: [N::ZERO; LANES],
+                    within: within & all,
+                    beyond: beyond & all,
+                    touched: !(within | beyond) & all,
+                };
+                inside.store(&mut row.inside);
+                self.rows.push(row);
+            }
+        }
+    }
+}
+
+/// So many bits, eight at most.
+const fn first_bits(count: usize) -> u8 {
+    if count < LANES { (1 << count) - 1 } else { u8::MAX }
+}
+
+/// The smallest part of a ring that has a place, of which it is known how far inside it is; `None` of a place
+/// outside. A segment has no inside.
+fn ring_part<N: Real>(
+    ring: &SupportRing<'_, N>,
+    rows: &[SideRow<N>],
+    flat: &Vector<N, 2>,
+    tolerance: N,
+) -> Option<FeatureId> {
+    let is_segment = ring.is_segment();
+    let mut found = None;
+    for (block, row) in rows.iter().enumerate() {
+        if row.beyond != 0 || is_segment && row.within != 0 {
+            return None;
+        }
+        // Of two touched sides either will do: where they meet, both answer with the corner.
+        let mut touched = row.touched;
+        while touched != 0 {
+            let side = block * LANES + touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            found = ring.on_side(side, flat, tolerance).or(found);
+        }
+    }
+    if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
+}
+
+/// The sides between whose lines and a third the two places lie, neither on it.
+const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
+    from.within & to.beyond | from.beyond & to.within
+}
+
+/// Where on the way from one place to another a line is crossed, both heights over which are given.
+fn share<N: Real>(from: N, to: N) -> N {
+    from / (from - to)
+}
+
+/// Two rings in one frame.
+struct RingClip<'a, N: Real> {
+    frame: &'a Frame<N, 3>,
+    rings: [SupportRing<'a, N>; 2],
+    /// For each ring where the corners of the other are in it.
+    insides: [Insides<N>; 2],
+}
+
+impl<'a, N: Real> RingClip<'a, N> {
+    #[inline(always)]
+    fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a Frame<N, 3>) -> Self {
+        let rings = [
+            SupportRing::blank(Which::First, None),
+            SupportRing::blank(Which::Second, Some(&pair.pose12)),
+        ];
+        Self { frame, rings, insides: [Insides::new(), Insides::new()] }
+    }
+
+    /// Fills the rings with the supporting features of a pair, and measures where the corners of each are in the
+    /// other.
+    fn project(&mut self, pair: &Pair<'_, N, 3>) {
+        self.rings[0].fill(pair.first, self.frame);
+        self.rings[1].fill(pair.second, self.frame);
+        project_rings(Level::new(), &mut self.rings, self.frame, &mut self.insides);
+    }
+
+    /// False of features that meet in a point, of which the nearest points say all.
+    fn has_area_or_length(&self) -> bool {
+        let [first, second] = &self.rings;
+        let are_segments = first.is_segment() && second.is_segment();
+        !(first.is_point() || second.is_point() || are_segments && !self.are_parallel())
+    }
+
+    /// Adds the corners of the common area that the request admits; of a point in the other feature the point.
+    fn candidates(&self, out: &mut Candidates<N, 3>) {
+        let [first, second] = &self.rings;
+        if first.is_segment() && second.is_segment() && self.are_parallel() {
+            return self.common_stretch(out);
+        }
+        if first.is_point() && second.is_point() {
+            let [corner1, corner2] = [first.corner(0), second.corner(0)];
+            if (corner1.flat - corner2.flat).norm() <= N::TWO * self.frame.tolerance {
+                self.push([corner1.point, corner2.point], [corner1.id, corner2.id], out);
+            }
+            return;
+        }
+        self.corners(out);
+        self.crossings(out);
+    }
+
+    /// The id of the part of a ring that the nearest point lies on.
+    fn part_at_witness(&self, which: usize) -> FeatureId {
+        let (ring, other) = (&self.rings[which], &self.rings[1 - which]);
+        let rows = self.insides[which].row(other.count);
+        ring_part(ring, rows, &Vector::<N, 2>::zeros(), self.frame.tolerance).unwrap_or(ring.id)
+    }
+
+    /// Corners of either ring within the other.
+    fn corners(&self, out: &mut Candidates<N, 3>) {
+        for (which, ring) in self.rings.iter().enumerate() {
+            let other = &self.rings[1 - which];
+            let count = if other.is_point() { 0 } else { ring.count };
+            for at in 0..count {
+                let flat = ring.flat(at);
+                let rows = self.insides[1 - which].row(at);
+                if let Some(on) = ring_part(other, rows, &flat, self.frame.tolerance) {
+                    let corner = ring.corner(at);
+                    let under = other.under(&corner.point, &flat, self.frame);
+                    self.push_corner(which, &corner, under, on, out);
+                }
+            }
+        }
+    }
+
+    /// Adds a corner of one ring and the point of the other that faces it.
+    fn push_corner(
+        &self,
+        which: usize,
+        corner: &RingCorner<N>,
+        under: Point<N, 3>,
+        on: FeatureId,
+        out: &mut Candidates<N, 3>,
+    ) {
+        if which == 0 {
+            self.push([corner.point, under], [corner.id, on], out);
+        } else {
+            self.push([under, corner.point], [on, corner.id], out);
+        }
+    }
+
+    /// Sides that cross well inside both: a side that ends on a line crosses nothing, its corner lies on the
+    /// other ring or outside.
+    fn crossings(&self, out: &mut Candidates<N, 3>) {
+        let (one, in_other) = (&self.rings[0], &self.insides[1]);
+        for side1 in 0..one.side_count() {
+            let ends1 = [in_other.row(side1), in_other.row(one.next(side1))];
+            for block2 in 0..in_other.width {
+                let [from1, to1] = ends1.map(|rows| &rows[block2]);
+                let mut crossed = parted(from1, to1);
+                while crossed != 0 {
+                    let lane2 = crossed.trailing_zeros() as usize;
+                    crossed &= crossed - 1;
+                    let share1 = share(from1.inside[lane2], to1.inside[lane2]);
+                    self.push_crossing(side1, block2 * LANES + lane2, share1, out);
+                }
+            }
+        }
+    }
+
+    /// Adds where two sides cross, of which the first crosses the line of the second at a share of its length, if
+    /// the second crosses the first's.
+    fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
+        let ([one, other], in_one) = (&self.rings, &self.insides[0]);
+        let (block1, lane1) = (side1 / LANES, side1 % LANES);
+        let [from2, to2] = [side2, other.next(side2)].map(|at| &in_one.row(at)[block1]);
+        if parted(from2, to2) >> lane1 & 1 == 1 {
+            let share2 = share(from2.inside[lane1], to2.inside[lane1]);
+            let cores = [one.along_side(side1, share1), other.along_side(side2, share2)];
+            self.push(cores, [one.side_id(side1), other.side_id(side2)], out);
+        }
+    }
+
+    /// Two segments that a turn by the predicted angle would make parallel.
+    fn are_parallel(&self) -> bool {
+        let [a, b] = [self.rings[0].side(0), self.rings[1].side(0)];
+        let least = N::lit(16.0) * N::EPSILON;
+        cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
+    }
+
+    /// The ends of the interval that two nearly parallel segments share: each is an end of one of them and the
+    /// place beside it on the other. Half-way between the two is where they meet once turned: the points are
+    /// off their segments by half the lever arm times the sine at most.
+    fn common_stretch(&self, out: &mut Candidates<N, 3>) {
+        for (which, ring) in self.rings.iter().enumerate() {
+            let other = &self.rings[1 - which];
+            for corner in [ring.corner(0), ring.corner(1)] {
+                let Some(on) = self.beside(&corner.flat, other) else { continue };
+                let under = other.under(&corner.point, &corner.flat, self.frame);
+                let (gap, normal) = (under - corner.point, self.frame.normal());
+                let half = (gap - normal * normal.dot(&gap)) * N::HALF;
+                let corner = RingCorner { point: corner.point + half, ..corner };
+                self.push_corner(which, &corner, under - half, on, out);
+            }
+        }
+    }
+
+    /// The part of a segment beside a place; `None` beyond the ends.
+    fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
+        let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
+        let length = side.norm();
+        let along = (flat - segment.flat(0)).dot(&side) / length;
+        let ends = [segment.corner(0).id, segment.corner(1).id];
+        part_beside(along, length, tolerance, ends, segment.id)
+    }
+
+    /// Adds the points of the surfaces over two points of the cores, once: corners that coincide in both rings
+    /// are found from both. Different points may share their ids, on round rims.
+    fn push(
+        &self,
+        [core1, core2]: [Point<N, 3>; 2],
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, 3>,
+    ) {
+        let (frame, [first, second]) = (self.frame, &self.rings);
+        let (normal, lift1) = (frame.normal(), first.lift(&core1, frame));
+        let distance = normal.dot(&(core2 - core1)) - lift1 - second.lift(&core2, frame);
+        frame.push_new(core1 + normal * lift1, distance, features, out);
+    }
+}

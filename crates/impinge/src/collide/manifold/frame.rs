@@ -1,0 +1,263 @@
+//! The plane of contact: what all points of one manifold are measured against.
+
+use smallvec::SmallVec;
+
+use crate::collide::{ManifoldRequest, Pair, RawPoint};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, max, max_component, min};
+use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
+
+/// Lengths up to so many rounding errors of the pair's size count as zero.
+pub(in crate::collide) const ROUNDING_ERRORS: f64 = 16.0;
+
+/// Supporting features that tilt more than 60° out of the plane of contact count as their nearest point.
+pub(in crate::collide) const MIN_COSINE: f64 = 0.5;
+
+/// What a manifold is chosen from.
+pub(in crate::collide) type Candidates<N, const D: usize> = SmallVec<[Candidate<N, D>; 8]>;
+
+/// Which of the two solids of a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::collide) enum Which {
+    First,
+    Second,
+}
+
+impl Which {
+    /// The direction in which this solid faces the other.
+    #[inline(always)]
+    pub(in crate::collide) fn outward<N: Real, const D: usize>(
+        self,
+        frame: &Frame<N, D>,
+    ) -> Vector<N, D> {
+        match self {
+            Self::First => frame.normal(),
+            Self::Second => -frame.normal(),
+        }
+    }
+
+    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    #[inline]
+    pub(in crate::collide) fn below_witness<N: Real, const D: usize>(
+        self,
+        point: &Point<N, D>,
+        frame: &Frame<N, D>,
+    ) -> N {
+        let height = frame.height(point);
+        match self {
+            Self::First => -height,
+            Self::Second => height - frame.witness.distance,
+        }
+    }
+}
+
+/// How far the surface at a radius around a flat feature is above a point of the feature, along the normal.
+///
+/// `cosine` is that of the angle by which the feature tilts, `room` and `top` how far the point and the
+/// feature's corner nearest to the other solid are below the supporting plane, `away_squared` the square of
+/// the way from that corner to the point across the normal. Above the flat part that is `radius / cosine`,
+/// above the corner the ball around it; nothing rises above the supporting plane. Exact for capsules, and
+/// where the surface is parallel to the feature; between the two a rounded polygon may lie a little lower.
+#[inline]
+pub(in crate::collide) fn lifted<N: Real>(
+    radius: N,
+    cosine: N,
+    room: N,
+    top: N,
+    away_squared: N,
+) -> N {
+    let turns_squared = radius * radius * (N::ONE - cosine * cosine);
+    let lift = if away_squared < turns_squared {
+        room - top + (radius * radius - away_squared).sqrt()
+    } else {
+        radius / cosine
+    };
+    max(min(lift, room), N::ZERO)
+}
+
+/// The plane through the witness perpendicular to the normal, and what the request admits.
+///
+/// In the frame of the first solid. `flat` coordinates are those in the plane, with the witness at
+/// zero; in two dimensions the second of them is always zero.
+pub(in crate::collide) struct Frame<N: Real, const D: usize> {
+    pub(in crate::collide) witness: Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+    /// Lengths below this are rounding errors of the pair's size.
+    pub(in crate::collide) tolerance: N,
+    prediction: N,
+    pub(in crate::collide) sine: N,
+}
+
+/// A point that may enter the manifold.
+#[derive(Clone, Copy)]
+pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
+    pub(in crate::collide) point1: Point<N, D>,
+    pub(in crate::collide) distance: N,
+    pub(in crate::collide) flat: Vector<N, 2>,
+    /// The part of each solid that it lies on.
+    pub(in crate::collide) features: [FeatureId; 2],
+    /// The number it had in the previous manifold.
+    pub(in crate::collide) kept_id: Option<u32>,
+}
+
+impl<N: Real, const D: usize> Candidate<N, D> {
+    /// The nearest pair of points, which lie on the given parts.
+    pub(in crate::collide) fn alone(witness: &Separation<N, D>, features: [FeatureId; 2]) -> Self {
+        let (point1, distance) = (witness.point1, witness.distance);
+        Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept_id: None }
+    }
+
+    pub(in crate::collide) fn named(&self, id: u32) -> RawPoint<N, D> {
+        let [feature1, feature2] = self.features;
+        RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id, code: 0 }
+    }
+}
+
+impl<N: Real, const D: usize> Frame<N, D> {
+    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in 2D.
+    pub(in crate::collide) fn new(
+        pair: &Pair<'_, N, D>,
+        witness: &Separation<N, D>,
+        request: &ManifoldRequest<N>,
+        tangents: [Vector<N, D>; 2],
+    ) -> Self {
+        Self {
+            witness: *witness,
+            tangents,
+            tolerance: rounding(pair),
+            prediction: request.prediction,
+            sine: request.sine,
+        }
+    }
+
+    /// The frame of a request without turning, where the tolerance is known.
+    #[inline]
+    pub(in crate::collide) fn known(
+        witness: &Separation<N, D>,
+        tangents: [Vector<N, D>; 2],
+        tolerance: N,
+        prediction: N,
+    ) -> Self {
+        Self { witness: *witness, tangents, tolerance, prediction, sine: N::ZERO }
+    }
+
+    #[inline]
+    pub(in crate::collide) fn normal(&self) -> Vector<N, D> {
+        self.witness.normal
+    }
+
+    /// The axes of what is seen along the normal.
+    #[inline(always)]
+    pub(in crate::collide) const fn tangents(&self) -> &[Vector<N, D>; 2] {
+        &self.tangents
+    }
+
+    /// Where a point lies when seen along the normal.
+    #[inline]
+    pub(in crate::collide) fn flat(&self, point: &Point<N, D>) -> Vector<N, 2> {
+        let arm = point - self.witness.point1;
+        Vector::<N, 2>::new(self.tangents[0].dot(&arm), self.tangents[1].dot(&arm))
+    }
+
+    /// How far along the normal a point lies, from the surface of the first solid at the witness.
+    #[inline]
+    pub(in crate::collide) fn height(&self, point: &Point<N, D>) -> N {
+        self.normal().dot(&(point - self.witness.point1))
+    }
+
+    /// The distance to give to a pair of points that far apart and seen at `flat`; `None` if the
+    /// request does not ask for them.
+    ///
+    /// The witness is the nearest pair of points, so a smaller distance is a rounding error, and so
+    /// is one that exceeds the prediction by no more than the tolerance. A point beyond the
+    /// prediction stays if turning about the witness brings it nearer by enough.
+    #[inline]
+    pub(in crate::collide) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
+        let distance = max(distance, self.witness.distance);
+        if distance <= self.prediction {
+            return Some(distance);
+        }
+        if distance <= self.prediction + self.tolerance {
+            return Some(self.prediction);
+        }
+        (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
+    }
+
+    /// The largest distance that [`Self::admit`] admits anywhere.
+    #[inline]
+    pub(in crate::collide) fn most(&self) -> N {
+        if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }
+    }
+
+    /// The candidate at a pair of surface points of which the first is given.
+    #[inline]
+    pub(in crate::collide) fn candidate(
+        &self,
+        point1: Point<N, D>,
+        distance: N,
+        features: [FeatureId; 2],
+    ) -> Option<Candidate<N, D>> {
+        let flat = self.flat(&point1);
+        let distance = self.admit(distance, &flat)?;
+        Some(Candidate { point1, distance, flat, features, kept_id: None })
+    }
+
+    /// Adds the candidate of [`Self::candidate`] unless one of the same features is at its position: what
+    /// coincides is found from both solids.
+    #[inline]
+    pub(in crate::collide) fn push_new(
+        &self,
+        point1: Point<N, D>,
+        distance: N,
+        features: [FeatureId; 2],
+        out: &mut Candidates<N, D>,
+    ) {
+        let Some(found) = self.candidate(point1, distance, features) else { return };
+        let near = N::lit(4.0) * self.tolerance;
+        let is_new = |old: &Candidate<N, D>| {
+            let away = old.flat - found.flat;
+            old.features != found.features || max_component(&away) > near || away.norm() > near
+        };
+        if out.iter().all(is_new) {
+            out.push(found);
+        }
+    }
+}
+
+/// The feature of a segment that a position along it belongs to, measured from its first end: an end where it is
+/// within the tolerance of one, of both the last; `None` beyond the ends.
+#[inline]
+pub(in crate::collide) fn part_beside<N: Real>(
+    along: N,
+    length: N,
+    tolerance: N,
+    ends: [FeatureId; 2],
+    segment: FeatureId,
+) -> Option<FeatureId> {
+    if along < -tolerance || along > length + tolerance {
+        return None;
+    }
+    let nearest = if along <= tolerance { ends[0] } else { segment };
+    Some(if along >= length - tolerance { ends[1] } else { nearest })
+}
+
+/// The length below which all is rounding errors of the pair's size.
+#[inline]
+pub(in crate::collide) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+    let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
+    N::lit(ROUNDING_ERRORS) * N::EPSILON * size
+}
+
+/// The reach of a solid with its rounding; half-spaces have none.
+#[inline]
+fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
+    match kind {
+        Kind::Ball(ball) => ball.radius(),
+        Kind::Segment(segment) => segment.reach(),
+        Kind::Capsule(capsule) => capsule.reach() + capsule.radius(),
+        Kind::Triangle(triangle) => triangle.reach(),
+        Kind::Cuboid(cuboid) => cuboid.reach(),
+        Kind::Polytope(polytope) => polytope.reach(),
+        _ => Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding()),
+    }
+}

@@ -1,0 +1,155 @@
+//! A solid against a half-space: the corners of the solid above the boundary, which has no end.
+//!
+//! Of what has flat faces every vertex counts, not only those of the supporting feature: where no face is
+//! parallel to the boundary, the near vertices need not belong to one face. Of other solids the corners of the
+//! supporting feature count, on the rounded surface.
+
+use super::frame::{Candidate, Candidates, Frame, MIN_COSINE, Which, lifted};
+use super::{Pair, RawManifold, choose, ids};
+use crate::math::lanes::{dot, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::shape::{Cuboid, Feature, FeatureId, Geometry, Kind, Polytope, SupportMap};
+
+/// The only feature of a half-space.
+const BOUNDARY: FeatureId = FeatureId::Face(0);
+
+/// How many vertices of a hull are side by side.
+const LANES: usize = 8;
+
+/// Builds the manifold of a solid and a half-space, the second, within the prediction.
+pub(super) fn build<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &Frame<N, D>,
+    limit: usize,
+    out: &mut RawManifold<N, D>,
+) {
+    let mut candidates = Candidates::new();
+    let alone = Above { frame }.corners(pair.first, &mut candidates);
+    out.normal = frame.normal();
+    if candidates.is_empty() {
+        return ids::settle_alone(&Candidate::alone(&frame.witness, [alone, BOUNDARY]), out);
+    }
+    choose(&mut candidates, frame.witness.distance, frame.tolerance, limit, out);
+}
+
+/// The half-space as the solid sees it.
+struct Above<'a, N: Real, const D: usize> {
+    frame: &'a Frame<N, D>,
+}
+
+impl<N: Real, const D: usize> Above<'_, N, D> {
+    /// Adds the corners that the request admits; returns what the nearest point lies on where there are none.
+    fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
+        match kind {
+            Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
+            Kind::Polytope(hull) => {
+                with_lanes!(Level::new(), simd =>
+                    self.vertices_in_lanes::<_, N::Lanes<_>>(simd, hull, out));
+            }
+            Kind::Triangle(triangle) => {
+                let corners = triangle.corners();
+                for (at, id) in (0_u32..3).enumerate() {
+                    if !corners[..at].contains(&corners[at]) {
+                        self.push(FeatureId::Vertex(id), corners[at], out);
+                    }
+                }
+            }
+            _ => {
+                if let Some(map) = Geometry(kind).as_support_map() {
+                    return self.feature_corners(map, out);
+                }
+            }
+        }
+        BOUNDARY
+    }
+
+    fn push(&self, id: FeatureId, point: Point<N, D>, out: &mut Candidates<N, D>) {
+        let distance = self.frame.witness.distance - self.frame.height(&point);
+        if distance <= self.frame.most() {
+            out.extend(self.frame.candidate(point, distance, [id, BOUNDARY]));
+        }
+    }
+
+    /// Of vertices that coincide, for the box is flat, the one with the least number.
+    fn vertices_of_box(&self, cuboid: &Cuboid<N, D>, out: &mut Candidates<N, D>) {
+        let half = cuboid.half_extents();
+        let has = |vertex: u32, axis: usize| vertex >> axis & 1 == 1;
+        for vertex in 0..1_u32 << D {
+            if (0..D).all(|axis| !has(vertex, axis) || half[axis] > N::ZERO) {
+                let toward = |axis: usize| if has(vertex, axis) { half[axis] } else { -half[axis] };
+                let point = Point::from(Vector::<N, D>::from_fn(|axis, _| toward(axis)));
+                self.push(FeatureId::Vertex(vertex), point, out);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn vertices_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        hull: &Polytope<N, D>,
+        out: &mut Candidates<N, D>,
+    ) {
+        let frame = self.frame;
+        let along: [V; D] = spread(simd, &frame.normal());
+        // Loosened by the tolerance: the distance of each vertex near enough is computed again.
+        let top = frame.normal().dot(&frame.witness.point1.coords) - frame.tolerance;
+        let least = V::all(simd, top + frame.witness.distance - frame.most());
+        for (first, block) in (0_u32..).step_by(LANES).zip(hull.blocks()) {
+            let heights = dot(&load::<_, _, V, D, LANES>(simd, block), &along);
+            let mut near = heights.simd_ge(least).to_bitmask();
+            while near != 0 {
+                let vertex = first + near.trailing_zeros();
+                near &= near - 1;
+                // What lies beyond the last vertex is that vertex again.
+                if let Some(point) = hull.vertices().get(vertex as usize) {
+                    self.push(FeatureId::Vertex(vertex), *point, out);
+                }
+            }
+        }
+    }
+
+    /// The corners of the part of a core that faces the half-space, on the rounded surface; none of a point, and
+    /// of what tilts too much.
+    fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
+        let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
+        map.core_feature(&frame.normal(), &mut feature);
+        let below = |at: usize| Which::First.below_witness(&feature.vertices[at], frame);
+        let corners = 0..feature.vertices.len();
+        let lower = |best: usize, at: usize| if below(at) < below(best) { at } else { best };
+        let Some(top) = corners.clone().reduce(lower) else { return feature.id };
+        let Some(cosine) = self.cosine(&feature) else { return feature.id };
+        // Written so that NaN tilts.
+        let is_flat = cosine >= N::lit(MIN_COSINE);
+        if !is_flat {
+            return feature.vertex_ids[top];
+        }
+        for at in corners {
+            let core = feature.vertices[at];
+            let away = frame.flat(&core) - frame.flat(&feature.vertices[top]);
+            let lift = if radius > N::ZERO {
+                lifted(radius, cosine, below(at), below(top), away.norm_squared())
+            } else {
+                N::ZERO
+            };
+            self.push(feature.vertex_ids[at], core + frame.normal() * lift, out);
+        }
+        feature.id
+    }
+
+    /// Between the normals of the boundary and of a face, or between a segment and the boundary; `None` of a
+    /// point, and of a segment that is seen as one.
+    fn cosine(&self, feature: &Feature<N, D>) -> Option<N> {
+        let normal = self.frame.normal();
+        match feature.vertices.as_slice() {
+            [_] => None,
+            [from, to] => {
+                let along = to - from;
+                let length = (along - normal * normal.dot(&along)).norm();
+                (length > self.frame.tolerance).then(|| length / along.norm())
+            }
+            _ => Some(feature.normal.map_or(N::ZERO, |own| own.dot(&normal))),
+        }
+    }
+}

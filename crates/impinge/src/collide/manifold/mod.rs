@@ -1,0 +1,270 @@
+//! From the one fact about a pair to a manifold: the points that delimit the area of contact.
+//!
+//! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
+//! with their supporting features; seen along the normal these are points, segments and convex polygons of the
+//! plane ([`ring`]), and the corners of what they have in common ([`clip`]) are the candidates. In 2D
+//! that is an interval ([`stretch`]), and over a [`half_space`] every corner counts. The witness is
+//! always represented, so the smallest distance of a manifold is that of the separation exactly; with
+//! a ball it is all there is.
+//! At last [`reduce`] chooses a few candidates and [`ids`] numbers them.
+
+mod along;
+mod chain;
+mod clip;
+pub(in crate::collide) mod frame;
+mod half_space;
+pub(in crate::collide) mod ids;
+pub(in crate::collide) mod reduce;
+mod ring;
+mod stretch;
+mod supporting;
+#[cfg(test)]
+pub(crate) mod tests;
+mod witness;
+
+pub(super) use self::along::{Along, build_along, build_between, build_on_face};
+pub(crate) use self::along::{OnFace, on_face2, on_face3};
+pub(super) use self::chain::SegmentPair;
+pub(in crate::collide) use self::frame::Candidate;
+use self::frame::{Candidates, Frame};
+pub(crate) use self::witness::{
+    feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
+    features3 as witness_features3,
+};
+use super::separation::{separation_in_plane, separation_in_space};
+use super::{ManifoldRequest, Pair, RawManifold};
+use crate::convex::Separation;
+use crate::math::{Real, Space, Vector, orthonormal_basis, perp};
+use crate::shape::{FeatureId, Kind};
+
+/// Builds the manifold of two solids in 2D: at most two points.
+///
+/// `out` holds the previous manifold of the pair, whose points hand on their ids; it is empty
+/// afterwards if and only if the solids are farther apart than the prediction or overlap without
+/// bound. A separation that is not a number gives an empty manifold.
+pub(crate) fn build2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    build_in_plane(pair, separation, request, request.max_points.min(2), out);
+}
+
+/// As [`build2`], with as many points as are asked for.
+pub(crate) fn between2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    build_in_plane(pair, separation, request, request.max_points, out);
+}
+
+fn build_in_plane<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    request: &ManifoldRequest<N>,
+    limit: usize,
+    out: &mut RawManifold<N, 2>,
+) {
+    if build_one_sided(pair, separation, request, limit, out) {
+        return;
+    }
+    let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
+    if !stretch::build(pair, &frame, limit, out) {
+        // A user's solid with a supporting feature that is neither a point nor a side.
+        settle_witness(pair, separation, out);
+    }
+}
+
+/// Builds the manifold of two solids in 3D: at most `request.max_points` points.
+///
+/// As [`build2`].
+pub(crate) fn build3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) {
+    if !build_one_sided(pair, separation, request, request.max_points, out) {
+        let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
+        clip::build(pair, &frame, request.max_points, out);
+    }
+}
+
+/// Builds the manifold of a pair that is too far apart, of a ball, the first solid, or of a half-space, the
+/// second; false of others.
+fn build_one_sided<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    request: &ManifoldRequest<N>,
+    limit: usize,
+    out: &mut RawManifold<N, D>,
+) -> bool {
+    let distance = separation.distance;
+    // Written so that NaN is too far.
+    let is_near = distance <= request.prediction && distance.is_finite_number();
+    if !is_near {
+        out.points.clear();
+    } else if let Kind::Ball(_) = pair.first {
+        settle_witness(pair, separation, out);
+    } else if let Kind::Plane(_) = pair.second {
+        let tangents = (N::tables().tangents)(&separation.normal);
+        half_space::build(pair, &Frame::new(pair, separation, request, tangents), limit, out);
+    } else {
+        return false;
+    }
+    true
+}
+
+/// The nearest points are all there is.
+fn settle_witness<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    out: &mut RawManifold<N, D>,
+) {
+    out.normal = separation.normal;
+    let parts = (N::tables().witness_features)(pair, separation);
+    ids::settle_alone(&Candidate::alone(separation, parts), out);
+}
+
+/// Two directions that complete a normal of space to a right-handed basis.
+pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
+    let (u, v) = orthonormal_basis(normal);
+    [u, v]
+}
+
+/// The direction along the line of contact in 2D, and zero for the second that there is not.
+#[inline]
+pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
+    [-perp(normal), Vector::<N, 2>::zeros()]
+}
+
+/// The manifold of a pair in 3D: by the fused algorithm of its kinds where there is one and it does not
+/// decline, else from the separation.
+pub(crate) fn contacts3<N: Space<3>>(
+    pair: &Pair<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) {
+    if !super::batch::build3(pair, request, out) {
+        contacts_of_separation3(pair, request, out);
+    }
+}
+
+/// The manifold of a pair in 3D from its separation.
+pub(in crate::collide) fn contacts_of_separation3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 3>,
+) {
+    match separation_in_space(pair, request.prediction) {
+        Some(separation) => build3(pair, &separation, request, out),
+        None => out.points.clear(),
+    }
+}
+
+/// The manifold of a pair in 2D; as [`contacts3`].
+pub(crate) fn contacts2<N: Space<2>>(
+    pair: &Pair<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    if !super::batch::build2(pair, request, out) {
+        contacts_of_separation2(pair, request, out);
+    }
+}
+
+/// The manifold of a pair in 2D from its separation.
+pub(in crate::collide) fn contacts_of_separation2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+    out: &mut RawManifold<N, 2>,
+) {
+    match separation_in_plane(pair, request.prediction) {
+        Some(separation) => build2(pair, &separation, request, out),
+        None => out.points.clear(),
+    }
+}
+
+/// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. The
+/// nearest stands for the witness and takes the separation's `distance`, which it has but for
+/// rounding.
+pub(in crate::collide) fn choose<N: Real, const D: usize>(
+    candidates: &mut [Candidate<N, D>],
+    distance: N,
+    tolerance: N,
+    limit: usize,
+    out: &mut RawManifold<N, D>,
+) {
+    if candidates.len() <= limit && ids::renew(candidates, distance, out) {
+        return;
+    }
+    ids::inherit(&out.points, candidates);
+    let level = distance + tolerance;
+    let chosen = chosen(candidates, level, tolerance, limit.max(1));
+    let deepest = deepest_of(chosen.len(), level, |at| {
+        let candidate = &candidates[chosen[at]];
+        (candidate.kept_id.is_some(), candidate.distance)
+    });
+    candidates[chosen[deepest]].distance = distance;
+    ids::settle(candidates, &chosen, out);
+}
+
+/// The indices of at most `limit` candidates, one with a distance of at most `level` or the smallest among them.
+#[inline]
+fn chosen<N: Real, const D: usize>(
+    candidates: &[Candidate<N, D>],
+    level: N,
+    tolerance: N,
+    limit: usize,
+) -> reduce::Indices {
+    if candidates.len() <= limit {
+        return (0..candidates.len()).collect();
+    }
+    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.kept_id.is_some()));
+    reduce::chosen(&mut reduce::projected(seen, level), limit, tolerance)
+}
+
+/// Adds the witness, in place of any candidate with the same name unless the name is that of two
+/// faces, which many points may share.
+fn add_witness<N: Real, const D: usize>(
+    frame: &Frame<N, D>,
+    features: [FeatureId; 2],
+    out: &mut Candidates<N, D>,
+) {
+    let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
+    out.retain(|candidate| is_shared || candidate.features != features);
+    out.push(Candidate::alone(&frame.witness, features));
+}
+
+/// The candidate that stands for the witness; see [`deepest_of`].
+fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
+    deepest_of(candidates.len(), limit, |index| {
+        let candidate = &candidates[index];
+        (candidate.kept_id.is_some(), candidate.distance)
+    })
+}
+
+/// Of candidates whose distance is the smallest but for rounding, at most `limit`, one that the previous
+/// manifold held, then the deepest: its index. `what` tells of each whether it was held, and its distance.
+#[inline]
+pub(in crate::collide) fn deepest_of<N: Real>(
+    count: usize,
+    limit: N,
+    what: impl Fn(usize) -> (bool, N),
+) -> usize {
+    let rank = |index: usize| {
+        let (is_kept, distance) = what(index);
+        (!(distance <= limit && is_kept), distance)
+    };
+    (1..count).fold(0, |best, index| {
+        let (new, old) = (rank(index), rank(best));
+        if (new.0, old.0) == (false, true) || new.0 == old.0 && new.1 < old.1 {
+            index
+        } else {
+            best
+        }
+    })
+}

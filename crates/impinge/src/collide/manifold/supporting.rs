@@ -1,0 +1,140 @@
+//! The supporting features of the kinds of space as rings of corners, in the frames of their solids.
+//!
+//! They are those of [`SupportMap::core_feature`], which serves what has no function here.
+
+use smallvec::SmallVec;
+
+use super::ring::LANES;
+use crate::collide::separation::bare;
+use crate::math::{Point, Real, Vector};
+use crate::shape::{
+    ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Geometry, Kind, Polytope, RoundPart,
+    Segment, SupportMap, Triangle,
+};
+
+/// The corners of a feature, eight at a time; the id and the normal of the feature are those of the first eight.
+pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 1]>;
+
+/// Fills a blank ring with the supporting feature of a solid's core, and returns the radius around the core.
+pub(super) fn supporting_feature<N: Real>(
+    kind: Kind<'_, N, 3>,
+    direction: &Vector<N, 3>,
+    faces: &mut FaceBlocks<N>,
+) -> N {
+    let ((kind, radius), face) = (bare(kind), &mut faces[0]);
+    let is_filled = match kind {
+        Kind::Segment(segment) => fill_segment(segment, face),
+        Kind::Capsule(capsule) => fill_segment(capsule.segment(), face),
+        Kind::Cuboid(cuboid) => fill_cuboid(cuboid, direction, face),
+        Kind::Polytope(hull) => fill_hull(hull, direction, face),
+        Kind::Triangle(triangle) => fill_triangle(triangle, direction, face),
+        Kind::Cylinder(cylinder, _) => fill_round(cylinder.part_shown(direction), face),
+        Kind::Cone(cone, _) => fill_round(cone.part_shown(direction), face),
+        _ => false,
+    };
+    let map = Geometry(kind).as_support_map();
+    if let Some(map) = map.filter(|_| !is_filled) {
+        fill_feature(map, direction, faces);
+    }
+    radius + map.map_or(N::ZERO, SupportMap::rounding)
+}
+
+fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, face: &mut FaceRing<N>) -> bool {
+    face.id = id;
+    face.push(point, [id; 2]);
+    true
+}
+
+fn fill_ends<N: Real>(
+    id: FeatureId,
+    ends: [(FeatureId, Point<N, 3>); 2],
+    face: &mut FaceRing<N>,
+) -> bool {
+    face.id = id;
+    for (end, point) in &ends {
+        face.push(point, [*end, id]);
+    }
+    true
+}
+
+fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> bool {
+    let ends = [(FeatureId::Vertex(0), *segment.a()), (FeatureId::Vertex(1), *segment.b())];
+    fill_ends(FeatureId::Edge(0), ends, face)
+}
+
+/// False of a flat box, some of whose parts coincide.
+fn fill_cuboid<N: Real>(
+    cuboid: &Cuboid<N, 3>,
+    direction: &Vector<N, 3>,
+    face: &mut FaceRing<N>,
+) -> bool {
+    let is_flat = cuboid.half_extents().iter().any(|half| *half == N::ZERO);
+    !is_flat
+        && match Cuboid::part_shown(direction) {
+            FeatureId::Face(index) => cuboid.fill_ring(index, face),
+            edge @ FeatureId::Edge(_) => fill_ends(edge, cuboid.edge(edge), face),
+            vertex @ FeatureId::Vertex(_) => fill_point(vertex, &cuboid.vertex(vertex), face),
+        }
+}
+
+/// False of a face with more than eight corners.
+fn fill_hull<N: Real>(
+    hull: &Polytope<N, 3>,
+    direction: &Vector<N, 3>,
+    face: &mut FaceRing<N>,
+) -> bool {
+    match hull.part_shown(direction) {
+        FeatureId::Face(index) => hull.fill_ring(index, face),
+        edge @ FeatureId::Edge(_) => fill_ends(edge, hull.edge(edge), face),
+        vertex @ FeatureId::Vertex(_) => fill_point(vertex, &hull.vertex(vertex), face),
+    }
+}
+
+/// False of thin triangles, and where rounding decides what faces the direction.
+fn fill_triangle<N: Real>(
+    triangle: &Triangle<N, 3>,
+    direction: &Vector<N, 3>,
+    face: &mut FaceRing<N>,
+) -> bool {
+    match triangle.part_shown(direction) {
+        Some(FeatureId::Face(_)) => triangle.fill_ring(direction, face),
+        Some(edge @ FeatureId::Edge(_)) => return fill_ends(edge, triangle.edge(edge), face),
+        Some(vertex @ FeatureId::Vertex(_)) => {
+            return fill_point(vertex, &triangle.vertex(vertex), face);
+        }
+        None => return false,
+    }
+    true
+}
+
+/// False of a cap.
+fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bool {
+    match part {
+        Some(RoundPart::Point(id, point)) => fill_point(id, &point, face),
+        Some(RoundPart::Line(id, ends)) => fill_ends(id, ends, face),
+        None => false,
+    }
+}
+
+/// Any feature. One without corners, as users' solids may have, is the support point.
+fn fill_feature<N: Real>(
+    map: &dyn SupportMap<N, 3>,
+    direction: &Vector<N, 3>,
+    faces: &mut FaceBlocks<N>,
+) {
+    let mut feature = Feature::default();
+    map.core_feature(direction, &mut feature);
+    if feature.vertices.is_empty() || feature.vertex_ids.is_empty() {
+        fill_point(feature.id, &map.core_support(direction), &mut faces[0]);
+        return;
+    }
+    faces[0].id = feature.id;
+    faces[0].normal = feature.normal.unwrap_or_else(Vector::<N, 3>::zeros);
+    for (at, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
+        if at / LANES == faces.len() {
+            faces.push(FaceRing::blank());
+        }
+        let side = feature.side_ids.get(at).copied();
+        faces[at / LANES].push(vertex, [id, side.unwrap_or(feature.id)]);
+    }
+}

@@ -1,0 +1,134 @@
+//! The corners of solids above half-spaces, each on its own.
+
+use super::super::build3;
+use super::scene::{Random, Scene, describe, fact, request};
+use crate::collide::{Pair, RawManifold};
+use crate::math::{Point, Pose, Real, Space, Unit, Vector};
+use crate::shape::{
+    Capsule, ConvexHull, Cuboid, FeatureId, Kind, Plane, Rounded, Segment, Shape, Triangle,
+};
+
+/// A solid and the corners that count: vertices, or the ends of a capsule's axis and its radius.
+type Cornered<N> = (Box<dyn Shape<N, 3>>, Vec<Point<N, 3>>, N);
+
+fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Cornered<N> {
+    let point =
+        |random: &mut Random| Point::from(random.vector::<f64, 3>(1.0).map(|x| N::lit(x * scale)));
+    let length = |random: &mut Random| N::lit(random.between(0.2, 1.0) * scale);
+    match kind {
+        0 | 1 => {
+            let mut half = Vector::<N, 3>::from_fn(|_, _| length(random));
+            half[1] = if kind == 1 { N::ZERO } else { half[1] };
+            let corner = |at: usize| {
+                let toward =
+                    |axis: usize| if at >> axis & 1 == 1 { half[axis] } else { -half[axis] };
+                Point::<N, 3>::new(toward(0), toward(1), toward(2))
+            };
+            let is_first = |at: &usize| kind == 0 || at >> 1 & 1 == 0;
+            let corners = (0..8).filter(is_first).map(corner).collect();
+            (Box::new(Cuboid::new(half)), corners, N::ZERO)
+        }
+        2 | 3 => {
+            let points: Vec<_> = (0..[12, 40][kind - 2]).map(|_| point(random)).collect();
+            let hull = ConvexHull::from_points(&points);
+            let Kind::Polytope(polytope) = hull.geometry().0 else { panic!("a polytope") };
+            let vertices = polytope.vertices().to_vec();
+            (Box::new(hull), vertices, N::ZERO)
+        }
+        4 => {
+            let corners = [point(random), point(random), point(random)];
+            let [a, b, c] = corners;
+            (Box::new(Triangle::new(a, b, c)), corners.to_vec(), N::ZERO)
+        }
+        5 => {
+            let ends = [point(random), point(random)];
+            (Box::new(Segment::new(ends[0], ends[1])), ends.to_vec(), N::ZERO)
+        }
+        _ => {
+            let (ends, radius) = ([point(random), point(random)], length(random));
+            let capsule = Capsule::try_from_ends(ends[0], ends[1], radius).expect("finite");
+            (Box::new(capsule), ends.to_vec(), radius)
+        }
+    }
+}
+
+/// All corners within the prediction are contacts, at their places, and no others; over some steps each keeps
+/// its number.
+fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
+    let (random, mut points) = (&mut Random(seed), 0);
+    for round in 0..700_usize {
+        let (solid, corners, radius) = solid::<N>(round % 7, scale, random);
+        let plane = Plane::new(Unit::new_normalize(random.vector::<N, 3>(1.0)));
+        let pose12 = <N as Scene<3>>::pose(Vector::<N, 3>::zeros(), random.turn());
+        let mut pair = Pair { first: solid.geometry().0, second: Kind::Plane(&plane), pose12 };
+        let normal = -pair.pose12.vector(plane.normal());
+        let deep = N::lit(random.between(-1.0, 0.02) * scale);
+        pair.pose12.translation = normal * (deep - fact(&pair).distance);
+        let mut asked = request::<N>(0.05 * scale, 0.0);
+        asked.max_points = 64;
+        let (mut raw, room) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
+        for _ in 0..3 {
+            let found = fact(&pair);
+            let before = raw.clone();
+            build3(&pair, &found, &asked, &mut raw);
+            let what = format!("round {round}, {}: {raw:?}", describe(&pair));
+            for point in &raw.points {
+                let old = before.points.iter().find(|old| old.feature1 == point.feature1);
+                assert!(old.is_none_or(|old| old.id == point.id), "{what}\n{before:?}");
+            }
+            if found.distance > asked.prediction {
+                assert!(raw.points.is_empty(), "{what}");
+                continue;
+            }
+            assert_eq!(raw.points[raw.deepest()].distance, found.distance, "{what}");
+            points += raw.points.len();
+            let flatness =
+                (corners[1] - corners[0]).cross(&normal).norm() / (corners[1] - corners[0]).norm();
+            if corners.len() == 2 && flatness < N::lit(0.55) {
+                continue;
+            }
+            let mut expected = 0;
+            for corner in &corners {
+                let height = normal.dot(&(corner.coords - pair.pose12.translation));
+                let distance = -height - radius;
+                // Over a capsule's raised end the surface is a little nearer than the ball around it.
+                let reach =
+                    asked.prediction + if radius > N::ZERO { N::lit(-0.05 * scale) } else { room };
+                let is_near = |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= room;
+                let has_it = raw.points.iter().any(|point| is_near(point.point1));
+                assert!(has_it || distance > reach - room - room, "{corner} at {distance}, {what}");
+                expected += usize::from(distance <= asked.prediction + room);
+            }
+            assert!(raw.points.len() <= expected.max(1) || radius > N::ZERO, "{what}");
+            pair.pose12.translation += random.vector::<N, 3>(0.02).map(|x| x * N::lit(scale));
+        }
+    }
+    assert!(points > 1000, "{points} points");
+}
+
+#[test]
+fn corners_near_a_half_space_are_its_contacts() {
+    for (seed, scale) in [(1, 1.0), (2, 2.0_f64.powi(20)), (3, 2.0_f64.powi(-30))] {
+        corners_count::<f32>(seed, scale);
+        corners_count::<f64>(seed + 10, scale);
+    }
+}
+
+/// A rounded box shows its face: four corners, on the rounded surface.
+#[test]
+fn a_rounded_box_lies_on_four_corners() {
+    let solid = Rounded::new(Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 2.0)), 0.25);
+    let plane = Plane::new(Unit::new_unchecked(Vector::<f64, 3>::y()));
+    let pose12 = Pose::from_translation(Vector::<f64, 3>::new(0.0, -0.74, 0.0));
+    let pair = Pair { first: solid.geometry().0, second: Kind::Plane(&plane), pose12 };
+    let mut raw = RawManifold::default();
+    build3(&pair, &fact(&pair), &request(0.1, 0.0), &mut raw);
+    let places = raw.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    assert_eq!(places.len(), 4, "{raw:?}");
+    let is_corner = |p: &Point<f64, 3>| p.x.abs() == 1.0 && p.y == -0.75 && p.z.abs() == 2.0;
+    assert!(places.iter().all(is_corner), "{raw:?}");
+    assert!(
+        raw.points.iter().all(|point| matches!(point.feature1, FeatureId::Vertex(_))),
+        "{raw:?}"
+    );
+}

@@ -1,0 +1,122 @@
+//! Names that last while solids slide and spin slowly.
+
+use std::collections::BTreeMap;
+
+use super::scene::{Random, Scene, fact, request};
+use crate::collide::{Pair, RawManifold};
+use crate::math::{Pose, Unit, Vector};
+use crate::shape::{Cuboid, FeatureId, Plane, Shape};
+
+type Names = BTreeMap<[FeatureId; 2], u32>;
+
+fn names<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> Names {
+    raw.points.iter().map(|point| ([point.feature1, point.feature2], point.id)).collect()
+}
+
+/// A thousand steps of a box on some ground: a number stays with its features, a number that ended
+/// never comes back. Answers how many numbers were given.
+fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usize {
+    let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
+    let (mut raw, mut old) = (RawManifold::default(), Names::new());
+    let mut last_given = None;
+    let full = 1 << (D - 1);
+    for step in 0..1000 {
+        let time = f64::from(step) * 1e-3;
+        let mut place = Vector::<N, D>::zeros();
+        place[0] = N::lit(0.3 * time);
+        place[1] = N::lit(0.499 + 1e-4 * (37.0 * time).sin());
+        let wobble = 1e-4 * (91.0 * time).sin();
+        let pose1 = N::pose(place, [wobble, 0.3 * time * f64::from(D == 3), wobble]);
+        let mut below = Vector::<N, D>::zeros();
+        below[1] = N::lit(-top);
+        let pose12 = Pose::relative(&pose1, &N::pose(below, [0.0; 3]));
+        let pair = Pair { first: solid.geometry().0, second: ground.geometry().0, pose12 };
+        N::build(&pair, &fact(&pair), &request(0.02, 0.0), &mut raw);
+        let new = names(&raw);
+        assert_eq!(new.len(), raw.points.len(), "no two points share their features");
+        assert_eq!(new.len(), full, "all corners, step {step}: {raw:?}");
+        for (features, id) in &new {
+            match old.get(features) {
+                Some(before) => assert_eq!(id, before, "renamed without reason in step {step}"),
+                None => assert!(Some(*id) > last_given, "an old number in step {step}"),
+            }
+        }
+        last_given = last_given.max(new.values().copied().max());
+        old = new;
+    }
+    last_given.map_or(0, |last| last as usize + 1)
+}
+
+fn on_plane<N: Scene<D>, const D: usize>() -> usize {
+    let up = Vector::<N, D>::from_fn(|axis, _| if axis == 1 { N::ONE } else { N::ZERO });
+    slide::<N, D>(&Plane::new(Unit::new_normalize(up)), 0.0)
+}
+
+fn on_box<N: Scene<D>, const D: usize>(reach: f64) -> usize {
+    let mut half_extents = Vector::<N, D>::repeat(N::lit(reach));
+    half_extents[1] = N::ONE;
+    slide::<N, D>(&Cuboid::new(half_extents), 1.0)
+}
+
+#[test]
+fn a_sliding_box_keeps_its_names() {
+    assert_eq!([on_plane::<f32, 2>(), on_plane::<f64, 2>()], [2; 2], "two corners in the plane");
+    assert_eq!([on_plane::<f32, 3>(), on_plane::<f64, 3>()], [4; 2], "four corners in space");
+    assert_eq!([on_box::<f32, 2>(4.0), on_box::<f64, 3>(4.0)], [2, 4], "on a large box");
+}
+
+#[test]
+fn a_box_sliding_over_an_edge_is_renamed_with_its_features() {
+    assert!(on_box::<f32, 2>(0.6) <= 3, "one corner leaves, one point on the edge comes");
+    assert!(on_box::<f32, 3>(0.6) <= 20, "{} numbers", on_box::<f32, 3>(0.6));
+    assert!(on_box::<f64, 3>(0.45) <= 40, "{} numbers", on_box::<f64, 3>(0.45));
+}
+
+/// Equal boxes one on the other, shifted along one side so that two pairs of sides fall together:
+/// rounding-level noise on every step changes no name.
+fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
+    let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
+    let (mut raw, mut random) = (RawManifold::default(), Random(11));
+    let noise = 2.0 * N::EPSILON.as_f64();
+    for step in 0..300 {
+        let mut place = random.vector::<N, D>(noise);
+        place[0] += N::lit(shift);
+        place[1] += N::lit(0.999);
+        let turn = [(); 3].map(|()| random.between(-noise, noise));
+        let pair = Pair {
+            first: solid.geometry().0,
+            second: solid.geometry().0,
+            pose12: N::pose(place, turn),
+        };
+        N::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
+        assert_eq!(raw.points.len(), 1 << (D - 1), "step {step}, {shift}: {raw:?}");
+        let ids: Vec<u32> = raw.points.iter().map(|point| point.id).collect();
+        assert!(ids.iter().zip(0..).all(|(id, index)| *id == index), "step {step}: {raw:?}");
+    }
+}
+
+#[test]
+fn a_stack_at_rest_keeps_its_names() {
+    for shift in [0.0, 0.25] {
+        stack_rests::<f32, 2>(shift);
+        stack_rests::<f64, 2>(shift);
+        stack_rests::<f32, 3>(shift);
+        stack_rests::<f64, 3>(shift);
+    }
+}
+
+/// Contacts that ended come back under new numbers.
+#[test]
+fn a_number_is_never_given_twice() {
+    let solid = Cuboid::new(Vector::<f64, 2>::new(0.5, 0.5));
+    let (mut raw, mut seen) = (RawManifold::default(), 0);
+    for height in [1.0, 2.0, 0.99, 3.0, 0.98] {
+        let pose12 = f64::pose(Vector::<f64, 2>::new(0.0, height), [0.0; 3]);
+        let pair = Pair { first: solid.geometry().0, second: solid.geometry().0, pose12 };
+        f64::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
+        assert_eq!(raw.points.is_empty(), height > 1.0, "{height}: {raw:?}");
+        assert!(raw.points.iter().all(|point| point.id >= seen), "{height}: {raw:?}");
+        seen += u32::try_from(raw.points.len()).expect("two at most");
+    }
+    assert_eq!(seen, 6, "two contacts three times");
+}

@@ -1,0 +1,206 @@
+//! What the nearest points of two convex solids lie on.
+
+use super::frame::{Frame, Which, rounding};
+use super::ring::part_of;
+use super::stretch::Stretch;
+use super::{ManifoldRequest, Pair, clip, tangents2, tangents3};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::{FeatureId, Kind};
+
+/// The features of two solids of the plane that the points of their separation lie on.
+pub(crate) fn features2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+) -> [FeatureId; 2] {
+    features(pair, separation, shown2)
+}
+
+/// The features of two solids of space that the points of their separation lie on.
+pub(crate) fn features3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+) -> [FeatureId; 2] {
+    features(pair, separation, shown3)
+}
+
+/// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
+pub(crate) fn feature2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    known: (&Separation<N, 2>, N),
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, known, shown2, is_second)
+}
+
+/// The feature of one of two solids of space, the first or the second: one of [`features3`].
+pub(crate) fn feature3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    known: (&Separation<N, 3>, N),
+    is_second: bool,
+) -> FeatureId {
+    feature(pair, known, shown3, is_second)
+}
+
+/// The smallest part of the supporting feature of one of two solids, the first or the second, that holds the
+/// point of a separation.
+type ShownFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
+
+/// The frame of a witness that nothing else is asked of.
+fn frame<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    tangents: [Vector<N, D>; 2],
+) -> Frame<N, D> {
+    let request = ManifoldRequest::new(separation.distance, N::ZERO, 1);
+    Frame::new(pair, separation, &request, tangents)
+}
+
+fn features<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    shown: ShownFn<N, D>,
+) -> [FeatureId; 2] {
+    if let Some(touched) = of_ball(pair, separation) {
+        return [FeatureId::Face(0), touched];
+    }
+    let (noise, normal) = (rounding(pair), separation.normal);
+    let first = by_place(pair.first, (&separation.point1, &normal), noise);
+    let second = || {
+        let point = pair.pose12.inverse_point(&separation.point2);
+        by_place(pair.second, (&point, &-pair.pose12.inverse_vector(&normal)), noise)
+    };
+    [
+        first.unwrap_or_else(|| shown(pair, separation, false)),
+        second().unwrap_or_else(|| shown(pair, separation, true)),
+    ]
+}
+
+/// The part of a solid with flat faces, of a segment or of what is rounded of these that holds a point of the
+/// surface, seen from where a unit vector points: the point tells, without what the solid shows there. `None` of
+/// other kinds, and where rounding does not let it tell.
+fn by_place<N: Real, const D: usize>(
+    kind: Kind<'_, N, D>,
+    (point, outward): (&Point<N, D>, &Vector<N, D>),
+    noise: N,
+) -> Option<FeatureId> {
+    match kind {
+        Kind::Plane(_) => Some(FeatureId::Face(0)),
+        Kind::Cuboid(cuboid) => cuboid.part_at(point, noise),
+        Kind::Triangle(triangle) => triangle.part_at(point, outward, noise),
+        Kind::Polytope(solid) => Some(solid.part_at(point, outward, noise)),
+        Kind::Segment(segment) => part_of(segment, point, N::TWO * noise),
+        Kind::Capsule(capsule) => {
+            let core = point - outward * capsule.radius();
+            part_of(capsule.segment(), &core, N::TWO * noise)
+        }
+        Kind::Rounded(solid) => {
+            let core = point - outward * solid.radius();
+            by_place(solid.inner().0, (&core, outward), noise)
+        }
+        _ => None,
+    }
+}
+
+fn feature<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    (separation, noise): (&Separation<N, D>, N),
+    shown: ShownFn<N, D>,
+    is_second: bool,
+) -> FeatureId {
+    match of_ball(pair, separation) {
+        Some(touched) if is_second => return touched,
+        Some(_) => return FeatureId::Face(0),
+        None => {}
+    }
+    let seam = on_seam(pair, separation, noise, is_second);
+    seam.unwrap_or_else(|| shown(pair, separation, is_second))
+}
+
+/// The side or corner of a triangle that a solid with flat faces touches, or the core of a capsule: the points
+/// of these are exact, so that the place tells.
+fn on_seam<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+    noise: N,
+    is_second: bool,
+) -> Option<FeatureId> {
+    let (triangle, point, toward) = match (&pair.first, &pair.second) {
+        (Kind::Triangle(triangle), Kind::Cuboid(_) | Kind::Polytope(_)) if !is_second => {
+            (triangle, separation.point1, separation.normal)
+        }
+        (Kind::Segment(_) | Kind::Capsule(_), Kind::Triangle(triangle)) if is_second => {
+            let point = pair.pose12.inverse_point(&separation.point2);
+            (triangle, point, pair.pose12.inverse_vector(&-separation.normal))
+        }
+        _ => return None,
+    };
+    let part = triangle.part_at(&point, &toward, noise);
+    part.filter(|part| !matches!(part, FeatureId::Face(_)))
+}
+
+/// What a ball, the first solid, touches, where the kind of the other says so at once; `None` of other solids.
+fn of_ball<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    separation: &Separation<N, D>,
+) -> Option<FeatureId> {
+    match pair.first {
+        Kind::Ball(_) => beside_ball(pair, separation),
+        _ => None,
+    }
+}
+
+/// The part of the second solid that a ball, the first, touches, where its kind says so at once: as its
+/// supporting feature does, but for what is within rounding of another part.
+#[inline]
+pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    found: &Separation<N, D>,
+) -> Option<FeatureId> {
+    if let Kind::Ball(_) | Kind::Ellipsoid(_) = pair.second {
+        return Some(FeatureId::Face(0));
+    }
+    let (point, noise) = (pair.pose12.inverse_point(&found.point2), rounding(pair));
+    match pair.second {
+        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, noise),
+        Kind::Cone(cone, _) => cone.part_at(&point, noise),
+        other => by_place(other, (&point, &-pair.pose12.inverse_vector(&found.normal)), noise),
+    }
+}
+
+/// One of two solids, and its pose in the frame of the first.
+fn solid<'a, N: Real, const D: usize>(
+    pair: &'a Pair<'_, N, D>,
+    is_second: bool,
+) -> (Which, Kind<'a, N, D>, Option<&'a Pose<N, D>>) {
+    if is_second {
+        (Which::Second, pair.second, Some(&pair.pose12))
+    } else {
+        (Which::First, pair.first, None)
+    }
+}
+
+fn shown2<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    separation: &Separation<N, 2>,
+    is_second: bool,
+) -> FeatureId {
+    let frame = frame(pair, separation, tangents2(&separation.normal));
+    let (which, kind, pose) = solid(pair, is_second);
+    let side = Stretch::of((which, kind), pose, &frame);
+    side.map_or(FeatureId::Face(0), |side| side.at_witness(&frame))
+}
+
+fn shown3<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    separation: &Separation<N, 3>,
+    is_second: bool,
+) -> FeatureId {
+    let frame = frame(pair, separation, tangents3(&separation.normal));
+    let (which, kind, pose) = solid(pair, is_second);
+    // A ball's only feature, and a half-space's.
+    if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
+        return FeatureId::Face(0);
+    }
+    clip::part_at_witness(kind, which, pose, &frame)
+}

@@ -1,0 +1,270 @@
+//! The contacts of a ball and a surface of triangles in 3D: the general way, which defines them, with what
+//! all triangles have in common worked out once, and nothing made of those that others hide.
+
+use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
+use super::over::over3;
+use super::part_cache::PartCache;
+use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_certain, of_ball};
+use super::patch::Piece;
+use super::scene::Scene;
+use super::{
+    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+};
+use crate::bounding_volume::Aabb;
+use crate::collide::packet::{LANES, PartGap};
+use crate::collide::parts::between::Between;
+use crate::collide::parts::bounds::enclosing;
+use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
+use crate::collide::{ManifoldRequest, Pair};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
+
+/// Lengths below this many rounding units of all sizes are rounding errors.
+const ROUNDING: f64 = 16.0;
+/// Most of these cost no more than a look at whether their box meets the ball's.
+const MAX_ROOMY: usize = 5 * LANES;
+
+/// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general way,
+/// as of all other solids.
+pub(crate) fn update_on_surface<N: Real>(
+    contacts: &mut CompositeContacts<N, 3>,
+    between: &Between<'_, N, 3>,
+    request: &ManifoldRequest<N>,
+) -> bool {
+    let Some(mut rolling) = Rolling::new(between, request) else { return false };
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    let Some(rounding) = rolling.find(contacts, &mut part_contacts, &mut arena) else {
+        return false;
+    };
+    arena.rounding = rounding;
+    let (reference, center) = (Some(rolling.from), Some(rolling.center));
+    if !is_settled(&part_contacts) {
+        let around = Some(&contacts.around);
+        let query = Query { between, around, reference: &reference, request: &rolling.request };
+        query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
+    }
+    contacts.conclude(request, reference, center, &part_contacts, &arena);
+    true
+}
+
+/// A ball and the surface that it may touch.
+struct Rolling<'b, 'a, N: Real> {
+    between: &'b Between<'a, N, 3>,
+    /// What is asked of a triangle.
+    request: ManifoldRequest<N>,
+    ball: &'a Ball<N>,
+    parts: &'a dyn CompositeShape<N, 3>,
+    surface: &'a dyn Surface<N, 3>,
+    /// The surface's frame in that of the ball, put through its middle.
+    turn: Pose<N, 3>,
+    /// The middle of the ball, and where it comes from, in the surface's frame.
+    center: Point<N, 3>,
+    from: Point<N, 3>,
+}
+
+/// A triangle as the middle of the ball sees it.
+struct Seen<N: Real> {
+    part: u32,
+    triangle: Triangle<N, 3>,
+    tolerance: N,
+}
+
+impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
+    /// `None` of other solids, and of what is no surface.
+    fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
+        let Kind::Ball(ball) = between.pair.first else { return None };
+        let [_, parts] = between.composites();
+        let parts = parts?;
+        let surface = parts.surface()?;
+        let center = middle_of_first(between)?;
+        let request = of_parts(between, request);
+        let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
+        Some(Self { between, request, ball, parts, surface, turn, center, from: center })
+    }
+
+    /// A box around all that is within reach of the ball, of which all parts are kept; `None` if some are
+    /// not, or are no triangles.
+    fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
+        let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
+        let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
+        let is_kept = around.reaches_with(self.parts, &aabb, MAX_ROOMY);
+        (is_kept && around.has_triangles_alone()).then_some(aabb)
+    }
+
+    /// Finds the contacts of the triangles that are not hidden; answers what counts as rounding among
+    /// the others, or `None` where they matter.
+    fn find(
+        &mut self,
+        contacts: &mut CompositeContacts<N, 3>,
+        part_contacts: &mut PartContacts<N, 3>,
+        arena: &mut Arena<N, 3>,
+    ) -> Option<N> {
+        let within = self.box_within(&mut contacts.around)?;
+        let question = BallQuestion {
+            tiles: contacts.around.tiles(),
+            count: contacts.around.parts().len(),
+            center: self.center.coords,
+            radius: self.ball.radius(),
+            limit: self.request.prediction,
+            within,
+        };
+        let seen = near_triangles(&question, self.surface.has_plain_seams());
+        // What is outside the box is beyond reach.
+        let reach = self.ball.radius() + self.request.prediction;
+        let clearance = min(reach, seen.from_middle);
+        let way = Way { old: contacts.reference, clearance };
+        self.from = advanced(self.between, &way, self.center);
+        let around = &contacts.around;
+        each_lane(
+            &seen,
+            |[near, hidden]| near & !hidden,
+            |index| {
+                let one = self.seen(around, index)?;
+                self.add(&one, around, (&mut *part_contacts, &mut *arena));
+                Some(())
+            },
+        )?;
+        self.rounding_of_hidden(&seen, around, part_contacts)
+    }
+
+    /// What counts as rounding of the triangles that are hidden, if that matters; `None` where one of them
+    /// may be the nearest of all that can be touched.
+    fn rounding_of_hidden(
+        &self,
+        seen: &NearTriangles<N>,
+        around: &PartCache<N, 3>,
+        part_contacts: &[PartContact<N, 3>],
+    ) -> Option<N> {
+        let least =
+            part_contacts.iter().fold(N::INFINITY, |least, found| min(least, found.distance));
+        let from_middle = max(least + self.ball.radius(), N::ZERO);
+        let is_nearer = from_middle * from_middle < seen.hidden_from;
+        if !is_nearer && seen.hidden_from < N::INFINITY {
+            return None;
+        }
+        let mut most = N::ZERO;
+        if part_contacts.len() > 1 {
+            each_lane(
+                seen,
+                |[_, hidden]| hidden,
+                |index| {
+                    let hidden = self.seen(around, index)?;
+                    if faces(Some(self.surface), hidden.part, &self.from) {
+                        most = max(most, hidden.tolerance);
+                    }
+                    Some(())
+                },
+            )?;
+        }
+        Some(most)
+    }
+
+    /// One of the triangles that are kept; `None` where the numbers end.
+    fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<Seen<N>> {
+        let corners = around.tiles()[index / LANES].corners(index % LANES);
+        let [a, b, c] = corners.map(|corner| corner - self.between.pose21.translation);
+        let triangle = Triangle::try_new(a, b, c).ok()?;
+        let size = self.ball.radius() + triangle.reach();
+        let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
+        Some(Seen { part: around.parts()[index], triangle, tolerance })
+    }
+
+    /// Adds the contact of a triangle, if there is one.
+    fn add(
+        &self,
+        seen: &Seen<N>,
+        around: &PartCache<N, 3>,
+        (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
+    ) {
+        let kind = Kind::Triangle(&seen.triangle);
+        let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
+        let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
+        let found = self.plainly(seen, &found, arena).unwrap_or_else(|| {
+            let scene = Scene::new(self.between, Some(around));
+            let parts = [0, seen.part];
+            let query = Query {
+                between: self.between,
+                around: Some(around),
+                reference: &Some(self.from),
+                request: &self.request,
+            };
+            let gap = PartGap::of(&found);
+            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&gap), arena)
+        });
+        part_contacts.extend(found);
+    }
+
+    /// The contact of a triangle over which the ball plainly is, or beside which; `None` of others.
+    #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
+    fn plainly(
+        &self,
+        seen: &Seen<N>,
+        found: &Separation<N, 3>,
+        arena: &mut Arena<N, 3>,
+    ) -> Option<Option<PartContact<N, 3>>> {
+        let over = over3(&seen.triangle, &Point::origin(), seen.tolerance)?;
+        if !found.distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
+            return Some(None);
+        }
+        let filtered = self.filtered_normal(seen, found, over);
+        let (normal, status) = match &filtered {
+            FilteredNormal::Face(face) => (-self.turn.vector(face), PartStatus::Own),
+            FilteredNormal::Admitted => (found.normal, PartStatus::Own),
+            FilteredNormal::Refused => (found.normal, PartStatus::Left),
+            FilteredNormal::Snapped(_) | FilteredNormal::Beyond(_) if is_beside(Some(over)) => {
+                (found.normal, PartStatus::Left)
+            }
+            _ => return None,
+        };
+        let start = arena.points.len();
+        let mut lowest = N::INFINITY;
+        if status == PartStatus::Own {
+            if !is_certain(over, &filtered) {
+                return None;
+            }
+            let mut point = of_ball(&Separation { normal, ..*found }, over);
+            point.point1 = Point::origin() + point.point1.coords;
+            lowest = point.distance;
+            arena.points.push(point);
+        }
+        let piece = Piece { normal, parts: [0, seen.part], points: start..arena.points.len() };
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
+        let (distance, normal, tolerance) = (found.distance, found.normal, seen.tolerance);
+        Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
+    }
+
+    /// What the surface says of the way from the ball to a triangle.
+    fn filtered_normal(
+        &self,
+        seen: &Seen<N>,
+        found: &Separation<N, 3>,
+        over: FeatureId,
+    ) -> FilteredNormal<N, 3> {
+        let middle = seen.triangle.center() + self.between.pose21.translation;
+        let case = Case {
+            part: seen.part,
+            feature: &|| over,
+            is_beside: is_beside(Some(over)),
+            outward: -self.turn.inverse_vector(&found.normal),
+            toward: self.from - middle,
+        };
+        filter_normal(Some(self.surface), &case)
+    }
+}
+
+/// Visits some of the triangles by their numbers, in order, given the bits of each eight.
+fn each_lane<N>(
+    seen: &NearTriangles<N>,
+    bits: impl Fn([u8; 2]) -> u8,
+    mut visit: impl FnMut(usize) -> Option<()>,
+) -> Option<()> {
+    for &(block, near) in &seen.near {
+        let mut left = bits(near);
+        while left != 0 {
+            visit(block * LANES + left.trailing_zeros() as usize)?;
+            left &= left - 1;
+        }
+    }
+    Some(())
+}

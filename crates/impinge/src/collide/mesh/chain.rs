@@ -1,0 +1,339 @@
+//! The contacts of a convex solid and a chain of segments in 2D: the general way, which defines them,
+//! with what all segments have in common worked out once, and nothing made of those beyond reach.
+
+use super::cull::relative_slack;
+use super::gather::{depth_in, search_box};
+use super::normal_filter::{Case, FilteredNormal, filter_normal};
+use super::part_cache::PartCache;
+use super::part_contact::{Arena, PartContact, PartStatus};
+use super::patch::Piece;
+use super::scene::Scene;
+use super::{
+    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::collide::manifold::{Along, SegmentPair};
+use crate::collide::packet::{LANES, Tiles};
+use crate::collide::parts::between::Between;
+use crate::collide::parts::bounds::enclosing;
+use crate::collide::separation::{ChainQuestion, Links, links};
+use crate::collide::{ManifoldRequest, Pair, RawPoint};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
+use crate::shape::{
+    CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Sidedness,
+    SupportMap, Surface,
+};
+
+/// Lengths below this many rounding units of all sizes are rounding errors.
+const ROUNDING: f64 = 16.0;
+/// Among so many tiles the segments at a point are looked for; among more the chain itself is asked.
+const MAX_SEARCHED: usize = 8;
+
+/// Brings the contacts of a convex solid and a chain up to date; answers false where that is left to the
+/// general way.
+pub(crate) fn update_chain<N: Real>(
+    contacts: &mut CompositeContacts<N, 2>,
+    between: &Between<'_, N, 2>,
+    request: &ManifoldRequest<N>,
+) -> bool {
+    let Some(mut chain) = Chain::new(between, request) else { return false };
+    let (mut part_contacts, mut arena) = (PartContacts::new(), Arena::default());
+    if chain.find(contacts, &mut part_contacts, &mut arena).is_none() {
+        return false;
+    }
+    let (reference, center) = (Some(chain.from), Some(chain.center));
+    let query = Query {
+        between,
+        around: Some(&contacts.around),
+        reference: &reference,
+        request: &chain.request,
+    };
+    if !is_settled(&part_contacts) {
+        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
+    }
+    contacts.conclude(request, reference, center, &part_contacts, &arena);
+    true
+}
+
+/// A convex solid and the chain that it may touch.
+struct Chain<'b, 'a, N: Real> {
+    between: &'b Between<'a, N, 2>,
+    /// What is asked of a segment.
+    request: ManifoldRequest<N>,
+    solid: Kind<'a, N, 2>,
+    parts: &'a dyn CompositeShape<N, 2>,
+    surface: &'a dyn Surface<N, 2>,
+    sidedness: Option<Sidedness>,
+    /// The chain's frame in that of the solid, put through one point.
+    turn: Pose<N, 2>,
+    /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it comes first.
+    pose12: Pose<N, 2>,
+    /// In pairs with a segment, by the order of kinds: balls do, and segments, as the part of the first shape.
+    comes_first: bool,
+    /// The point that the pairs are seen from, in the chain's frame.
+    origin: Point<N, 2>,
+    /// The middle of the solid, and where it comes from, in the chain's frame.
+    center: Point<N, 2>,
+    from: Point<N, 2>,
+    /// No point of the solid is farther from its origin.
+    size: N,
+}
+
+/// The segments that are kept: all that overlap a box.
+struct Kept<'t, N: Real> {
+    tiles: &'t [Tiles<N, 2>],
+    parts: &'t [u32],
+    within: Aabb<N, 2>,
+}
+
+impl<N: Real> Kept<'_, N> {
+    fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
+        let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
+        [a, b]
+    }
+}
+
+impl<N: Real> KnownSegments<N> for Kept<'_, N> {
+    fn are_all_at(&self, point: &Point<N, 2>) -> bool {
+        self.tiles.len() <= MAX_SEARCHED && self.within.contains_point(point)
+    }
+
+    fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2])) {
+        for (block, tiles) in self.tiles.iter().enumerate() {
+            let [[from_x, from_y], [to_x, to_y], _] = &tiles.corners;
+            let mut ending = 0_u8;
+            for lane in 0..LANES {
+                let is_start = (from_x[lane] == point.x) & (from_y[lane] == point.y);
+                let is_end = (to_x[lane] == point.x) & (to_y[lane] == point.y);
+                ending |= u8::from(is_start | is_end) << lane;
+            }
+            while ending != 0 {
+                let index = block * LANES + ending.trailing_zeros() as usize;
+                ending &= ending - 1;
+                // Beyond the last part are copies of it.
+                if let Some(&part) = self.parts.get(index) {
+                    visit(part, self.ends(index));
+                }
+            }
+        }
+    }
+}
+
+/// A segment of the chain within reach of the solid.
+struct Link<'c, 'b, 'a, N: Real> {
+    chain: &'c Chain<'b, 'a, N>,
+    parts: [u32; 2],
+    segment: Segment<N, 2>,
+    known: KnownSegment<'c, N>,
+    found: Separation<N, 2>,
+    tolerance: N,
+}
+
+impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
+    /// `None` of solids that are not treated here, and of what is no surface.
+    fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
+        let solid = between.pair.first;
+        let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
+        let is_polygon = matches!(
+            solid,
+            Kind::Capsule(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_)
+        );
+        if !(comes_first || is_polygon) {
+            return None;
+        }
+        let [_, parts] = between.composites();
+        let (parts, map) = (parts?, Geometry(solid).as_support_map()?);
+        let surface = parts.surface()?;
+        let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
+        let pose12 = if comes_first { turn } else { Pose::relative(&turn, &Pose::identity()) };
+        let center = middle_of_first(between)?;
+        Some(Self {
+            between,
+            request: of_parts(between, request),
+            solid,
+            parts,
+            surface,
+            sidedness: surface.sidedness(),
+            turn,
+            pose12,
+            comes_first,
+            origin: Point::from(between.pose21.translation),
+            center,
+            from: center,
+            size: map.reach() + map.rounding(),
+        })
+    }
+
+    /// A box around all that is within reach of the solid, of which all parts are kept; `None` if some are
+    /// not, or are no segments.
+    fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
+        let reach = self.size + self.request.prediction;
+        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(reach));
+        let whole = enclosing(&whole, &self.between.pose21);
+        if around.holds(&whole) {
+            return around.has_segments_alone().then_some(whole);
+        }
+        let exact = search_box(self.between, self.request.prediction);
+        let most = exact.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
+        let aabb = if reach <= N::TWO * most { whole } else { exact };
+        (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
+    }
+
+    /// Finds the contacts of the segments within reach.
+    fn find(
+        &mut self,
+        contacts: &mut CompositeContacts<N, 2>,
+        part_contacts: &mut PartContacts<N, 2>,
+        arena: &mut Arena<N, 2>,
+    ) -> Option<()> {
+        let limit = self.request.prediction;
+        let around = &mut contacts.around;
+        let aabb = self.box_within(around)?;
+        let question = ChainQuestion {
+            tiles: around.tiles(),
+            count: around.parts().len(),
+            origin: self.origin.coords,
+            solid: self.solid,
+            pose12: self.pose12,
+            center: self.center,
+            limit,
+        };
+        let mut near = Links::new(depth_in(&aabb, &self.center));
+        links(&question, &mut near)?;
+        let slack = relative_slack::<N>() * (near.from_middle + self.size + limit);
+        let way = Way { old: contacts.reference, clearance: near.from_middle - slack };
+        self.from = advanced(self.between, &way, self.center);
+        let kept = Kept { tiles: around.tiles(), parts: around.parts(), within: aabb };
+        for (index, found) in &near.found {
+            if let Some(link) = self.link(&kept, *index, found) {
+                link.find(part_contacts, &mut arena.points)?;
+            }
+        }
+        Some(())
+    }
+
+    /// One of the segments that are kept; `None` if it cannot be touched or is not finitely far away.
+    fn link<'c>(
+        &'c self,
+        kept: &'c Kept<'_, N>,
+        index: usize,
+        found: &Separation<N, 2>,
+    ) -> Option<Link<'c, 'b, 'a, N>> {
+        if !found.distance.is_finite_number() {
+            return None;
+        }
+        let (parts, ends) = ([0, kept.parts[index]], kept.ends(index));
+        let known = KnownSegment::new(self.surface, self.sidedness, kept, ends);
+        if !known.faces(parts[1], &self.from) {
+            return None;
+        }
+        let [a, b] = ends.map(|end| end - self.origin.coords);
+        let segment = Segment::of_finite(a, b);
+        let size = segment.reach() + self.size;
+        let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
+        Some(Link { chain: self, parts, segment, known, found: *found, tolerance })
+    }
+
+    /// A direction from the first of a pair to the second, from the solid to the chain in the solid's frame.
+    fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
+        if self.comes_first { *normal } else { -self.turn.vector(normal) }
+    }
+
+    /// The opposite of [`Self::outward`].
+    fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
+        if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
+    }
+
+    /// A point of a pair's manifold with a normal, in the frame of the solid.
+    fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
+        if self.comes_first {
+            return point;
+        }
+        let point1 = self.turn.point(&(point.point1 + normal * point.distance));
+        let (feature1, feature2) = (point.feature2, point.feature1);
+        RawPoint { point1, feature1, feature2, ..point }
+    }
+}
+
+impl<N: Real> Link<'_, '_, '_, N> {
+    /// Finds the contact of the segment, if there is one; `None` where that is left to the general way.
+    fn find(&self, part_contacts: &mut PartContacts<N, 2>, points: &mut Points<N>) -> Option<()> {
+        let normal = self.chain.outward(&self.found.normal);
+        let filtered = self.filtered_normal(&normal);
+        let start = points.len();
+        let seen = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
+        let (of_piece, mut status) = match &filtered {
+            FilteredNormal::Nothing => return Some(()),
+            FilteredNormal::Refused => (normal, PartStatus::Left),
+            FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
+            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, PartStatus::Own),
+            FilteredNormal::Snapped(face) => {
+                (self.along(&seen(face), points)?, PartStatus::Snapped)
+            }
+            FilteredNormal::Beyond(face) => (self.along(&seen(face), points)?, PartStatus::Beyond),
+        };
+        let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
+        let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
+        // Contacts along the face may be none, or say that what overlaps is apart.
+        let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
+        if !points[start..].iter().any(|point| point.distance <= highest) {
+            points.truncate(start);
+            (status, lowest) = (PartStatus::Left, N::INFINITY);
+        }
+        let piece = Piece { normal: of_piece, parts, points: start..points.len() };
+        let face = filtered.face().filter(|_| status != PartStatus::Left);
+        part_contacts.push(PartContact {
+            distance,
+            normal,
+            piece,
+            lowest,
+            status,
+            face,
+            tolerance,
+        });
+        Some(())
+    }
+
+    /// What the chain says of a normal of the solid.
+    fn filtered_normal(&self, normal: &Vector<N, 2>) -> FilteredNormal<N, 2> {
+        let chain = self.chain;
+        let middle = centroid(&[*self.segment.a(), *self.segment.b()]) + chain.origin.coords;
+        let unnamed = FeatureId::Edge(0);
+        let feature = || self.pair().touched(&self.found).unwrap_or(unnamed);
+        let (part, outward) = (self.parts[1], -chain.turn.inverse_vector(normal));
+        let toward = chain.from - middle;
+        let case = Case { part, feature: &feature, is_beside: false, outward, toward };
+        filter_normal(Some(&self.known), &case)
+    }
+
+    /// The segment and the solid, in the order of kinds.
+    fn pair(&self) -> SegmentPair<'_, N> {
+        let Chain { solid, pose12, comes_first, request, .. } = *self.chain;
+        let segment = Kind::Segment(&self.segment);
+        let (first, second) = if comes_first { (solid, segment) } else { (segment, solid) };
+        let pair = Pair { first, second, pose12 };
+        SegmentPair { pair, tolerance: self.tolerance, prediction: request.prediction }
+    }
+
+    /// Appends the contacts at the nearest points with a normal, and answers it as the pieces have it.
+    fn between(&self, normal: &Vector<N, 2>, points: &mut Points<N>) -> Option<Vector<N, 2>> {
+        let inward = self.chain.inward(normal);
+        let witness = Separation { normal: inward, ..self.found };
+        self.pair().between(&witness, |point| points.push(self.chain.placed(point, &inward)))?;
+        Some(self.chain.outward(&inward))
+    }
+
+    /// Appends the contacts along a normal, and answers it as the pieces have it.
+    fn along(&self, normal: &Vector<N, 2>, points: &mut Points<N>) -> Option<Vector<N, 2>> {
+        let inward = self.chain.inward(normal);
+        let distance = self.found.distance;
+        let least = if distance > N::ZERO { distance } else { -N::INFINITY };
+        let along = Along { normal: inward, least, tolerance: self.tolerance };
+        self.pair().along(&along, |point| points.push(self.chain.placed(point, &inward)))?;
+        Some(self.chain.outward(&inward))
+    }
+}
+
+/// The points of all pieces.
+type Points<N> = super::patch::Points<N, 2>;

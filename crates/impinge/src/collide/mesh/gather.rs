@@ -1,0 +1,188 @@
+//! Which parts may touch.
+
+use smallvec::SmallVec;
+
+use super::cull::Probe;
+use super::part_cache::PartCache;
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::collide::packet::LANES;
+use crate::collide::parts::between::Between;
+use crate::collide::parts::bounds::{aabb_of, enclosing, loosened};
+use crate::math::{Point, Pose, Real, Space, min};
+use crate::shape::CompositeShape;
+
+/// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
+pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
+
+/// A bit for each part of tiles.
+pub(super) type Near = SmallVec<[u8; 8]>;
+
+/// What of two shapes may be within reach of each other.
+pub(super) struct Nearby<N: Real> {
+    /// In order.
+    pub(super) parts: PartPairs,
+    /// The same as bits for each of the tiles that are kept; empty if there are none.
+    pub(super) near: Near,
+    /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
+    /// nothing is known.
+    pub(super) clearance: N,
+}
+
+/// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
+/// candidates those that no plane proves to be farther.
+///
+/// What is kept `around` must be of the same composite.
+pub(super) fn nearby<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    is_self: bool,
+    reach: N,
+    around: Option<&mut PartCache<N, D>>,
+) -> Nearby<N> {
+    let ([None, Some(parts2)], Some(probe)) = (between.composites(), Probe::new(between, reach))
+    else {
+        let parts = candidates(between, is_self, reach);
+        return Nearby { parts, near: Near::new(), clearance: N::ZERO };
+    };
+    let aabb = search_box(between, reach);
+    if let Some(around) = around
+        && around.reaches(parts2, &aabb)
+    {
+        return near_kept(&probe, parts2, around, &aabb);
+    }
+    let (mut parts, mut clearance) = (PartPairs::new(), depth_in(&aabb, probe.center()));
+    parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
+    parts.retain(|[_, part2]| {
+        let Some(bound) = probe.bound(parts2, *part2, None) else { return false };
+        clearance = min(clearance, bound.from_middle);
+        !bound.is_beyond
+    });
+    parts.sort_unstable();
+    Nearby { parts, near: Near::new(), clearance }
+}
+
+/// Of the parts that are kept those that may be within reach.
+fn near_kept<N: Space<D>, const D: usize>(
+    probe: &Probe<'_, N, D>,
+    composite: &dyn CompositeShape<N, D>,
+    around: &mut PartCache<N, D>,
+    aabb: &Aabb<N, D>,
+) -> Nearby<N> {
+    let query = probe.lower_bound_query(around, aabb);
+    let (mut parts, mut near) = (PartPairs::new(), Near::new());
+    let mut clearance = depth_in(aabb, probe.center());
+    for (block, kept) in around.parts().chunks(LANES).enumerate() {
+        let bounds = around.tiles().get(block).map(|tiles| query.bounds(tiles));
+        if let Some(bounds) = bounds {
+            clearance = min(clearance, bounds.from_middle);
+            // Beyond the last part are copies of it.
+            near.push(bounds.near & (u8::MAX >> (LANES - kept.len())));
+            let is_near = |lane: &usize| bounds.near >> lane & 1 == 1;
+            for lane in (0..kept.len()).filter(is_near) {
+                parts.push([0, kept[lane]]);
+            }
+            continue;
+        }
+        for &part2 in kept {
+            let Some(bound) = probe.bound(composite, part2, Some(aabb)) else { continue };
+            clearance = min(clearance, bound.from_middle);
+            if !bound.is_beyond {
+                parts.push([0, part2]);
+            }
+        }
+    }
+    Nearby { parts, near, clearance }
+}
+
+/// A box in the frame of the second shape around all that is within `reach` of the first.
+pub(super) fn search_box<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    reach: N,
+) -> Aabb<N, D> {
+    let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
+    enclosing(&aabb, &between.pose21)
+}
+
+/// How far a point is from the outside of a box that holds it.
+pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
+    let mut least = N::INFINITY;
+    for axis in 0..D {
+        let at = point[axis];
+        least = min(aabb.maxs()[axis] - at, min(at - aabb.mins()[axis], least));
+    }
+    least
+}
+
+/// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape
+/// that is not a composite.
+///
+/// Of a shape with itself: the pairs of parts that do not hang together, each once.
+pub(super) fn candidates<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    is_self: bool,
+    reach: N,
+) -> PartPairs {
+    let mut found = PartPairs::new();
+    match between.composites() {
+        [Some(parts), Some(_)] if is_self => of_one(parts, reach, &mut found),
+        [Some(parts1), Some(parts2)] => of_two(between, (parts1, parts2), reach, &mut found),
+        [None, Some(parts2)] => {
+            let aabb = search_box(between, reach);
+            parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
+        }
+        // Composites come last among the kinds.
+        [_, None] => {}
+    }
+    found.sort_unstable();
+    found
+}
+
+/// The parts of one of two composites, each looked up in the other: of the one with fewer parts those
+/// that are near the other.
+fn of_two<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    (parts1, parts2): (&dyn CompositeShape<N, D>, &dyn CompositeShape<N, D>),
+    reach: N,
+    found: &mut PartPairs,
+) {
+    if between.are_boxes_beyond(loosened(reach)) {
+        return;
+    }
+    let poses = [&between.pose21, &between.pair.pose12];
+    let is_first = parts1.num_parts() <= parts2.num_parts();
+    let (fewer, more) = if is_first { (parts1, parts2) } else { (parts2, parts1) };
+    let (to_more, to_fewer) = if is_first { (poses[0], poses[1]) } else { (poses[1], poses[0]) };
+    let whole = more.search().bounds().transformed_by(to_fewer).loosened(reach);
+    fewer.search().overlapping(&enclosing(&whole, to_fewer), &mut |part| {
+        let aabb = box_of_part(fewer, part, to_more, reach);
+        more.search().overlapping(&aabb, &mut |other| {
+            found.push(if is_first { [part, other] } else { [other, part] });
+        });
+    });
+}
+
+/// The parts of one composite, each with those of larger numbers.
+fn of_one<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    reach: N,
+    found: &mut PartPairs,
+) {
+    for part1 in 0..parts.num_parts() {
+        let aabb = box_of_part(parts, part1, &Pose::identity(), reach);
+        parts.search().overlapping(&aabb, &mut |part2| {
+            if part1 < part2 && !parts.are_adjacent(part1, part2) {
+                found.push([part1, part2]);
+            }
+        });
+    }
+}
+
+/// The box of a part and of what is within `reach` of it, seen from the frame that `pose` leads to.
+fn box_of_part<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    index: u32,
+    pose: &Pose<N, D>,
+    reach: N,
+) -> Aabb<N, D> {
+    let part = parts.part(index);
+    enclosing(&part.solid.as_shape().aabb(&pose.compose(&part.pose)).loosened(reach), pose)
+}

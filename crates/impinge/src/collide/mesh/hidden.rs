@@ -1,0 +1,138 @@
+//! Faces that the solid cannot see, since it is on the other side of their neighbours.
+//!
+//! Each face of a surface with two sides is touched from the side that the solid's middle is on. Near
+//! an edge that is wrong for one of two: a box that lies on a table near its rim is in front of the
+//! top, but behind the plane of the side, whose inside it would seem to touch. Where two faces meet
+//! there are three cases: each is behind the other, as on a ridge; each is in front of the other, as
+//! in a valley; or the first is in front of the second, but the second behind the first. Then no solid
+//! is in front of both, and what lies behind is hidden.
+
+use smallvec::SmallVec;
+
+use super::part_cache::corners_of;
+use super::part_contact::{PartContact, PartStatus};
+use super::scene::Scene;
+use crate::math::{Point, Real, Space, Vector, max, min};
+
+/// Faces whose normals' cosine is above this hide nothing from each other.
+const ALIKE: f64 = 0.99;
+/// Heights up to so many rounding units of the lengths of both parts are rounding errors.
+const ROUNDING: f64 = 16.0;
+/// Of the faces around a corner only so many hide others: those nearest to the solid. Surfaces have six around
+/// most corners, but a fan of triangles has all around one.
+const MAX_HIDING: usize = 16;
+
+/// Where a face lies to the plane of another.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Front,
+    Back,
+    Across,
+}
+
+/// A face that is touched.
+struct Face<N: Real, const D: usize> {
+    contact: usize,
+    /// How far its part is from the solid.
+    distance: N,
+    /// Unit, on the side that is touched.
+    normal: Vector<N, D>,
+    /// A segment has its second end twice.
+    corners: [Point<N, D>; 3],
+}
+
+/// The faces, and for each corner of each the number of the corner and the index of the face; in order.
+type Faces<N, const D: usize> = (SmallVec<[Face<N, D>; 8]>, SmallVec<[(u64, usize); 24]>);
+
+/// Leaves out the contacts of a convex solid with faces that others hide, with which they share a corner.
+///
+/// Cost: O(n log n) in the number of faces that are touched.
+pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    contacts: &mut [PartContact<N, D>],
+) {
+    // Between two composites it is not one solid that is on one side.
+    if !scene.first_is_convex() {
+        return;
+    }
+    let (all, next) = (contacts.iter(), contacts.iter());
+    let (all, next) = (all.filter_map(|one| one.face), next.filter_map(|one| one.face).skip(1));
+    if all.zip(next).all(|(a, b)| are_alike(&a, &b)) {
+        return;
+    }
+    let (faces, mut corners) = faces_of(scene, contacts);
+    for star in corners.chunk_by_mut(|a, b| a.0 == b.0) {
+        if star.len() > MAX_HIDING {
+            let distance = |&(_, face): &(u64, usize)| faces[face].distance.as_f64();
+            star.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        for (at, (_, first)) in star.iter().enumerate().take(MAX_HIDING) {
+            for (_, second) in &star[at + 1..] {
+                if let Some(hidden) = hidden_of(&faces[*first], &faces[*second]) {
+                    contacts[hidden].status = PartStatus::Left;
+                }
+            }
+        }
+    }
+}
+
+/// The faces that are touched.
+fn faces_of<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    contacts: &[PartContact<N, D>],
+) -> Faces<N, D> {
+    let (mut faces, mut shared) = Faces::default();
+    faces.reserve(contacts.len());
+    shared.reserve(3 * contacts.len());
+    for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
+        let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
+            continue;
+        };
+        // What has no corners, as parts of a user's surface may be, hides nothing.
+        let Some((corners, _)) = corners_of(&part) else { continue };
+        let corners = corners.map(|corner| part.pose.point(&corner));
+        scene.each_corner(piece.parts[1], |corner| shared.push((corner, faces.len())));
+        faces.push(Face { contact, distance: *distance, normal, corners });
+    }
+    shared.sort_unstable();
+    (faces, shared)
+}
+
+/// Faces with these normals hide nothing from each other.
+pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> bool {
+    a.dot(b) > N::lit(ALIKE)
+}
+
+/// Which of two contacts is hidden: its face is behind the other, but the other is not behind it.
+fn hidden_of<N: Real, const D: usize>(a: &Face<N, D>, b: &Face<N, D>) -> Option<usize> {
+    if are_alike(&a.normal, &b.normal) {
+        return None;
+    }
+    let (back, front) = match (place(a, b), place(b, a)) {
+        (Place::Back, Place::Front) => (a, b),
+        (Place::Front, Place::Back) => (b, a),
+        _ => return None,
+    };
+    // What is farther hides nothing, so that the prediction never changes what overlaps.
+    (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
+}
+
+/// Where a part lies to the plane of another.
+fn place<N: Real, const D: usize>(part: &Face<N, D>, plane: &Face<N, D>) -> Place {
+    let origin = plane.corners[0];
+    let (mut low, mut high, mut level) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
+    let mut size = N::ZERO;
+    for (corner, own) in part.corners.iter().zip(&plane.corners) {
+        let (arm, own) = (corner - origin, own - origin);
+        let rise = plane.normal.dot(&arm);
+        (low, high) = (min(low, rise), max(high, rise));
+        level = max(level, plane.normal.dot(&own));
+        size = max(size, arm.norm_squared() + own.norm_squared());
+    }
+    let room = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
+    match (low - level < -room, high - level > room) {
+        (true, false) => Place::Back,
+        (false, true) => Place::Front,
+        _ => Place::Across,
+    }
+}

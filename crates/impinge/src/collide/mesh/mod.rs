@@ -1,0 +1,453 @@
+//! Contacts of composites: those of the parts, as the whole has them.
+//!
+//! For every two parts within reach [`part_contact`] finds their separation and asks the surfaces, if there
+//! are any, whether the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam,
+//! only contacts with the face of the part count. [`hidden`] drops contacts from behind a face that is
+//! touched from its front, [`resolve`] those that another contact
+//! explains, and makes sure that solids that overlap have a contact. What is left is merged into flat
+//! patches.
+//!
+//! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
+//! their neighbours.
+
+mod ball;
+#[cfg(test)]
+mod ball_tests;
+mod chain;
+#[cfg(test)]
+mod chain_tests;
+mod cull;
+mod cull_lanes;
+mod gather;
+mod hidden;
+mod normal_filter;
+mod over;
+mod part_cache;
+mod part_contact;
+mod patch;
+mod patch_groups;
+mod patch_points;
+mod resolve;
+mod scene;
+
+use smallvec::SmallVec;
+
+pub(crate) use self::ball::update_on_surface;
+pub(crate) use self::chain::update_chain;
+use self::gather::Nearby;
+use self::hidden::are_alike;
+pub(crate) use self::over::{over2, over3};
+use self::part_cache::PartCache;
+use self::part_contact::{Arena, PartContact, PartStatus, Reference};
+use self::patch::{Merging, Piece, merge};
+pub(crate) use self::patch::{Patch, PatchPoint};
+use self::scene::Scene;
+use super::parts::between::Between;
+use super::parts::bounds::aabb_of;
+use crate::bounding_volume::Ray;
+use crate::collide::packet::PartGap;
+use crate::collide::pair::{Ordered, Placed};
+use crate::collide::separation::{of_ordered, placed};
+use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Space, Vector, max, min};
+use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
+
+/// So many points of two parts are kept before they are merged with those of others: all that two
+/// facets of usual solids have.
+const PART_POINTS: usize = 16;
+
+/// Parts that are farther than the nearest by no more than this part of its distance are looked at
+/// too.
+const NEARLY: f64 = 1.0 / 64.0;
+
+/// Lengths up to this part of a solid's size are small beside it.
+const SMALL: f64 = 1.0 / 4.0;
+
+/// The contacts of two shapes of which one at least is a composite, kept from update to update; in
+/// the frame of the first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompositeContacts<N: Real, const D: usize> {
+    patches: Vec<Patch<N, D>>,
+    ids: PairIds,
+    /// In the frame of the second shape, where the middle of the first was when it was last seen on
+    /// the side of the surface that it came from: a solid that was pushed halfway through a surface
+    /// with two sides, or jumped there, is still on its old side.
+    reference: Reference<N, D>,
+    around: PartCache<N, D>,
+}
+
+impl<N: Real, const D: usize> CompositeContacts<N, D> {
+    /// Forgets what was found of shapes that may be others now; the contacts and their names stay.
+    pub(crate) fn forget_shapes(&mut self) {
+        self.around = PartCache::default();
+    }
+
+    /// A number of each place in memory that an update reads first, of no meaning.
+    #[inline]
+    pub(crate) fn glance(&self) -> N {
+        let patch = self.patches.first();
+        let point = patch.and_then(|patch| patch.points.first());
+        let normal = patch.map_or(N::ZERO, |patch| patch.normal[0]);
+        max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.glance())
+    }
+
+    /// The manifolds.
+    pub(crate) fn patches(&self) -> &[Patch<N, D>] {
+        &self.patches
+    }
+
+    /// How many contact points there are.
+    pub(crate) fn len(&self) -> usize {
+        self.patches.iter().map(|patch| patch.points.len()).sum()
+    }
+
+    /// Calls with the normal, the distance and the first point of each contact.
+    pub(crate) fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
+        for Patch { normal, points } in &mut self.patches {
+            points.iter_mut().for_each(|point| {
+                each(normal, &mut point.raw.distance, &point.raw.point1);
+            });
+        }
+    }
+
+    /// The deepest contact, the first of equals.
+    fn deepest(&self) -> Option<Separation<N, D>> {
+        deepest_of(self.patches.iter().flat_map(|Patch { normal, points }| {
+            points.iter().map(move |point| (normal, &point.raw))
+        }))
+    }
+
+    /// The two shapes change places.
+    pub(crate) fn flip_names(&mut self) {
+        self.reference = None;
+        self.forget_shapes();
+        for point in self.patches.iter_mut().flat_map(|patch| &mut patch.points) {
+            point.parts.reverse();
+            core::mem::swap(&mut point.raw.feature1, &mut point.raw.feature2);
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
+    /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
+    /// and features stay keep their numbers. Other shapes than before have to be announced
+    /// by [`Self::forget_shapes`].
+    pub(crate) fn update(
+        &mut self,
+        between: &Between<'_, N, D>,
+        is_self: bool,
+        request: &ManifoldRequest<N>,
+    ) {
+        if !(N::tables().update_quickly)(self, between, request) {
+            self.update_in_general(between, is_self, request);
+        }
+    }
+
+    /// [`Self::update`] of any two shapes.
+    fn update_in_general(
+        &mut self,
+        between: &Between<'_, N, D>,
+        is_self: bool,
+        request: &ManifoldRequest<N>,
+    ) {
+        let of_parts = of_parts(between, request);
+        let around = Some(&mut self.around);
+        let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
+        let center = middle_of_first(between);
+        let way = Way { old: self.reference, clearance: nearby.clearance };
+        let reference = center.map(|center| advanced(between, &way, center));
+        let around = Some(&self.around);
+        let query = Query { between, around, reference: &reference, request: &of_parts };
+        let mut arena = Arena::default();
+        let contacts = query.part_contacts(&nearby, &mut arena);
+        self.conclude(request, reference, center, &contacts, &arena);
+    }
+
+    /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
+    /// shapes overlap, else where it is.
+    fn conclude(
+        &mut self,
+        request: &ManifoldRequest<N>,
+        reference: Reference<N, D>,
+        center: Reference<N, D>,
+        contacts: &[PartContact<N, D>],
+        arena: &Arena<N, D>,
+    ) {
+        let overlaps = contacts.iter().any(|contact| contact.distance <= N::ZERO);
+        self.reference = if overlaps { reference } else { center };
+        let tolerances = contacts.iter().map(|found| found.tolerance);
+        let tolerance = tolerances.fold(arena.rounding, max);
+        let mut pieces = SmallVec::<[Piece<N, D>; 8]>::with_capacity(contacts.len());
+        for found in contacts.iter().filter(|found| found.status != PartStatus::Left) {
+            pieces.push(found.piece.clone());
+        }
+        if !pieces.is_empty() && self.patches.capacity() == 0 {
+            // Most pairs never have more than one: what lies close together is read faster.
+            self.patches.reserve_exact(1);
+        }
+        let merging = Merging { request, tolerance, pieces: &pieces, points: &arena.points };
+        merge(&merging, &mut self.patches, &mut self.ids);
+    }
+}
+
+/// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
+fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
+    let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
+    let mut face: Option<Vector<N, D>> = None;
+    for contact in contacts {
+        let is_alike = match (face, contact.face) {
+            (Some(before), Some(own)) => are_alike(&before, &own),
+            _ => true,
+        };
+        if !(is_alike && contact.status == PartStatus::Own) {
+            return false;
+        }
+        face = contact.face.or(face);
+        (distance, lowest) = (min(distance, contact.distance), min(lowest, contact.lowest));
+    }
+    contacts.is_empty() || lowest <= max(distance, N::ZERO)
+}
+
+/// The middle of a convex first shape, in the frame of the second.
+fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
+    let map = Geometry(between.pair.first).as_support_map()?;
+    Some(between.pose21.point(&map.center()))
+}
+
+/// Where the middle of the first shape was.
+struct Way<N: Real, const D: usize> {
+    old: Reference<N, D>,
+    /// No part of the second shape is nearer to where it is.
+    clearance: N,
+}
+
+/// Where the middle of the first shape counts as being: where it is, unless the straight way there
+/// from where it was leads through the surface and is no longer than the shape is.
+fn advanced<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    way: &Way<N, D>,
+    center: Point<N, D>,
+) -> Point<N, D> {
+    let Way { old, clearance } = *way;
+    let [_, composite] = between.composites();
+    let composite = composite.filter(|composite| composite.surface().is_some());
+    let map = Geometry(between.pair.first).as_support_map();
+    let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
+    let way = center - old;
+    let length = way.norm();
+    // Half of what is known to be free leaves room for rounding.
+    let is_free = length < clearance * N::HALF;
+    if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
+        return center;
+    }
+    let is_hit = (N::tables().is_crossed)(composite, &Ray::new(old, way), N::ONE);
+    if is_hit { old } else { center }
+}
+
+/// What is asked of a pair.
+struct Query<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    /// What is kept of the parts of the second shape.
+    around: Option<&'a PartCache<N, D>>,
+    reference: &'a Reference<N, D>,
+    /// What is asked of two parts.
+    request: &'a ManifoldRequest<N>,
+}
+
+type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
+
+/// Beside more parts than these room is made for all that may be found, so many points at each.
+const MANY_PARTS: usize = 32;
+const POINTS_AT_A_PART: usize = 4;
+
+impl<N: Space<D>, const D: usize> Query<'_, N, D> {
+    /// What some pairs of parts say; which of it holds is settled.
+    fn part_contacts(&self, nearby: &Nearby<N>, arena: &mut Arena<N, D>) -> PartContacts<N, D> {
+        let scene = Scene::new(self.between, self.around);
+        let (mut contacts, mut slot) = (PartContacts::new(), None);
+        if nearby.parts.len() > MANY_PARTS {
+            contacts.reserve(nearby.parts.len());
+            arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+        }
+        if let Some(surface) = scene.surfaces[1] {
+            nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
+        }
+        let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
+            let parts = nearby.parts[index];
+            let placed = scene.pair_in(&mut slot, parts);
+            contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, arena));
+        };
+        if !scene.each_gap(nearby, self.request.prediction, &mut find) {
+            (0..nearby.parts.len()).for_each(|index| find(index, None));
+        }
+        self.settle(&scene, &mut contacts, arena);
+        contacts
+    }
+
+    /// Settles which of the contacts hold.
+    fn settle(
+        &self,
+        scene: &Scene<'_, N, D>,
+        found: &mut [PartContact<N, D>],
+        arena: &mut Arena<N, D>,
+    ) {
+        resolve::resolve(scene, found, arena);
+        for contact in found.iter_mut().filter(|contact| contact.is_owing()) {
+            let (piece, lowest) =
+                part_contact::nearest_points(scene, contact.parts(), self.request, arena);
+            contact.set_piece(piece, lowest);
+        }
+    }
+}
+
+/// What is asked of two parts: of points that turning brings near, the nearest point may lie on
+/// another part, so that is looked at when all are known.
+fn of_parts<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    request: &ManifoldRequest<N>,
+) -> ManifoldRequest<N> {
+    let ManifoldRequest { prediction, sine, .. } = *request;
+    let map = Geometry(between.pair.first).as_support_map().filter(|_| sine > N::ZERO);
+    let way = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
+    ManifoldRequest { prediction: prediction + way, sine: N::ZERO, max_points: PART_POINTS }
+}
+
+/// No point of a solid is farther from its origin.
+fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
+    map.reach() + map.rounding()
+}
+
+/// The contact of two placed shapes in the world frame, `None` beyond `limit`: of composites the
+/// deepest of what their manifolds are made of.
+pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let ordered = Ordered::new(placed1, placed2);
+    if !ordered.has_composite() {
+        return of_ordered(&ordered, limit);
+    }
+    let between = Between::of_ordered(&ordered);
+    let in_world = |found| placed(&found, ordered.first, ordered.swapped);
+    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
+    {
+        // Points that differ by rounding alone are all there, whatever the limit.
+        let found = deepest_within(&between, max(limit, rounding(&between)));
+        return found.filter(|found| found.distance <= limit).map(in_world);
+    }
+    let nearest = of_ordered(&ordered, limit)?;
+    // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
+    if between.is_half_space_first() && nearest.distance.is_finite_number() {
+        return Some(nearest);
+    }
+    deepest(&between, nearest.distance, limit).map(in_world)
+}
+
+/// A length is small beside a convex first shape: to look for the nearest part before those within it is
+/// dearer than to look at all of these.
+fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, limit: N) -> bool {
+    let map = Geometry(between.pair.first).as_support_map();
+    limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
+}
+
+/// Contacts are mostly found without the general way: of balls and surfaces, and of chains.
+fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
+    let [None, Some(parts)] = between.composites() else { return false };
+    let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));
+    matches!(between.pair.first, Kind::Ball(_)) || is_chain()
+}
+
+/// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
+/// near as the nearest are looked at, unless that is one that cannot be touched.
+///
+/// A contact that differs from the distance by rounding alone has that: it exists where the shapes touch, and is
+/// no overlap where they are apart. One of [`has_own_way`] is as it is found without the distance.
+fn deepest<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    distance: N,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let (near, rounding) = (max(distance, N::ZERO), rounding(between));
+    // Along the normal of its face a part may be a little farther than it is.
+    let reach = near + near * N::lit(NEARLY) + rounding;
+    let mut found =
+        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
+    let farther = found.distance - near;
+    let is_off = farther > N::ZERO || distance > N::ZERO;
+    if is_off && farther.abs() <= rounding && !has_own_way(between) {
+        found.distance = near;
+        found.point2 = found.point1 + found.normal * near;
+    }
+    (found.distance <= limit).then_some(found)
+}
+
+/// Lengths below this are rounding errors of the pair.
+fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
+    let size = |kind: Kind<'_, N, D>| {
+        let aabb = aabb_of(kind, &Pose::identity());
+        if aabb.is_bounded() { aabb.half_extents().norm() } else { N::ZERO }
+    };
+    let sizes = size(between.pair.first) + size(between.pair.second);
+    N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
+}
+
+/// The deepest contact of what is within reach, by the way that it has of its own if there is one.
+fn deepest_within<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    reach: N,
+) -> Option<Separation<N, D>> {
+    let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
+    if has_own_way(between) {
+        let mut contacts =
+            CompositeContacts { around: PartCache::for_once(), ..Default::default() };
+        if (N::tables().update_quickly)(&mut contacts, between, &request) {
+            return contacts.deepest();
+        }
+    }
+    deepest_in_general(between, &request)
+}
+
+/// [`deepest_within`], of any two shapes.
+fn deepest_in_general<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    request: &ManifoldRequest<N>,
+) -> Option<Separation<N, D>> {
+    let reference = middle_of_first(between);
+    let query = Query { between, around: None, reference: &reference, request };
+    let nearby = gather::nearby(between, false, request.prediction, None);
+    let mut arena = Arena::default();
+    let contacts = query.part_contacts(&nearby, &mut arena);
+    let kept = contacts.iter().filter(|contact| contact.status != PartStatus::Left);
+    deepest_of(kept.flat_map(|PartContact { piece, .. }| {
+        arena.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
+    }))
+}
+
+/// What the deepest of contact points, each with its normal, says of two shapes; the first of equals.
+fn deepest_of<'a, N: Real, const D: usize>(
+    points: impl Iterator<Item = (&'a Vector<N, D>, &'a RawPoint<N, D>)>,
+) -> Option<Separation<N, D>> {
+    let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+    deepest.map(|(&normal, &RawPoint { distance, point1, .. })| Separation {
+        distance,
+        normal,
+        point1,
+        point2: point1 + normal * distance,
+    })
+}
+
+/// How far those parts of one composite are apart that do not hang together; negative where they
+/// overlap, `None` beyond `limit`. The pair is that of the shape with itself.
+pub(crate) fn own_distance<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<N> {
+    let between = Between::of_pair(pair);
+    let candidates = gather::candidates(&between, true, max(limit, N::ZERO));
+    let scene = Scene::new(&between, None);
+    let one = |&parts| (N::tables().separation)(&scene.pair(parts).pair(), limit);
+    let distances = candidates.iter().filter_map(one).map(|found| found.distance);
+    distances.reduce(min)
+}

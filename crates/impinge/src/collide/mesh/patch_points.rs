@@ -1,0 +1,223 @@
+//! The few points that stand for a patch: those of its only piece, or of the points of all its pieces the ones on
+//! the outline.
+//!
+//! A patch has few points, most often those of one piece. So all is done in place, in lists that the
+//! patches of a shape share.
+
+use smallvec::SmallVec;
+
+use super::super::{PairIds, RawPoint};
+use super::patch::{Kept, Merging, PatchPoint};
+use super::patch_groups::Lead;
+use crate::collide::manifold::deepest_of;
+use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
+use crate::math::{Real, Space, Vector};
+
+/// So many points need no memory for their outline but that of the function.
+const FEW: usize = 16;
+
+/// A point of a patch, seen along its normal.
+#[derive(Clone, Copy)]
+pub(super) struct Member<N> {
+    flat: Vector<N, 2>,
+    /// The index of its piece, and its own.
+    piece: usize,
+    point: usize,
+}
+
+/// The points of a patch.
+pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
+
+/// What the points of a patch are chosen by.
+pub(super) struct Choosing<'a, N: Real, const D: usize> {
+    pub(super) merging: &'a Merging<'a, N, D>,
+    pub(super) kept: &'a Kept,
+}
+
+impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
+    /// Fills a patch, given the piece with the deepest point and all pieces, with at most as many
+    /// points as are asked for: the deepest and those that span most. The list of members is used again and again.
+    pub(super) fn fill(
+        &self,
+        lead: Lead,
+        pieces: &[usize],
+        members: &mut Members<N>,
+        out: &mut SmallVec<[PatchPoint<N, D>; 4]>,
+        ids: &mut PairIds,
+    ) {
+        let mut tangents = (N::tables().tangents)(&self.merging.pieces[lead.piece].normal);
+        let count = |piece: &usize| self.merging.pieces[*piece].points.len();
+        if pieces.iter().map(count).sum::<usize>() > FEW {
+            tangents = askew(&tangents);
+        }
+        self.gather(lead, pieces, &tangents, members);
+        // In the plane two points delimit all there is.
+        let is_line = tangents[1] == Vector::<N, D>::zeros();
+        let most = self.merging.request.max_points.max(1);
+        let limit = if is_line { most.min(2) } else { most };
+        let lowest = self.merging.points[lead.deepest].distance;
+        let level = lowest + self.merging.tolerance;
+        // The points of one piece are the corners of an area already.
+        if !(pieces.len() == 1 && members.len() <= limit) {
+            self.drop_copies(members);
+            *members = self.chosen(members, level, limit, is_line);
+        }
+        self.points(members, lowest, out, ids);
+    }
+
+    /// At most `limit` members, one of the deepest among them.
+    fn chosen(&self, members: &[Member<N>], level: N, limit: usize, is_line: bool) -> Members<N> {
+        let seen = members
+            .iter()
+            .map(|member| (member.flat, self.distance(member), self.kept[member.point].is_some()));
+        let (mut points, tolerance) = (projected(seen, level), self.merging.tolerance);
+        let indices = if is_line {
+            keep_ends(&mut points);
+            reduce::chosen(&mut points, limit, tolerance)
+        } else {
+            reduce::spanning(&mut points, limit, tolerance)
+        };
+        indices.iter().map(|&index| members[index]).collect()
+    }
+
+    /// Appends the chosen points in the order of their numbers; one of them has the distance of the deepest.
+    fn points(
+        &self,
+        chosen: &[Member<N>],
+        lowest: N,
+        out: &mut SmallVec<[PatchPoint<N, D>; 4]>,
+        ids: &mut PairIds,
+    ) {
+        let level = lowest + self.merging.tolerance;
+        let deepest = deepest_of(chosen.len(), level, |at| {
+            (self.kept[chosen[at].point].is_some(), self.distance(&chosen[at]))
+        });
+        for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
+            let id = self.kept[point].unwrap_or_else(|| ids.next());
+            let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
+            if place == deepest {
+                raw.distance = lowest;
+            }
+            let mut at = out.len();
+            out.push(PatchPoint { raw, parts: self.merging.pieces[piece].parts });
+            while at > 0 && out[at - 1].raw.id > id {
+                out.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+    }
+
+    fn distance(&self, member: &Member<N>) -> N {
+        self.merging.points[member.point].distance
+    }
+
+    /// The points of a group that the request asks for, the deepest first; that one always, also
+    /// where its coordinates are no numbers.
+    fn gather(
+        &self,
+        Lead { piece: lead, deepest }: Lead,
+        pieces: &[usize],
+        tangents: &[Vector<N, D>; 2],
+        members: &mut Members<N>,
+    ) {
+        let Merging { request, points, .. } = *self.merging;
+        let origin = points[deepest].point1;
+        members.clear();
+        members.push(Member { flat: Vector::<N, 2>::zeros(), piece: lead, point: deepest });
+        for &piece in pieces {
+            for point in self.merging.pieces[piece].points.clone() {
+                if point == deepest {
+                    continue;
+                }
+                let arm = points[point].point1 - origin;
+                let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
+                let is_turning = request.sine > N::ZERO;
+                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + reach {
+                    members.push(Member { flat, piece, point });
+                }
+            }
+        }
+    }
+
+    /// Sorts the points along the first tangent, then along the second; of points at one place, which
+    /// the parts around it all have, one stays: one with a number, the deepest, or that of the first
+    /// parts.
+    fn drop_copies(&self, members: &mut Members<N>) {
+        let near = N::lit(4.0) * self.merging.tolerance;
+        sort(members);
+        // The first ones are those kept.
+        let (mut count, mut is_exchanged) = (0, false);
+        for next in 0..members.len() {
+            let member = members[next];
+            let flat = member.flat;
+            // Sorted along the first tangent: only the last few can be at the same place.
+            let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
+            let mut last = (0..count).rev().take_while(in_reach);
+            match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
+                Some(at) if self.is_better(&member, &members[at]) => {
+                    (members[at], is_exchanged) = (member, true);
+                }
+                Some(_) => {}
+                None => {
+                    members[count] = member;
+                    count += 1;
+                }
+            }
+        }
+        members.truncate(count);
+        if is_exchanged {
+            // An exchange may have taken a point past its neighbours.
+            sort(members);
+        }
+    }
+
+    fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
+        let tolerance = self.merging.tolerance;
+        let rank = |member: &Member<N>| {
+            (self.kept[member.point].is_none(), self.merging.pieces[member.piece].parts)
+        };
+        let lower = self.distance(old) - self.distance(new);
+        lower > tolerance || lower >= -tolerance && rank(new) < rank(old)
+    }
+}
+
+/// Leaves of sorted points on a line the two ends and, if neither is as deep, a deepest one.
+fn keep_ends<N: Real>(points: &mut Projections<N>) {
+    let (last, deepest) = (points.len() - 1, a_deepest(points));
+    let is_inner = !(points[0].is_deepest || points[last].is_deepest);
+    points.retain(|point| {
+        point.index == 0 || point.index == last || is_inner && point.index == deepest
+    });
+}
+
+/// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.
+fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
+    let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
+    // In the plane there is only one.
+    if *second == Vector::<N, D>::zeros() {
+        return [*first, *second];
+    }
+    [first * cosine + second * sine, second * cosine - first * sine]
+}
+
+/// Sorts points along the first tangent, then along the second; equal ones stay as they are.
+#[inline]
+fn sort<N: Real>(members: &mut [Member<N>]) {
+    if members.len() > FEW {
+        return members.sort_by(by_place);
+    }
+    for next in 1..members.len() {
+        let mut at = next;
+        while at > 0 && by_place(&members[at], &members[at - 1]).is_lt() {
+            members.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}
+
+#[inline]
+fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+    let (a, b) = (&a.flat, &b.flat);
+    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
+}

@@ -1,0 +1,30 @@
+//! Computing contacts: from two shapes and their poses to the points of a manifold.
+//!
+//! The floor between the algorithms that know no shapes ([`crate::convex`]) and the questions of users
+//! ([`crate::query`]). From bottom to top:
+//!
+//! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
+//! - [`separation`] is the one fact about a pair of solids: how far apart or how deep, where and along what;
+//! - [`manifold`] makes contact points of it: supporting features, clipping, the choice of points, ids;
+//! - [`batch`] does both for eight pairs at a time, of the kinds that worlds are full of;
+//! - [`parts`] finds the pairs of parts of two composites that matter, and their separation;
+//! - [`mesh`] makes manifolds of a composite: parts are gathered, culled in packets ([`packet`]), separated, their
+//!   normals filtered by the surface, and their points merged into patches.
+
+pub(crate) mod batch;
+pub(crate) mod manifold;
+pub(crate) mod mesh;
+pub(crate) mod packet;
+pub(crate) mod pair;
+pub(crate) mod parts;
+mod raw_manifold;
+pub(crate) mod separation;
+
+pub(crate) use batch::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
+pub(crate) use manifold::{
+    OnFace, between2, build3, contacts2, contacts3, on_face2, on_face3, tangents2, tangents3,
+    witness_feature2, witness_feature3, witness_features2, witness_features3,
+};
+pub(crate) use mesh::{CompositeContacts, contact_in_world, own_distance};
+pub(crate) use pair::{Pair, Placed, canonical};
+pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};

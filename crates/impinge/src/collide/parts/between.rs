@@ -1,0 +1,257 @@
+//! One part of each of two shapes as a pair of its own, without what distance from the frames' origins
+//! costs.
+//!
+//! The triangles of a mesh come in the frame of the mesh, whose origin may be far away; the tolerances
+//! of the pair algorithms are in proportion to all coordinates. So both parts are seen from a point
+//! close to them: from a frame in which the first solid lies as it is, or the part of the first shape.
+//! The same point serves all parts that one solid is held against, so that triangles that shared a
+//! corner still do.
+
+use super::bounds::{aabb_of, enclosing};
+use crate::bounding_volume::Aabb;
+use crate::collide::Pair;
+use crate::collide::pair::{Ordered, Placed};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
+
+/// Two shapes, at least one of them a composite, and how each lies in the frame of the other.
+#[derive(Clone, Copy)]
+pub(crate) struct Between<'a, N: Real, const D: usize> {
+    pub(crate) pair: Pair<'a, N, D>,
+    /// The pose of the first in the frame of the second. As exact as `pair.pose12`: both are made from
+    /// the difference of the positions.
+    pub(crate) pose21: Pose<N, D>,
+}
+
+/// A part, or all of a convex solid, seen from some point of the frame of its shape.
+#[derive(Clone, Copy)]
+struct Seen<'a, N: Real, const D: usize> {
+    solid: PartOf<'a, N, D>,
+    /// Where it lies to the axes of its shape put through that point.
+    pose: Pose<N, D>,
+}
+
+#[derive(Clone, Copy)]
+enum PartOf<'a, N: Real, const D: usize> {
+    Whole(Kind<'a, N, D>),
+    Part(PartSolid<'a, N, D>),
+}
+
+/// A part of each shape, as a pair in the frame of the first part.
+pub(crate) struct PartPair<'a, N: Real, const D: usize> {
+    seen1: Seen<'a, N, D>,
+    seen2: Seen<'a, N, D>,
+    /// The point that both are seen from, in the frame of the first shape.
+    origin1: Point<N, D>,
+    pose12: Pose<N, D>,
+}
+
+impl<'a, N: Real, const D: usize> Between<'a, N, D> {
+    /// Two placed shapes in their canonical order, and whether that is the opposite of theirs.
+    pub(crate) fn canonical(
+        placed1: &Placed<'a, N, D>,
+        placed2: &Placed<'a, N, D>,
+    ) -> (Self, bool) {
+        let ordered = Ordered::new(placed1, placed2);
+        (Self::of_ordered(&ordered), ordered.swapped)
+    }
+
+    /// Two placed shapes whose canonical order is known.
+    pub(crate) fn of_ordered(ordered: &Ordered<'_, 'a, N, D>) -> Self {
+        let pose21 = Pose::relative(&ordered.second.pose, &ordered.first.pose);
+        Self { pair: ordered.pair(), pose21 }
+    }
+
+    /// Two shapes of which only the pose of the second in the frame of the first is known.
+    pub(crate) fn of_pair(pair: &Pair<'a, N, D>) -> Self {
+        Self { pair: *pair, pose21: pair.pose12.inverse() }
+    }
+
+    /// The parts of both shapes; `None` for a convex solid.
+    pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
+        [self.pair.first, self.pair.second].map(|kind| Geometry(kind).as_composite())
+    }
+
+    /// The first shape is a half-space.
+    pub(crate) fn is_half_space_first(&self) -> bool {
+        matches!(self.pair.first, Kind::Plane(_))
+    }
+
+    /// The pair of two parts; 0 is the only part of a convex solid.
+    pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
+        let [composite1, composite2] = self.composites();
+        if composite1.is_none() && composite2.is_none() {
+            return self.whole();
+        }
+        let piece1 = composite1.map(|composite| composite.part(part1));
+        let piece2 = composite2.map(|composite| composite.part(part2));
+        let (origin1, origin2) = match (&piece1, &piece2) {
+            (None, _) => (Point::origin(), Point::from(self.pose21.translation)),
+            (Some(_), None) => (Point::from(self.pair.pose12.translation), Point::origin()),
+            (Some(piece1), Some(_)) => {
+                let origin1 = anchor(piece1);
+                (origin1, self.pose21.point(&origin1))
+            }
+        };
+        let seen1 = Seen::new(self.pair.first, piece1, &origin1);
+        let seen2 = Seen::new(self.pair.second, piece2, &origin2);
+        let turn = Pose { rotation: self.pair.pose12.rotation, ..Pose::identity() };
+        let pose12 = Pose::relative(&seen1.pose, &turn.compose(&seen2.pose));
+        PartPair { seen1, seen2, origin1, pose12 }
+    }
+
+    /// Two convex solids as they are.
+    fn whole(&self) -> PartPair<'a, N, D> {
+        let [seen1, seen2] = [self.pair.first, self.pair.second]
+            .map(|kind| Seen { solid: PartOf::Whole(kind), pose: Pose::identity() });
+        PartPair { seen1, seen2, origin1: Point::origin(), pose12: self.pair.pose12 }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Between<'_, N, D> {
+    /// A box around one of the shapes, the first (0) or the second (1), in the frame of the other.
+    pub(crate) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
+        let (kind, pose) = self.seen_by_other(which);
+        enclosing(&aabb_of(kind, pose), pose)
+    }
+
+    /// A box in the frame of the first shape (0) or the second (1) as one in the frame of the other, around all that
+    /// it holds.
+    pub(crate) fn box_in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        let pose = self.seen_by_other(which).1;
+        enclosing(&aabb.transformed_by(pose), pose)
+    }
+
+    /// A box around a part of the first shape (0) or the second (1), in the frame of the other; all of a
+    /// convex solid is its part.
+    pub(crate) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {
+        let Some((part, pose)) = self.part_in_other(which, part) else {
+            return self.whole_in_other(which);
+        };
+        enclosing(&part.solid.as_shape().aabb(&pose), self.seen_by_other(which).1)
+    }
+
+    /// A part of the first shape (0) or the second (1), and its pose in the frame of the other; `None` of a
+    /// convex solid.
+    pub(crate) fn part_in_other(
+        &self,
+        which: usize,
+        part: u32,
+    ) -> Option<(Part<'_, N, D>, Pose<N, D>)> {
+        let (kind, pose) = self.seen_by_other(which);
+        let part = Geometry(kind).as_composite()?.part(part);
+        let pose = pose.compose(&part.pose);
+        Some((part, pose))
+    }
+
+    /// The boxes around two composites are farther apart than a limit, seen from one of the two.
+    pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
+        let [Some(parts1), Some(parts2)] = self.composites() else { return false };
+        let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
+            let bounds = parts.search().bounds();
+            bounds.distance_to_aabb(&self.whole_in_other(other)) > limit
+        };
+        is_beyond(parts1, 1) || is_beyond(parts2, 0)
+    }
+
+    fn seen_by_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
+        let Pair { first, second, pose12 } = &self.pair;
+        if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }
+    }
+}
+
+/// Which of two composites has fewer parts, the first (0) or the second (1); it, and the other.
+pub(crate) fn by_number<'a, N: Real, const D: usize>(
+    parts1: &'a dyn CompositeShape<N, D>,
+    parts2: &'a dyn CompositeShape<N, D>,
+) -> (usize, &'a dyn CompositeShape<N, D>, &'a dyn CompositeShape<N, D>) {
+    if parts2.num_parts() < parts1.num_parts() { (1, parts2, parts1) } else { (0, parts1, parts2) }
+}
+
+impl<'a, N: Real, const D: usize> Seen<'a, N, D> {
+    fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
+        let Some(piece) = piece else {
+            let pose = Pose::from_translation(-origin.coords);
+            return Self { solid: PartOf::Whole(whole), pose };
+        };
+        let turn = piece.pose.rotation;
+        let local = piece.pose.inverse_point(origin).coords;
+        match recentred(&piece.solid, &local) {
+            Some(solid) => {
+                let pose = Pose { rotation: turn, translation: Vector::<N, D>::zeros() };
+                Self { solid: PartOf::Part(solid), pose }
+            }
+            None => {
+                let pose =
+                    Pose { rotation: turn, translation: piece.pose.translation - origin.coords };
+                Self { solid: PartOf::Part(piece.solid), pose }
+            }
+        }
+    }
+
+    fn kind(&self) -> Kind<'_, N, D> {
+        match &self.solid {
+            PartOf::Whole(kind) => *kind,
+            PartOf::Part(solid) => solid.geometry().0,
+        }
+    }
+}
+
+impl<N: Real, const D: usize> PartPair<'_, N, D> {
+    /// The parts, for the pair algorithms.
+    pub(crate) fn pair(&self) -> Pair<'_, N, D> {
+        Pair { first: self.seen1.kind(), second: self.seen2.kind(), pose12: self.pose12 }
+    }
+
+    /// Where the parts lie, in the frame of the first shape.
+    pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
+        let Pose { rotation, translation } = self.seen1.pose;
+        let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
+        [pose1, pose1.compose(&self.pose12)]
+    }
+
+    /// A vector of the frame of the first shape, in that of the first part.
+    pub(crate) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
+        self.seen1.pose.inverse_vector(vector)
+    }
+
+    /// An answer about [`Self::pair`], in the frame of the first shape.
+    pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
+        let placed = |point| self.origin1 + self.seen1.pose.point(point).coords;
+        Separation {
+            distance: found.distance,
+            normal: self.seen1.pose.vector(&found.normal),
+            point1: placed(&found.point1),
+            point2: placed(&found.point2),
+        }
+    }
+}
+
+/// A point close to a part: of what is given by its corners the first of them, else its own origin.
+pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
+    match &part.solid {
+        PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),
+        PartSolid::Segment(segment) => part.pose.point(segment.a()),
+        PartSolid::Shape(_) => Point::from(part.pose.translation),
+    }
+}
+
+/// What is given by its corners, moved so that `origin` becomes the origin; `None` for shapes with
+/// frames of their own, and where the numbers end.
+pub(crate) fn recentred<'a, N: Real, const D: usize>(
+    solid: &PartSolid<'a, N, D>,
+    origin: &Vector<N, D>,
+) -> Option<PartSolid<'a, N, D>> {
+    match solid {
+        PartSolid::Triangle(triangle) => {
+            let [a, b, c] = triangle.corners().map(|corner| corner - origin);
+            Triangle::try_new(a, b, c).ok().map(PartSolid::Triangle)
+        }
+        PartSolid::Segment(segment) => {
+            let ends = [segment.a() - origin, segment.b() - origin];
+            Segment::try_new(ends[0], ends[1]).ok().map(PartSolid::Segment)
+        }
+        PartSolid::Shape(_) => None,
+    }
+}

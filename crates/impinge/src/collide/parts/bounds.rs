@@ -1,0 +1,91 @@
+//! Boxes for looking for parts: as large as rounding asks for.
+
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
+use crate::shape::{Kind, Shape, SupportMap};
+
+/// Boxes and times are off by so many rounding errors of the coordinates that they come from.
+const ROUNDING_ERRORS: f64 = 16.0;
+
+/// A box around a solid of any kind placed at `pose`.
+///
+/// Cost: that of a few support points; of a composite, of the bounds that its search knows.
+pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
+    kind: Kind<'_, N, D>,
+    pose: &Pose<N, D>,
+) -> Aabb<N, D> {
+    match kind {
+        Kind::Ball(ball) => Shape::<N, D>::aabb(ball, pose),
+        Kind::Segment(segment) => segment.aabb(pose),
+        Kind::Capsule(capsule) => capsule.aabb(pose),
+        Kind::Triangle(triangle) => triangle.aabb(pose),
+        Kind::Cuboid(cuboid) => cuboid.aabb(pose),
+        Kind::Plane(plane) => plane.aabb(pose),
+        Kind::Ellipsoid(ellipsoid) => ellipsoid.aabb(pose),
+        Kind::TaperedCapsule(capsule) => capsule.aabb(pose),
+        Kind::Rounded(solid) => aabb_of(solid.inner().0, pose).loosened(solid.radius()),
+        Kind::Polytope(map) => of_map(map, pose),
+        Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => of_map(map, pose),
+        Kind::Composite(parts) => parts.search().bounds().transformed_by(pose),
+    }
+}
+
+/// The box of a support map: of its farthest points along the axes.
+fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>) -> Aabb<N, D> {
+    let (mut mins, mut maxs) = (pose.point(&map.center()), pose.point(&map.center()));
+    for axis in 0..D {
+        let mut outward = Vector::<N, D>::zeros();
+        outward[axis] = N::ONE;
+        let local = pose.inverse_vector(&outward);
+        maxs[axis] = pose.point(&map.core_support(&local))[axis] + map.rounding();
+        mins[axis] = pose.point(&map.core_support(&-local))[axis] - map.rounding();
+    }
+    Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
+}
+
+/// A box that holds what `aabb` would hold if arithmetic were exact; everything if it is no box.
+pub(crate) fn enclosing<N: Real, const D: usize>(
+    aabb: &Aabb<N, D>,
+    pose: &Pose<N, D>,
+) -> Aabb<N, D> {
+    let scale = extent(aabb) + max_component(&pose.translation);
+    let grown = aabb.loosened(rounding(scale));
+    Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
+}
+
+/// A box around a point that holds all that rounding makes of it; `None` if it is not finite.
+///
+/// `bounds` is a box around all that it is held against.
+pub(crate) fn around_point<N: Real, const D: usize>(
+    point: &Point<N, D>,
+    bounds: &Aabb<N, D>,
+) -> Option<Aabb<N, D>> {
+    let at = Aabb::try_new(*point, *point).ok().filter(Aabb::is_bounded)?;
+    let scale = extent(bounds) + extent(&at);
+    let grown = at.loosened(rounding(scale));
+    Aabb::try_new(*grown.mins(), *grown.maxs()).ok()
+}
+
+/// The largest of the finite coordinates of a box.
+fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
+    let mut most = N::ZERO;
+    for axis in 0..D {
+        for x in [aabb.mins()[axis], aabb.maxs()[axis]] {
+            if x.is_finite_number() {
+                most = max(x.abs(), most);
+            }
+        }
+    }
+    most
+}
+
+fn rounding<N: Real>(scale: N) -> N {
+    N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
+}
+
+/// A limit for boxes that loses no part that is as near, but for rounding, as a distance or time of
+/// zero or more. Unlimited where its square, which searches may compute, is no number of the type.
+pub(crate) fn loosened<N: Real>(limit: N) -> N {
+    let within = limit + rounding(limit);
+    if (within * within).is_finite_number() { within } else { N::INFINITY }
+}

@@ -1,0 +1,246 @@
+//! How far a composite is from another shape: as far as the nearest of its parts.
+
+use super::between::{Between, by_number};
+use super::bounds::loosened;
+use super::slabs::Slabs;
+use super::sweep::Sweep;
+use crate::bounding_volume::Aabb;
+use crate::bvh::{TreePair, visit_pairs};
+use crate::collide::Pair;
+use crate::collide::separation::separation as of_convex;
+use crate::convex::Separation;
+use crate::math::{Real, Space, max};
+use crate::shape::{CompositeShape, Kind};
+
+/// The separation of two parts, in the frame of the first shape, and which parts they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartSeparation<N: Real, const D: usize> {
+    pub(crate) separation: Separation<N, D>,
+    /// The same in the frame of the first part: [`Between::parts`].
+    pub(crate) local: Separation<N, D>,
+    /// The part of the first and of the second; 0 of a solid that is no composite.
+    pub(crate) parts: [u32; 2],
+}
+
+/// Which of the pairs of parts is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// The nearest, or where parts overlap the deepest; of several the first by numbers.
+    Deepest,
+    /// The nearest, or any that touches or overlaps: enough to know the distance.
+    Touching,
+}
+
+/// The entry of the pair table.
+pub(crate) fn separation<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let found = nearest_between(&Between::of_pair(pair), limit, Wanted::Deepest, None);
+    found.map(|found| found.separation)
+}
+
+/// A query that visits pairs of parts, near ones first.
+pub(crate) trait PairVisitor<N: Real, const D: usize> {
+    /// The largest distance at which parts still matter.
+    fn limit(&self) -> N;
+
+    /// The largest distance at which boxes still matter; negative to end the search.
+    fn bound(&self) -> N {
+        loosened(max(self.limit(), N::ZERO))
+    }
+
+    /// Distances are those from where the parts of the first shape (0) or the second (1) go, in the frame of the
+    /// other; `None` if they stay where they are.
+    fn sweep(&self, _which: usize) -> Option<Sweep<N, D>> {
+        None
+    }
+
+    fn visit(&mut self, parts: [u32; 2]);
+}
+
+/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. Parts that are
+/// likely to be these can be asked `first`: they bound the search. See [`visit_near_pairs`] for the cost.
+pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    limit: N,
+    wanted: Wanted,
+    first: Option<[u32; 2]>,
+) -> Option<PartSeparation<N, D>> {
+    let mut nearest = Nearest { between, limit, wanted, best: None };
+    if let Some(parts) = first {
+        nearest.visit(parts);
+    }
+    visit_near_pairs(between, &mut nearest);
+    nearest.best
+}
+
+/// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
+///
+/// Cost: a convex solid searches the parts near it. Two composites that are searched by trees are descended
+/// together, as far as their boxes are near each other. Of others that of fewer parts is gone through, near ones
+/// first, and each part searches the other: at most n log m, where n is the smaller number, as long as parts do not
+/// all overlap. Half-spaces that do not lie along an axis have no box: they are held against every part.
+pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    visitor: &mut dyn PairVisitor<N, D>,
+) {
+    let mut search = Search { between, visitor };
+    match between.composites() {
+        [None, None] => search.visitor.visit([0, 0]),
+        [Some(parts1), None] => search.of_one(1, 0, parts1),
+        [None, Some(parts2)] => match between.pair.first {
+            Kind::Plane(plane) => {
+                search.outside(0, 0, parts2, |sweep| Slabs::of_half_space(between, plane, sweep));
+            }
+            _ => search.of_one(0, 0, parts2),
+        },
+        [Some(parts1), Some(parts2)] => {
+            let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
+            let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
+            let Search { visitor, .. } = search;
+            let mut pairs = TreeParts { between, visitor, parts: [parts1, parts2], slabs: None };
+            visit_pairs([tree1, tree2], &mut pairs);
+        }
+    }
+}
+
+/// Two composites that are searched by trees.
+struct TreeParts<'a, 'q, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    visitor: &'q mut dyn PairVisitor<N, D>,
+    parts: [&'a dyn CompositeShape<N, D>; 2],
+    /// Those of the part that was gone through last.
+    slabs: Option<PartSlabs<N, D>>,
+}
+
+struct PartSlabs<N: Real, const D: usize> {
+    which: usize,
+    part: u32,
+    slabs: Slabs<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    /// A box in the frame of the other composite around where the parts in it go.
+    fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
+        self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
+    }
+}
+
+impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
+    fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        self.swept(which, self.between.box_in_other(which, aabb))
+    }
+
+    fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D> {
+        self.swept(which, self.between.aabb_in_other(which, id))
+    }
+
+    fn bound(&self) -> N {
+        self.visitor.bound()
+    }
+
+    fn visit(&mut self, which: usize, own: u32, other: u32) {
+        let Self { between, visitor, parts, slabs } = self;
+        // A sweep only gets shorter, so that slabs made before are wide enough.
+        let of_own = || PartSlabs {
+            which,
+            part: own,
+            slabs: Slabs::of_part(between, which, own, visitor.sweep(which).as_ref()),
+        };
+        let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == own;
+        let kept = slabs.take().filter(is_own).unwrap_or_else(of_own);
+        if !kept.slabs.are_beyond(&parts[1 - which].part(other), visitor.limit()) {
+            visitor.visit(if which == 0 { [own, other] } else { [other, own] });
+        }
+        *slabs = Some(kept);
+    }
+}
+
+struct Search<'a, 'q, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    visitor: &'q mut dyn PairVisitor<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
+    /// A part of one shape, the first or the second, against those of the other that are near.
+    fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+        let between = self.between;
+        self.outside(which, part, others, |sweep| Slabs::of_part(between, which, part, sweep));
+    }
+
+    /// The same but for parts that slabs tell to be farther than matters; these are made for the first that is asked.
+    fn outside(
+        &mut self,
+        which: usize,
+        part: u32,
+        others: &dyn CompositeShape<N, D>,
+        slabs: impl Fn(Option<&Sweep<N, D>>) -> Slabs<N, D>,
+    ) {
+        let (sweep, mut made) = (self.visitor.sweep(which), None);
+        let aabb = self.between.aabb_in_other(which, part);
+        let aabb = sweep.map_or(aabb, |sweep| sweep.of_box(&aabb));
+        others.search().nearest(&aabb, self.visitor.bound(), &mut |other, _| {
+            let slabs = made.get_or_insert_with(|| slabs(sweep.as_ref()));
+            if !slabs.are_beyond(&others.part(other), self.visitor.limit()) {
+                self.visitor.visit(if which == 0 { [part, other] } else { [other, part] });
+            }
+            self.visitor.bound()
+        });
+    }
+
+    /// The parts of the composite with fewer of them, each against all of the other.
+    fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
+        let (which, fewer, more) = by_number(parts1, parts2);
+        let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());
+        let aabb = self.between.whole_in_other(1 - which);
+        let aabb = sweep.map_or(aabb, |sweep| sweep.of_box(&aabb));
+        if sweep.is_none() && self.between.are_boxes_beyond(bound) {
+            return;
+        }
+        fewer.search().nearest(&aabb, bound, &mut |part, _| {
+            self.of_one(which, part, more);
+            self.visitor.bound()
+        });
+    }
+}
+
+/// The best pair of parts so far.
+struct Nearest<'a, N: Real, const D: usize> {
+    between: &'a Between<'a, N, D>,
+    limit: N,
+    wanted: Wanted,
+    best: Option<PartSeparation<N, D>>,
+}
+
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for Nearest<'_, N, D> {
+    fn limit(&self) -> N {
+        self.best.map_or(self.limit, |best| best.separation.distance)
+    }
+
+    fn bound(&self) -> N {
+        let limit = self.limit();
+        let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
+        if is_known { -N::ONE } else { loosened(max(limit, N::ZERO)) }
+    }
+
+    fn visit(&mut self, parts: [u32; 2]) {
+        if self.best.is_some_and(|best| best.parts == parts) {
+            return;
+        }
+        let placed = self.between.parts(parts);
+        let Some(found) = of_convex(&placed.pair(), self.limit()) else { return };
+        let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
+        if self.best.is_none_or(|best| found.is_before(&best)) {
+            self.best = Some(found);
+        }
+    }
+}
+
+impl<N: Real, const D: usize> PartSeparation<N, D> {
+    /// Nearer, or as near and earlier by number.
+    fn is_before(&self, other: &Self) -> bool {
+        let (distance, others) = (self.separation.distance, other.separation.distance);
+        distance < others || (distance == others && self.parts < other.parts)
+    }
+}

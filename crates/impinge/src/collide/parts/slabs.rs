@@ -1,0 +1,146 @@
+//! Slabs around one part: a part of the other shape whose corners lie far outside of them is far from it.
+
+use smallvec::{SmallVec, smallvec};
+
+use super::between::Between;
+use super::sweep::Sweep;
+use crate::math::{Pose, Real, Space, Vector, max, max_component, min, unit};
+use crate::shape::{Part, PartSolid, Plane};
+
+/// Gaps are loosened by so many rounding units of all lengths.
+const ROUNDING: f64 = 128.0;
+
+/// Slabs that a solid lies in, in the frame of the composite that it is held against, while it moves.
+pub(crate) struct Slabs<N: Real, const D: usize> {
+    /// Heights are measured from here.
+    origin: Vector<N, D>,
+    /// A length that the rounding of the solid's place is in proportion to.
+    size: N,
+    /// Those of a triangle: across each side and, in 3D, across its plane.
+    slabs: SmallVec<[Slab<N, D>; 4]>,
+}
+
+/// What lies between two planes across a unit vector.
+struct Slab<N: Real, const D: usize> {
+    along: Vector<N, D>,
+    lowest: N,
+    highest: N,
+}
+
+impl<N: Space<D>, const D: usize> Slabs<N, D> {
+    /// Of a half-space that the second shape is held against: its slab has one side.
+    pub(crate) fn of_half_space(
+        between: &Between<'_, N, D>,
+        plane: &Plane<N, D>,
+        sweep: Option<&Sweep<N, D>>,
+    ) -> Self {
+        let Pose { translation: origin, .. } = between.pose21;
+        let along = between.pose21.vector(plane.normal());
+        // What is unbounded goes anywhere, so far at most.
+        let highest = sweep.map_or(N::ZERO, |sweep| sweep.spread);
+        let slab = Slab { along, lowest: -N::INFINITY, highest };
+        Self { origin, size: highest, slabs: smallvec![slab] }
+    }
+
+    /// Of a part of the first shape (0) or the second (1); none of what is not given by its corners.
+    pub(crate) fn of_part(
+        between: &Between<'_, N, D>,
+        which: usize,
+        part: u32,
+        sweep: Option<&Sweep<N, D>>,
+    ) -> Self {
+        let mut slabs =
+            Self { origin: Vector::<N, D>::zeros(), size: N::ZERO, slabs: SmallVec::new() };
+        let Some((part, pose)) = between.part_in_other(which, part) else { return slabs };
+        let Some(corners) = corners(&part.solid, &pose) else { return slabs };
+        let own = max_component(&part.pose.translation);
+        let place = max(own, max_component(&pose.translation));
+        slabs.origin = corners[0];
+        let ends = corners.map(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
+        let all = corners.iter().chain(&ends);
+        slabs.size = all.fold(place, |size, at| max(max_component(at), size));
+        let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
+        slabs.surround(&corners.map(|at| at - corners[0]), &ends.map(|at| at - corners[0]), spread);
+        slabs
+    }
+
+    /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
+    fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
+        for along in across(corners) {
+            let (start, end) = (range(corners, &along), range(ends, &along));
+            let (lowest, highest) = (min(start.0, end.0) - spread, max(start.1, end.1) + spread);
+            self.slabs.push(Slab { along, lowest, highest });
+        }
+    }
+
+    /// A part of the composite is certainly farther from the solid than a limit; overlaps count as negative.
+    pub(crate) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
+        if self.slabs.is_empty() {
+            return false;
+        }
+        let Some(corners) = corners(&part.solid, &part.pose) else { return false };
+        let corners = corners.map(|corner| corner - self.origin);
+        let size = corners.iter().fold(self.size, |size, at| max(max_component(at), size));
+        let gap = self.slabs.iter().fold(-N::INFINITY, |gap, slab| {
+            let (lowest, highest) = range(&corners, &slab.along);
+            max(max(lowest - slab.highest, slab.lowest - highest), gap)
+        });
+        // Lengths that are subnormal numbers are not precise.
+        let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
+        is_precise && gap - size * N::lit(ROUNDING) * N::EPSILON > limit
+    }
+}
+
+/// Unit vectors across each side of a triangle whose first corner is the origin and, in 3D, across its plane.
+pub(crate) fn across<N: Real, const D: usize>(
+    [_, one, other]: &[Vector<N, D>; 3],
+) -> impl Iterator<Item = Vector<N, D>> {
+    let sides = [without(other, one), without(one, other), without(one, &(other - one))];
+    let all = sides.into_iter().chain([normal_to(one, other)]);
+    all.filter_map(|direction| Some(unit(&direction)?.0))
+}
+
+/// The placed corners of a part that is given by them; those of a segment begin and end at the same.
+pub(crate) fn corners<N: Real, const D: usize>(
+    solid: &PartSolid<'_, N, D>,
+    pose: &Pose<N, D>,
+) -> Option<[Vector<N, D>; 3]> {
+    let corners = match solid {
+        PartSolid::Triangle(triangle) => *triangle.corners(),
+        PartSolid::Segment(segment) => [*segment.a(), *segment.b(), *segment.a()],
+        PartSolid::Shape(_) => return None,
+    };
+    Some(corners.map(|corner| pose.point(&corner).coords))
+}
+
+/// How low and how high the corners lie along a direction.
+pub(crate) fn range<N: Real, const D: usize>(
+    corners: &[Vector<N, D>; 3],
+    along: &Vector<N, D>,
+) -> (N, N) {
+    let [a, b, c] = [0, 1, 2].map(|index| corners[index].dot(along));
+    (min(min(a, b), c), max(max(a, b), c))
+}
+
+/// A vector less what is along another.
+fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
+    unit(other).map_or(*v, |(along, _)| v - along * v.dot(&along))
+}
+
+/// What is left of the axis of which most is left when what two vectors span is taken from it; zero where they
+/// span all.
+fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
+    let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
+    let spans = [along(one), along(&without(other, one))];
+    let (mut most, mut squared) = (Vector::<N, D>::zeros(), N::lit(0.0625));
+    for index in 0..D {
+        let [a, b] = spans.each_ref().map(|span| span[index]);
+        let left = N::ONE - a * a - b * b;
+        if left > squared {
+            let mut axis = Vector::<N, D>::zeros();
+            axis[index] = N::ONE;
+            (most, squared) = (axis - spans[0] * a - spans[1] * b, left);
+        }
+    }
+    most
+}

@@ -1,0 +1,44 @@
+//! Ball against ball: in closed form, in any dimension.
+
+use crate::collide::Pair;
+use crate::collide::separation::projection::first_axis;
+use crate::collide::separation::wrong_kinds;
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, unit};
+use crate::shape::Kind;
+
+/// The separation of two balls.
+///
+/// Balls with a common centre are parted along the first axis of the world, as they are not turned.
+pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let (Kind::Ball(ball1), Kind::Ball(ball2)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    let center2 = pair.pose12.translation;
+    let (normal, apart) = apart(&center2);
+    let distance = apart - ball1.radius() - ball2.radius();
+    (distance <= limit).then(|| Separation {
+        distance,
+        normal,
+        point1: Point::from(normal * ball1.radius()),
+        point2: Point::from(center2 - normal * ball2.radius()),
+    })
+}
+
+/// The distance in [`separation`].
+#[inline]
+pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
+    center2: &Vector<N, D>,
+    radii: [N; 2],
+) -> N {
+    apart(center2).1 - radii[0] - radii[1]
+}
+
+/// The direction of a centre that is seen from another, and how far it is.
+#[inline]
+fn apart<N: Real, const D: usize>(center2: &Vector<N, D>) -> (Vector<N, D>, N) {
+    unit(center2).unwrap_or((first_axis(), center2.norm()))
+}

@@ -1,0 +1,118 @@
+//! Ball against convex hull in 3D.
+
+use crate::collide::Pair;
+use crate::collide::separation::balls::ball_segment;
+use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::wrong_kinds;
+use crate::convex::Separation;
+use crate::math::{Point, Real, cross};
+use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
+
+/// The separation of a ball from a convex hull.
+///
+/// Inside, the nearest face is the way out, and its plane's distance the exact depth. Outside, the
+/// nearest point lies on one of the faces that see the centre in front of them: each is projected
+/// on. Cost: linear in the number of faces.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let (Kind::Ball(ball), Kind::Polytope(hull)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    let center = center_in_second(&pair.pose12);
+    project(hull, &center).of_ball(ball.radius(), &pair.pose12, limit)
+}
+
+/// A point seen from a convex hull.
+pub(in crate::collide::separation) fn project<N: Real>(
+    hull: &Polytope<N, 3>,
+    center: &Point<N, 3>,
+) -> Projection<N, 3> {
+    let (index, distance) = hull.highest_face(center);
+    let highest = &hull.faces()[index as usize];
+    let outward = highest.normal;
+    let flat = Projection { distance, outward, point: center - outward * distance };
+    // Written so that NaN ends here too.
+    if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
+}
+
+/// A point outside; `flat` is how the plane of the face that it is highest above sees it.
+///
+/// Mostly the nearest point lies on that very face, and the supporting plane there proves it.
+fn project_from_outside<N: Real>(
+    hull: &Polytope<N, 3>,
+    center: &Point<N, 3>,
+    highest: &PolytopeFace<N, 3>,
+    flat: &Projection<N, 3>,
+) -> Projection<N, 3> {
+    let noise = noise(hull.reach() + center.coords.norm());
+    let certain =
+        |seen: &Projection<N, 3>| seen.outward.dot(&(center - hull.core_support(&seen.outward)));
+    let seen = project_on_face(hull, highest, center);
+    let is_over_face = seen.outward == highest.normal;
+    if is_over_face || certain(&seen) + noise / N::lit(4.0) >= seen.distance {
+        return seen;
+    }
+    let mut best: Option<Projection<N, 3>> = None;
+    for face in hull.faces().iter().filter(|face| face.height_of(center) > N::ZERO) {
+        let seen = project_on_face(hull, face, center);
+        if best.is_none_or(|best| seen.distance < best.distance) {
+            best = Some(seen);
+        }
+    }
+    let mut best = best.unwrap_or(*flat);
+    // The offset from a side is mostly rounding where the point is close: a face may know better.
+    if certain(&best) + noise < flat.distance {
+        best.outward = flat.outward;
+    }
+    best
+}
+
+/// A point seen from a face that it is in front of.
+fn project_on_face<N: Real>(
+    hull: &Polytope<N, 3>,
+    face: &PolytopeFace<N, 3>,
+    center: &Point<N, 3>,
+) -> Projection<N, 3> {
+    let around = hull.face_vertices(face);
+    let corner = |vertex: u32| hull.vertices()[vertex as usize];
+    let mut best: Option<Projection<N, 3>> = None;
+    for (&from, &to) in around.iter().zip(around.iter().cycle().skip(1)) {
+        let ends = [corner(from), corner(to)];
+        let beyond = cross(&(ends[1] - ends[0]), &face.normal).dot(&(center - ends[0]));
+        if beyond > N::ZERO {
+            let seen = ball_segment::project(&ends, center);
+            if best.is_none_or(|best| seen.distance < best.distance) {
+                best = Some(seen);
+            }
+        }
+    }
+    best.unwrap_or_else(|| {
+        let distance = face.height_of(center);
+        let point = center - face.normal * distance;
+        Projection { distance, outward: face.normal, point }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::ConvexHull;
+
+    #[test]
+    fn over_a_face_an_edge_a_vertex_and_inside() {
+        let p = Point::<f64, 3>::new;
+        let corners = [p(0.0, 0.0, 0.0), p(4.0, 0.0, 0.0), p(0.0, 4.0, 0.0), p(0.0, 0.0, 4.0)];
+        let hull = ConvexHull::from_points(&corners);
+        let below = project(&hull, &p(1.0, 1.0, -2.0));
+        assert_eq!((below.distance, below.outward.z), (2.0, -1.0), "below the base");
+        let edge = project(&hull, &p(2.0, -3.0, -4.0));
+        assert_eq!((edge.distance, edge.point), (5.0, p(2.0, 0.0, 0.0)), "beside an edge");
+        let vertex = project(&hull, &p(-2.0, -1.0, -2.0));
+        assert_eq!((vertex.distance, vertex.point), (3.0, p(0.0, 0.0, 0.0)), "beyond a vertex");
+        let inside = project(&hull, &p(0.5, 0.75, 1.0));
+        assert_eq!((inside.distance, inside.outward.x), (-0.5, -1.0), "out through x = 0");
+        assert_eq!(inside.point, p(0.0, 0.75, 1.0), "on that face");
+    }
+}

@@ -1,0 +1,83 @@
+//! Ball against segment or capsule: in closed form, in any dimension.
+
+use crate::collide::Pair;
+use crate::collide::separation::projection::{
+    Projection, center_in_second, first_axis, made_perpendicular, perpendicular_to,
+};
+use crate::collide::separation::segments::nearest::{core, nearest_on_segment};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, unit};
+use crate::shape::{Kind, Segment};
+
+/// The separation of a ball from a segment or capsule.
+///
+/// A centre on the segment leaves it along a fixed perpendicular; one at the place of a segment of
+/// no length along the first axis of the segment's frame.
+pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let Kind::Ball(ball) = &pair.first else { crate::collide::separation::wrong_kinds(pair) };
+    let (ends, rounding) = core(pair, &pair.second);
+    let foot = Foot::new(ends, &center_in_second(&pair.pose12));
+    let is_within = foot.distance - rounding - ball.radius() <= limit;
+    let mut seen = is_within.then(|| foot.projection())?;
+    seen.distance -= rounding;
+    seen.point += seen.outward * rounding;
+    seen.of_ball(ball.radius(), &pair.pose12, limit)
+}
+
+/// How far a point is from a segment, for which no direction is needed.
+#[inline]
+pub(in crate::collide::separation) fn distance_from<N: Real, const D: usize>(
+    segment: &Segment<N, D>,
+    center: &Point<N, D>,
+) -> N {
+    Foot::new([*segment.a(), *segment.b()], center).distance
+}
+
+/// A point seen from a segment.
+pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
+    ends: &[Point<N, D>; 2],
+    center: &Point<N, D>,
+) -> Projection<N, D> {
+    Foot::new(*ends, center).projection()
+}
+
+/// Where a point is nearest to a segment.
+pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
+    ends: [Point<N, D>; 2],
+    point: Point<N, D>,
+    /// From there to the point that sees it, and how long that is.
+    offset: Vector<N, D>,
+    pub(in crate::collide::separation) distance: N,
+    /// Between the ends.
+    is_inside: bool,
+}
+
+impl<N: Real, const D: usize> Foot<N, D> {
+    #[inline]
+    pub(in crate::collide::separation) fn new(
+        ends: [Point<N, D>; 2],
+        center: &Point<N, D>,
+    ) -> Self {
+        let (point, is_inside) = nearest_on_segment(&ends, center);
+        let offset = center - point;
+        Self { ends, point, offset, distance: offset.norm(), is_inside }
+    }
+
+    /// With the direction, which takes longer to find than all else.
+    pub(in crate::collide::separation) fn projection(&self) -> Projection<N, D> {
+        Projection { distance: self.distance, outward: self.outward(), point: self.point }
+    }
+
+    fn outward(&self) -> Vector<N, D> {
+        let direct = if self.is_inside { None } else { unit(&self.offset) };
+        if let Some((outward, _)) = direct {
+            return outward;
+        }
+        let Some((axis, _)) = unit(&(self.ends[1] - self.ends[0])) else { return first_axis() };
+        let sideways = if self.is_inside { made_perpendicular(&self.offset, &axis) } else { None };
+        sideways.unwrap_or_else(|| perpendicular_to(&axis))
+    }
+}

@@ -1,0 +1,123 @@
+//! Ball against tapered capsule: in closed form, in any dimension.
+
+use crate::collide::Pair;
+use crate::collide::separation::projection::{
+    Projection, center_in_second, first_axis, made_perpendicular, noise, perpendicular_to,
+};
+use crate::collide::separation::wrong_kinds;
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, unit};
+use crate::shape::{FeatureId, Kind, TaperedCapsule};
+
+/// The separation of a ball from a tapered capsule.
+///
+/// A centre on the axis leaves along a fixed perpendicular, one at an end away from the other; one at the
+/// centre of the larger ball, where that holds the other, along the first axis of the solid's frame.
+pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let (Kind::Ball(ball), Kind::TaperedCapsule(capsule)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    let center = center_in_second(&pair.pose12);
+    project(capsule, &center).0.of_ball(ball.radius(), &pair.pose12, limit)
+}
+
+/// A point seen from a tapered capsule, and the part of the surface that it is nearest to.
+///
+/// In the half-plane through axis and point the side is a segment. The perpendiculars at its ends tell
+/// to which part the point belongs, inside as well as outside: they pass through the centres of the
+/// balls.
+pub(crate) fn project<N: Real, const D: usize>(
+    capsule: &TaperedCapsule<N, D>,
+    point: &Point<N, D>,
+) -> (Projection<N, D>, FeatureId) {
+    let Some(taper) = capsule.taper() else {
+        return around_end(capsule, capsule.larger_end(), point, &first_axis());
+    };
+    let from_first = point - capsule.segment().a();
+    let away = made_perpendicular(&from_first, &taper.along)
+        .unwrap_or_else(|| perpendicular_to(&taper.along));
+    let (x, y) = (from_first.dot(&away), from_first.dot(&taper.along));
+    let along_side = taper.cosine * y - taper.sine * x;
+    if along_side < N::ZERO {
+        return around_end(capsule, 0, point, &-taper.along);
+    }
+    if along_side > taper.cosine * taper.length {
+        return around_end(capsule, 1, point, &taper.along);
+    }
+    let distance = taper.cosine * x + taper.sine * y - capsule.radii()[0];
+    let outward = away * taper.cosine + taper.along * taper.sine;
+    let nearest = point - outward * distance;
+    (Projection { distance, outward, point: nearest }, FeatureId::Edge(0))
+}
+
+/// A point seen from one of the balls; `fallback` is the way out from its centre, which also serves
+/// where the offset from there is mostly rounding.
+fn around_end<N: Real, const D: usize>(
+    capsule: &TaperedCapsule<N, D>,
+    end: usize,
+    point: &Point<N, D>,
+    fallback: &Vector<N, D>,
+) -> (Projection<N, D>, FeatureId) {
+    let (center, radius) = (capsule.end(end), capsule.radii()[end]);
+    let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
+    let is_certain = away > noise(center.coords.norm());
+    let outward = if is_certain { outward } else { *fallback };
+    let name = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
+    let nearest = center + outward * radius;
+    (Projection { distance: away - radius, outward, point: nearest }, name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type P = Point<f64, 3>;
+
+    /// The side rises by 3 on 4: its normal leans back by the sine 0.6.
+    fn club() -> TaperedCapsule<f64, 3> {
+        TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
+            .expect("finite")
+    }
+
+    #[test]
+    fn ends_side_and_inside() {
+        let seen = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
+        let (below, name) = seen(0.0, -3.0);
+        assert_eq!((below.distance, name), (2.0, FeatureId::Vertex(0)), "below the small end");
+        let (above, name) = seen(6.0, 13.0);
+        assert_eq!((above.distance, name), (6.0, FeatureId::Vertex(1)), "(6, 8) from its centre");
+        let outward = Vector::<f64, 3>::new(0.0, -0.6, 0.8);
+        let place = P::new(0.0, 2.5, 0.0) + outward * 12.5;
+        let (side, name) = project(&club(), &place);
+        assert!((side.distance - 10.0).abs() < 1e-14 && name == FeatureId::Edge(0), "{side:?}");
+        assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
+        let (inside, name) = seen(0.0, 2.5);
+        assert!((inside.distance + 2.5).abs() < 1e-14 && name == FeatureId::Edge(0), "{inside:?}");
+    }
+
+    #[test]
+    fn the_centre_of_an_end() {
+        // By rounding, the end may seem to lie beyond the side.
+        let (a, b) = (P::new(0.3, 0.1, 0.7), P::new(0.1, -0.2, 0.5));
+        for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
+            let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");
+            for (point, other, radius) in [(a, b, radii[0]), (b, a, radii[1])] {
+                let (seen, _) = project(&one, &point);
+                let other = (other - point).dot(&seen.outward) + radii[0] + radii[1] - radius;
+                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {seen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ball_in_a_ball() {
+        let one = TaperedCapsule::<f64, 2>::new(1.0, 5.0, 0.5);
+        let (seen, name) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
+        assert_eq!((seen.distance, name), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
+        let (middle, _) = project(&one, &Point::<f64, 2>::new(0.0, -1.0));
+        assert_eq!((middle.distance, middle.outward.x), (-5.0, 1.0), "the first axis");
+    }
+}

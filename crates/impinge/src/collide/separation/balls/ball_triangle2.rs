@@ -1,0 +1,187 @@
+//! Ball against triangle in 2D: by the side or corner that is nearest to the centre.
+
+use crate::collide::Pair;
+use crate::collide::separation::polygons::polygon_polygon;
+use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::wrong_kinds;
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
+use crate::shape::Kind;
+
+/// The separation of a ball from a triangle of the plane; of one that is a segment up to rounding as of
+/// outlines.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 2>,
+    limit: N,
+) -> Option<Separation<N, 2>> {
+    let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    match project(triangle.corners(), &center_in_second(&pair.pose12)) {
+        Some(seen) => seen.of_ball(ball.radius(), &pair.pose12, limit),
+        None => polygon_polygon::separation(pair, limit),
+    }
+}
+
+/// A side of a triangle whose inside is on its left.
+#[derive(Clone, Copy)]
+struct DirectedEdge<N: Real> {
+    from: Point<N, 2>,
+    along: Vector<N, 2>,
+    length: N,
+    /// How far the point is above the line of the side.
+    height: N,
+}
+
+impl<N: Real> DirectedEdge<N> {
+    fn new([from, to]: [Point<N, 2>; 2], center: &Point<N, 2>) -> Option<Self> {
+        let (along, length) = unit(&(to - from))?;
+        let height = -perp(&along).dot(&(center - from));
+        Some(Self { from, along, length, height })
+    }
+
+    fn outward(&self) -> Vector<N, 2> {
+        -perp(&self.along)
+    }
+
+    /// The point lies above the side itself, not only above its line.
+    fn is_below(&self, center: &Point<N, 2>) -> bool {
+        let way = self.along.dot(&(center - self.from));
+        self.height > N::ZERO && way > N::ZERO && way < self.length
+    }
+
+    /// Seen from the side's line.
+    fn projection(&self, center: &Point<N, 2>) -> Projection<N, 2> {
+        let (distance, outward) = (self.height, self.outward());
+        Projection { distance, outward, point: center - outward * distance }
+    }
+}
+
+/// A point seen from a triangle, whose corners come in either order; `None` for one that is a segment up to
+/// rounding, and for NaN.
+///
+/// Inside, the nearest side is the way out: of equally near ones the first of the outline, which begins
+/// with the first corner.
+pub(in crate::collide::separation) fn project<N: Real>(
+    &[a, b, c]: &[Point<N, 2>; 3],
+    center: &Point<N, 2>,
+) -> Option<Projection<N, 2>> {
+    // By a power of two, so that the product is a number of the type.
+    let size = max(max_component(&(b - a)), max_component(&(c - a))).power_of_two_below();
+    let turns_left = cross2(&((b - a) / size), &((c - a) / size)) >= N::ZERO;
+    let [a, b, c] = if turns_left { [a, b, c] } else { [a, c, b] };
+    let sides = [
+        DirectedEdge::new([a, b], center)?,
+        DirectedEdge::new([b, c], center)?,
+        DirectedEdge::new([c, a], center)?,
+    ];
+    if !has_area(&sides) {
+        return None;
+    }
+    if let Some(below) = sides.iter().find(|side| side.is_below(center)) {
+        return Some(below.projection(center));
+    }
+    let higher = |one: DirectedEdge<N>, other: DirectedEdge<N>| {
+        if other.height > one.height { other } else { one }
+    };
+    let highest = higher(higher(sides[0], sides[1]), sides[2]);
+    if highest.height > N::ZERO {
+        return Some(from_corner(&[a, b, c], center, &highest));
+    }
+    // NaN, of which nothing is known, is no depth.
+    (highest.height <= N::ZERO).then(|| highest.projection(center))
+}
+
+/// Not all corners lie on the longest side, up to rounding; nothing that is not a number has an area.
+fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
+    let [side, next, last] = sides;
+    let longest = max(max(side.length, next.length), last.length);
+    let sine = cross2(&side.along, &next.along);
+    let area = sine * (side.length / longest) * (next.length / longest);
+    area > N::lit(64.0) * N::EPSILON
+}
+
+/// Seen from the nearest corner, the first of equals; where that is so close that the direction is mostly
+/// rounding, along the normal of the highest side.
+fn from_corner<N: Real>(
+    corners: &[Point<N, 2>; 3],
+    center: &Point<N, 2>,
+    highest: &DirectedEdge<N>,
+) -> Projection<N, 2> {
+    let far = corners.iter().fold(N::ZERO, |far, p| max(max_component(&(center - p)), far));
+    let size = far.power_of_two_below();
+    let squared = |corner: &Point<N, 2>| ((center - corner) / size).norm_squared();
+    let [a, b, c] = corners;
+    let nearer = |one, other| if squared(other) < squared(one) { other } else { one };
+    let point = *nearer(nearer(a, b), c);
+    let offset = center - point;
+    let reach = max(max_component(&center.coords), max_component(&point.coords));
+    match unit(&offset) {
+        Some((outward, distance)) if distance > noise(reach) => {
+            Projection { distance, outward, point }
+        }
+        _ => Projection { distance: offset.norm(), outward: highest.outward(), point },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::shape::{Ball, Shape, Triangle};
+
+    fn p(x: f64, y: f64) -> Point<f64, 2> {
+        Point::<f64, 2>::new(x, y)
+    }
+
+    #[test]
+    fn over_a_side_a_corner_and_inside() {
+        for corners in
+            [[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)], [p(0.0, 0.0), p(0.0, 3.0), p(4.0, 0.0)]]
+        {
+            let seen = |x, y| project(&corners, &p(x, y)).expect("it has an area");
+            assert_eq!((seen(1.0, -2.0).distance, seen(1.0, -2.0).point), (2.0, p(1.0, 0.0)));
+            assert_eq!((seen(7.0, -4.0).distance, seen(7.0, -4.0).point), (5.0, p(4.0, 0.0)));
+            let inside = seen(0.5, 1.0);
+            assert_eq!((inside.distance, inside.outward.x), (-0.5, -1.0), "out to the left");
+        }
+    }
+
+    #[test]
+    fn without_area_it_is_left_to_others() {
+        let line = [p(0.0, 0.0), p(2.0, 0.0), p(1.0, 0.0)];
+        assert_eq!(project(&line, &p(1.0, 1.0)), None, "a segment");
+        assert_eq!(project(&[p(1.0, 1.0); 3], &p(1.0, 2.0)), None, "a point");
+        let corners = [p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)];
+        assert_eq!(project(&corners, &p(f64::NAN, 1.0)), None, "nowhere");
+    }
+
+    /// As outlines see it, all around triangles of all shapes.
+    #[test]
+    fn as_outlines_have_it() {
+        let (mut inside, mut tried) = (0, 0);
+        for n in 0..4000_u32 {
+            let number = |k: u32| {
+                let noise = (f64::from(n * 8 + k) * 12.9898).sin() * 43758.5453;
+                4.0 * (noise - noise.floor()) - 2.0
+            };
+            let corners = [0, 2, 4].map(|k| p(number(k), number(k + 1)));
+            let center = Vector::<f64, 2>::new(number(6), number(7));
+            let Some(seen) = project(&corners, &Point::from(center)) else { continue };
+            let (ball, triangle) =
+                (Ball::new(0.0), Triangle::new(corners[0], corners[1], corners[2]));
+            let pose12 = Pose::from_translation(-center);
+            let first = Shape::<f64, 2>::geometry(&ball).0;
+            let pair = Pair { first, second: triangle.geometry().0, pose12 };
+            let expected = polygon_polygon::separation(&pair, f64::INFINITY);
+            let expected = expected.expect("nothing is beyond infinity");
+            assert!((seen.distance - expected.distance).abs() < 1e-13, "{corners:?} {center}");
+            assert!((seen.outward + expected.normal).norm() < 1e-9, "{corners:?} {center}");
+            let point = seen.point - center - expected.point2;
+            assert!(point.norm() < 1e-9, "{corners:?} {center}");
+            inside += u32::from(seen.distance < 0.0);
+            tried += 1;
+        }
+        assert!(tried > 3900 && inside * 20 > tried, "{inside} of {tried} are inside");
+    }
+}

@@ -1,0 +1,13 @@
+//! Balls against all other solids: a ball is a point with a radius, so each is a closed form for a point.
+
+pub(super) mod ball_ball;
+pub(super) mod ball_cone;
+pub(super) mod ball_cuboid;
+pub(super) mod ball_cylinder;
+pub(crate) mod ball_ellipsoid;
+pub(super) mod ball_polygon;
+pub(super) mod ball_polytope;
+pub(super) mod ball_segment;
+pub(crate) mod ball_tapered;
+pub(super) mod ball_triangle;
+pub(super) mod ball_triangle2;

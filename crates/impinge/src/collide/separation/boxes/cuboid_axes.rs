@@ -1,0 +1,124 @@
+//! The separating axis test of two boxes in 3D.
+//!
+//! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions says
+//! so, and if not, the one that says so least badly is the direction of the shortest way out.
+
+use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
+
+/// Two boxes, the second placed in the frame of the first.
+pub(crate) struct Boxes<N: Real> {
+    pub(crate) half1: Vector<N, 3>,
+    pub(crate) half2: Vector<N, 3>,
+    pub(crate) pose12: Pose<N, 3>,
+}
+
+/// Which of the 15 directions it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AxisKind {
+    /// The normal of a face of the first box.
+    Face1(usize),
+    /// The normal of a face of the second box.
+    Face2(usize),
+    /// Perpendicular to an edge of each.
+    Edges(usize, usize),
+}
+
+/// A unit direction from the first box to the second, and the gap it leaves between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BoxAxis<N: Real> {
+    pub(crate) kind: AxisKind,
+    pub(crate) normal: Vector<N, 3>,
+    pub(crate) gap: N,
+}
+
+impl<N: Real> Boxes<N> {
+    /// What arithmetic on these numbers cannot resolve.
+    pub(crate) fn noise(&self) -> N {
+        let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
+        N::lit(4.0) * N::EPSILON * size
+    }
+
+    /// An axis of the second box in the frame of the first.
+    pub(crate) fn axis2(&self, axis: usize) -> Vector<N, 3> {
+        self.pose12.rotation.column(axis).into_owned()
+    }
+
+    /// The direction of the largest gap. Faces of the first box come before those of the second, and
+    /// an edge pair must beat the best face by more than rounding: faces give better points.
+    pub(crate) fn best_axis(&self) -> BoxAxis<N> {
+        let leans = self.pose12.rotation.abs();
+        let (face, gap) = self.best_face(&leans);
+        match self.best_edges(&leans, max(gap + self.noise(), gap)) {
+            Some((edges, gap)) => self.axis(edges, gap),
+            None => self.axis(face, gap),
+        }
+    }
+
+    /// The face normal that leaves the largest gap; `leans` is the rotation without signs.
+    fn best_face(&self, leans: &Matrix<N, 3>) -> (AxisKind, N) {
+        let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
+        for i in 0..3 {
+            let reach2 = (0..3).fold(N::ZERO, |sum, j| sum + leans[(i, j)] * self.half2[j]);
+            let found = t[i].abs() - self.half1[i] - reach2;
+            if i == 0 || found > gap {
+                (best, gap) = (AxisKind::Face1(i), found);
+            }
+        }
+        for j in 0..3 {
+            let reach1 = (0..3).fold(N::ZERO, |sum, i| sum + leans[(i, j)] * self.half1[i]);
+            let along = (0..3).fold(N::ZERO, |sum, i| sum + self.pose12.rotation[(i, j)] * t[i]);
+            let found = along.abs() - reach1 - self.half2[j];
+            if found > gap {
+                (best, gap) = (AxisKind::Face2(j), found);
+            }
+        }
+        (best, gap)
+    }
+
+    /// The pair of edges that leaves the largest gap, if that is more than `least`.
+    ///
+    /// The cross product of two axes has the sine of their angle for its length. Where the gap along
+    /// it is negative, dividing by that can only make it smaller, so most pairs need no root. How it leans
+    /// on the axes of the second box is a difference of two products, which is small where the sine is: the
+    /// entry of the rotation that equals it is not, up to rounding, and that is divided by the sine too.
+    fn best_edges(&self, leans: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
+        let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
+        let (mut best, mut bound) = (None, least);
+        for i in 0..3 {
+            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
+            for j in 0..3 {
+                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
+                let along = t[i2] * r[(i1, j)] - t[i1] * r[(i2, j)];
+                let reach1 = self.half1[i1] * leans[(i2, j)] + self.half1[i2] * leans[(i1, j)];
+                let lean1 = (r[(i1, j)] * r[(i2, j1)] - r[(i2, j)] * r[(i1, j1)]).abs();
+                let lean2 = (r[(i1, j)] * r[(i2, j2)] - r[(i2, j)] * r[(i1, j2)]).abs();
+                let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
+                let slack = along.abs() - reach1 - reach2;
+                if slack <= min(bound, N::ZERO) {
+                    continue;
+                }
+                let sine = (r[(i1, j)] * r[(i1, j)] + r[(i2, j)] * r[(i2, j)]).sqrt();
+                // Of parallel edges nothing new is learnt: the faces suffice.
+                if sine > N::lit(16.0) * N::EPSILON && slack > bound * sine {
+                    (best, bound) = (Some(AxisKind::Edges(i, j)), slack / sine);
+                }
+            }
+        }
+        best.map(|edges| (edges, bound))
+    }
+
+    /// An axis with its direction, turned to point from the first box to the second.
+    fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
+        let direction = match kind {
+            AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),
+            AxisKind::Face2(axis) => self.axis2(axis),
+            AxisKind::Edges(axis1, axis2) => {
+                let across = cross(&Vector::<N, 3>::ith(axis1, N::ONE), &self.axis2(axis2));
+                across / across.norm()
+            }
+        };
+        let towards = direction.dot(&self.pose12.translation);
+        let normal = if towards < N::ZERO { -direction } else { direction };
+        BoxAxis { kind, normal, gap }
+    }
+}

@@ -1,0 +1,217 @@
+//! Box against box in 3D.
+
+use smallvec::SmallVec;
+
+use super::cuboid_axes::{AxisKind, BoxAxis, Boxes};
+use crate::collide::Pair;
+use crate::collide::separation::segments::nearest::nearest_of_segments;
+use crate::collide::separation::{general, wrong_kinds};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::shape::Kind;
+
+/// The separation of two boxes.
+///
+/// Where they overlap the separating axis test is exact. Where they are apart it gives a bound, and
+/// the distance if the nearest points lie on a face or between edges; in the other cases (two
+/// corners, a corner and an edge) the general algorithm decides.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
+        wrong_kinds(pair)
+    };
+    let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
+    let boxes = Boxes { half1, half2, pose12: pair.pose12 };
+    let (best, noise) = (boxes.best_axis(), boxes.noise());
+    if best.gap > limit + N::lit(16.0) * noise {
+        return None;
+    }
+    let found = along(&boxes, &best);
+    let beside = found.point2 - found.point1 - best.normal * best.gap;
+    let attained = best.gap <= N::ZERO || beside.norm() <= noise;
+    if attained {
+        return (found.distance <= limit).then_some(found);
+    }
+    general::of_flat_cores(pair, limit)
+}
+
+/// The points where the boxes face each other along an axis.
+fn along<N: Real>(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
+    let (normal, distance) = (axis.normal, axis.gap);
+    let (point1, point2) = match axis.kind {
+        AxisKind::Face1(index) => {
+            let face = ReferenceFace { half: boxes.half1, axis: index, toward: normal[index] };
+            let point2 = face.deepest(&boxes.half2, &boxes.pose12, distance);
+            (face.onto(&point2), point2)
+        }
+        AxisKind::Face2(index) => {
+            let toward = -boxes.axis2(index).dot(&normal);
+            let face = ReferenceFace { half: boxes.half2, axis: index, toward };
+            let point1 = face.deepest(&boxes.half1, &boxes.pose12.inverse(), distance);
+            (boxes.pose12.point(&point1), boxes.pose12.point(&face.onto(&point1)))
+        }
+        AxisKind::Edges(axis1, axis2) => between_edges(boxes, axis1, axis2, &normal),
+    };
+    Separation { distance, normal, point1, point2 }
+}
+
+/// The nearest points of the two edges, of given directions, that face each other along `normal`.
+fn between_edges<N: Real>(
+    boxes: &Boxes<N>,
+    axis1: usize,
+    axis2: usize,
+    normal: &Vector<N, 3>,
+) -> (Point<N, 3>, Point<N, 3>) {
+    let edge1 = edge_toward(&boxes.half1, axis1, normal);
+    let edge2 = edge_toward(&boxes.half2, axis2, &boxes.pose12.inverse_vector(&-normal));
+    nearest_of_segments(&edge1, &edge2.map(|end| boxes.pose12.point(&end)))
+}
+
+/// The edge of a box along one of its axes that lies farthest in a direction.
+fn edge_toward<N: Real>(
+    half: &Vector<N, 3>,
+    axis: usize,
+    direction: &Vector<N, 3>,
+) -> [Point<N, 3>; 2] {
+    let corner = half.zip_map(direction, |h, d| if d < N::ZERO { -h } else { h });
+    let (mut low, mut high) = (corner, corner);
+    (low[axis], high[axis]) = (-half[axis], half[axis]);
+    [Point::from(low), Point::from(high)]
+}
+
+/// A face of a box, in its own frame: at `axis`, on the side that `toward` has the sign of.
+struct ReferenceFace<N: Real> {
+    half: Vector<N, 3>,
+    axis: usize,
+    toward: N,
+}
+
+impl<N: Real> ReferenceFace<N> {
+    fn sign(&self) -> N {
+        if self.toward < N::ZERO { -N::ONE } else { N::ONE }
+    }
+
+    /// How far a point is in front of the face.
+    fn height(&self, point: &Point<N, 3>) -> N {
+        self.sign() * point[self.axis] - self.half[self.axis]
+    }
+
+    /// The point of the face nearest to a point.
+    fn onto(&self, point: &Point<N, 3>) -> Point<N, 3> {
+        let clamped = point.coords.zip_map(&self.half, |x, h| max(min(x, h), -h));
+        let mut below = Point::from(clamped);
+        below[self.axis] = self.sign() * self.half[self.axis];
+        below
+    }
+
+    /// The part of a polygon that is above the face, or beside it by a slack at most.
+    fn above(&self, polygon: &Polygon<N>, slack: N) -> Polygon<N> {
+        let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        across.iter().fold(polygon.clone(), |polygon, &axis| {
+            let bound = self.half[axis] + slack;
+            clipped(&clipped(&polygon, axis, N::ONE, bound), axis, -N::ONE, bound)
+        })
+    }
+
+    /// The middle of the lowest points of the other box among those above this face; `pose` is the
+    /// other box's in the frame of this one, `distance` how low its lowest point is known to be.
+    fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
+        let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
+        let facing = face_toward(other, &pose.inverse_vector(&direction));
+        let facing: Polygon<N> = facing.iter().map(|corner| pose.point(corner)).collect();
+        let size = self.half.sum() + other.sum() + distance.abs();
+        let noise = N::lit(16.0) * N::EPSILON * size;
+        // Up to rounding, no point may be above a face without width; none is if the boxes are apart.
+        let mut above = self.above(&facing, N::ZERO);
+        if above.is_empty() {
+            above = self.above(&facing, noise);
+        }
+        let polygon = if above.is_empty() { facing } else { above };
+        let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));
+        let flat = lowest + noise;
+        let low: Polygon<N> = polygon.into_iter().filter(|p| self.height(p) <= flat).collect();
+        crate::math::centroid(&low)
+    }
+}
+
+type Polygon<N> = SmallVec<[Point<N, 3>; 8]>;
+
+/// The corners, in a row, of the face of a box whose normal is most aligned with a direction.
+fn face_toward<N: Real>(half: &Vector<N, 3>, direction: &Vector<N, 3>) -> [Point<N, 3>; 4] {
+    let axis = direction.iamax();
+    let sign = if direction[axis] < N::ZERO { -N::ONE } else { N::ONE };
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(u, v)| {
+        let mut corner = *half;
+        corner[axis] *= sign;
+        corner[(axis + 1) % 3] *= N::lit(u);
+        corner[(axis + 2) % 3] *= N::lit(v);
+        Point::from(corner)
+    })
+}
+
+/// The part of a polygon where `sign · coordinate ≤ bound` on an axis (Sutherland and Hodgman,
+/// "Reentrant polygon clipping", 1974).
+fn clipped<N: Real>(polygon: &Polygon<N>, axis: usize, sign: N, bound: N) -> Polygon<N> {
+    let inside = |p: &Point<N, 3>| bound - sign * p[axis];
+    let mut kept = Polygon::new();
+    for (at, from) in polygon.iter().enumerate() {
+        let to = &polygon[(at + 1) % polygon.len()];
+        let (inside1, inside2) = (inside(from), inside(to));
+        if inside1 >= N::ZERO {
+            kept.push(*from);
+        }
+        if (inside1 > N::ZERO && inside2 < N::ZERO) || (inside1 < N::ZERO && inside2 > N::ZERO) {
+            kept.push(from + (to - from) * (inside1 / (inside1 - inside2)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Isometry3;
+    use crate::shape::{Cuboid, Shape};
+
+    fn of(half1: [f64; 3], half2: [f64; 3], pose12: &Isometry3<f64>) -> Separation<f64, 3> {
+        let (cuboid1, cuboid2) = (Cuboid::new(half1.into()), Cuboid::new(half2.into()));
+        let (first, second) = (cuboid1.geometry().0, cuboid2.geometry().0);
+        let pair = Pair { first, second, pose12: Pose::from_isometry(pose12) };
+        separation(&pair, f64::INFINITY).expect("nothing is beyond infinity")
+    }
+
+    #[test]
+    fn one_on_the_other() {
+        let found = of([4.0, 1.0, 4.0], [1.0; 3], &Isometry3::translation(1.0, 1.75, 0.0));
+        assert_eq!((found.distance, found.normal.y), (-0.25, 1.0), "a quarter deep");
+        assert_eq!(found.point1, Point::<f64, 3>::new(1.0, 1.0, 0.0), "under its middle");
+        assert_eq!(found.point2, Point::<f64, 3>::new(1.0, 0.75, 0.0), "its middle");
+    }
+
+    #[test]
+    fn a_corner_over_a_face() {
+        let turn = [0.0, 0.0, core::f64::consts::FRAC_PI_4];
+        let pose = Isometry3::new([0.5, 4.0, 0.0].into(), turn.into());
+        let found = of([2.0, 1.0, 2.0], [1.0; 3], &pose);
+        assert!((found.distance - (3.0 - 2.0_f64.sqrt())).abs() < 1e-15, "its edge is down");
+        assert!((found.point1 - Point::<f64, 3>::new(0.5, 1.0, 0.0)).norm() < 1e-15, "below it");
+    }
+
+    #[test]
+    fn edge_over_edge() {
+        // Both turned by an eighth: an upper edge along x below a lower edge along z.
+        let eighth = core::f64::consts::FRAC_PI_4;
+        let pose1 = Isometry3::new([0.0; 3].into(), [eighth, 0.0, 0.0].into());
+        let pose2 = Isometry3::new([0.25, 2.75, 0.25].into(), [0.0, 0.0, eighth].into());
+        let found = of([3.0, 1.0, 1.0], [1.0, 1.0, 3.0], &pose1.inv_mul(&pose2));
+        let expected = 2.75 - 2.0 * 2.0_f64.sqrt();
+        assert!((found.distance - expected).abs() < 1e-15, "{}", found.distance);
+        let world1 = pose1 * found.point1;
+        assert!(
+            (world1 - Point::<f64, 3>::new(0.25, 2.0_f64.sqrt(), 0.0)).norm() < 1e-9,
+            "{world1}"
+        );
+    }
+}

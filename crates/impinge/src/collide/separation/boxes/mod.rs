@@ -1,0 +1,6 @@
+//! Boxes against boxes and segments, by their axes.
+
+pub(crate) mod cuboid_axes;
+pub(super) mod cuboid_cuboid;
+pub(super) mod rectangle_axes;
+pub(super) mod segment_cuboid;

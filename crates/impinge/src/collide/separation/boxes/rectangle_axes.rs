@@ -1,0 +1,68 @@
+//! The separating axis test of two 2D boxes.
+
+use crate::collide::separation::polygons::polygon_polygon::Axis;
+use crate::math::{Pose, Real, Vector};
+
+/// Two boxes, the second placed in the frame of the first.
+pub(in crate::collide::separation) struct Rectangles<N: Real> {
+    pub(in crate::collide::separation) half1: Vector<N, 2>,
+    pub(in crate::collide::separation) half2: Vector<N, 2>,
+    pub(in crate::collide::separation) pose12: Pose<N, 2>,
+}
+
+impl<N: Real> Rectangles<N> {
+    /// The normal of a side that leaves the largest gap, turned to point from the first box to the second.
+    ///
+    /// Equal gaps: the sides of the first box come before those of the second, each in the order of
+    /// its outline, which starts below and goes round counter-clockwise.
+    pub(in crate::collide::separation) fn best_axis(&self) -> Axis<N> {
+        let leans = self.pose12.rotation.abs();
+        let offset = self.pose12.translation;
+        let reaches2 = leans * self.half2;
+        let first = [0, 1].map(|axis| {
+            let along = offset[axis];
+            let is_positive = if axis == 0 { along >= N::ZERO } else { along > N::ZERO };
+            let gap = along.abs() - self.half1[axis] - reaches2[axis];
+            (gap, rank(axis, is_positive), axis, is_positive)
+        });
+        let (gap, _, axis, is_positive) = better(first[0], first[1]);
+        let normal = signed(Vector::<N, 2>::ith(axis, N::ONE), is_positive);
+        let best = Axis { gap, normal };
+        let seen = self.pose12.inverse_vector(&offset);
+        let reaches1 = leans.tr_mul(&self.half1);
+        let second = [0, 1].map(|axis| {
+            let along = seen[axis];
+            let is_positive = if axis == 0 { along > N::ZERO } else { along >= N::ZERO };
+            let gap = along.abs() - self.half2[axis] - reaches1[axis];
+            // The side of the second box that faces the first is opposite to the normal.
+            (gap, rank(axis, !is_positive), axis, is_positive)
+        });
+        let (gap, _, axis, is_positive) = better(second[0], second[1]);
+        if gap <= best.gap {
+            return best;
+        }
+        let along = self.pose12.rotation.column(axis).into_owned();
+        Axis { gap, normal: signed(along, is_positive) }
+    }
+}
+
+/// Where a side stands in the outline: below, right, above, left.
+const fn rank(axis: usize, is_positive: bool) -> usize {
+    match (axis, is_positive) {
+        (0, true) => 1,
+        (0, false) => 3,
+        (_, true) => 2,
+        (_, false) => 0,
+    }
+}
+
+type Found<N> = (N, usize, usize, bool);
+
+/// The larger gap; of equals the one that comes first.
+fn better<N: Real>(one: Found<N>, other: Found<N>) -> Found<N> {
+    if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
+}
+
+fn signed<N: Real>(vector: Vector<N, 2>, is_positive: bool) -> Vector<N, 2> {
+    if is_positive { vector } else { -vector }
+}

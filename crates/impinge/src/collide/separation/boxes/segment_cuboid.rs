@@ -1,0 +1,334 @@
+//! Segments and capsules against boxes in 3D.
+//!
+//! The squared distance of a point from a box is a sum over the axes, so that along a segment its slope is
+//! linear between the places where the segment crosses the planes of faces: the nearest place is found
+//! between two of these. Where the two overlap, the separating axis test over three faces and three pairs of
+//! edges is exact. What is not proved by two points that lie as far apart as supporting planes is left to
+//! the general algorithm. The test of [`hulls`](crate::collide::separation::hulls) takes twice as long.
+
+use crate::collide::Pair;
+use crate::collide::separation::segments::nearest::{core, nearest_of_segments};
+use crate::collide::separation::{general, wrong_kinds};
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
+use crate::shape::{Kind, SupportMap};
+
+/// The separation of a segment or capsule from a box.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let Kind::Cuboid(cuboid) = pair.second else { wrong_kinds(pair) };
+    let (ends, radius) = core(pair, &pair.first);
+    let Some(segment) = LocalSegment::new([&ends[0], &ends[1]], &pair.pose12, cuboid.reach())
+    else {
+        return general::of_flat_cores(pair, limit);
+    };
+    let most = (limit + radius) * segment.shrink;
+    let half = cuboid.half_extents() * segment.shrink;
+    let most = most + N::lit(16.0) * noise() * (N::ONE + most.abs());
+    match (LocalBox { segment: &segment, half }).solve(most) {
+        SegmentResult::Beyond => None,
+        SegmentResult::Found(parting) => {
+            let found = segment.restored(&parting).rounded(radius, N::ZERO);
+            (found.distance <= limit).then_some(found)
+        }
+        SegmentResult::Unproved => general::of_flat_cores(pair, limit),
+    }
+}
+
+/// A segment in the frame of a solid, in units in which neither of the two, nor the way between their
+/// origins, is larger than 2.
+struct LocalSegment<'a, N: Real> {
+    ends: [Vector<N, 3>; 2],
+    /// From the first end to the second.
+    along: Vector<N, 3>,
+    pose12: &'a Pose<N, 3>,
+    scale: N,
+    /// 1 / `scale`, exactly.
+    shrink: N,
+}
+
+/// How the two are parted, or how deep the one is in the other, in the frame and the units of a
+/// [`LocalSegment`].
+#[derive(Clone, Copy, Debug)]
+struct Parting<N: Real> {
+    /// Unit, from the solid to the segment.
+    outward: Vector<N, 3>,
+    on_segment: Vector<N, 3>,
+    on_solid: Vector<N, 3>,
+    distance: N,
+}
+
+/// The result of the closed form.
+enum SegmentResult<N: Real> {
+    /// The core is farther from the solid than was asked for.
+    Beyond,
+    Found(Parting<N>),
+    /// No answer is proved.
+    Unproved,
+}
+
+/// What arithmetic on numbers of size 2 cannot resolve.
+fn noise<N: Real>() -> N {
+    N::lit(16.0) * N::EPSILON
+}
+
+impl<'a, N: Real> LocalSegment<'a, N> {
+    /// `None` where the numbers end.
+    fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
+        let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
+        let size = max(max(reach, max_component(&pose12.translation)), of_ends);
+        let scale = size.power_of_two_below();
+        let shrink = N::ONE / scale;
+        let is_plain = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
+        if !(is_plain && pose12.is_finite()) {
+            return None;
+        }
+        let place = |end: &Point<N, 3>| {
+            pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
+        };
+        // From the ends as given, which loses nothing to the way between the origins.
+        let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
+        Some(Self { ends: [place(ends[0]), place(ends[1])], along, pose12, scale, shrink })
+    }
+
+    /// The point at a share of the way, measured from the nearer end.
+    fn at(&self, share: N) -> Vector<N, 3> {
+        if share <= N::HALF {
+            self.ends[0] + self.along * share
+        } else {
+            self.ends[1] - self.along * (N::ONE - share)
+        }
+    }
+
+    /// How far along a vector the end lies that is farthest against it.
+    fn low(&self, along: &Vector<N, 3>) -> N {
+        min(along.dot(&self.ends[0]), along.dot(&self.ends[1]))
+    }
+
+    /// Two points along a unit vector, if they lie across from each other as far apart as supporting planes;
+    /// `level` is how far along it the solid reaches.
+    fn proved(
+        &self,
+        outward: Vector<N, 3>,
+        level: N,
+        [on_segment, on_solid]: [Vector<N, 3>; 2],
+    ) -> Option<Parting<N>> {
+        let distance = self.low(&outward) - level;
+        let aside = on_segment - on_solid - outward * distance;
+        let is_proved = aside.norm_squared() <= noise::<N>() * noise();
+        is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
+    }
+
+    /// In the frame of the segment and the caller's units, without any radius.
+    fn restored(&self, found: &Parting<N>) -> Separation<N, 3> {
+        let placed = |point: Vector<N, 3>| self.pose12.point(&Point::from(point * self.scale));
+        Separation {
+            distance: found.distance * self.scale,
+            normal: -self.pose12.vector(&found.outward),
+            point1: placed(found.on_segment),
+            point2: placed(found.on_solid),
+        }
+    }
+}
+
+/// A box and the segment.
+struct LocalBox<'a, N: Real> {
+    segment: &'a LocalSegment<'a, N>,
+    half: Vector<N, 3>,
+}
+
+impl<N: Real> LocalBox<'_, N> {
+    fn solve(&self, most: N) -> SegmentResult<N> {
+        let (axis, sign, gap) = self.best_face();
+        if gap > most {
+            return SegmentResult::Beyond;
+        }
+        let found = if gap > N::ZERO {
+            self.nearest()
+        } else {
+            match self.best_edge(gap + N::TWO * noise()) {
+                None => self.at_face(axis, sign, gap),
+                Some((_, _, gap)) if gap > N::ZERO => self.nearest(),
+                Some((axis, outward, gap)) => self.at_edge(axis, &outward, gap),
+            }
+        };
+        found.map_or(SegmentResult::Unproved, SegmentResult::Found)
+    }
+
+    /// The axis and side of the face that the segment is highest above, and how high; the first of equals.
+    fn best_face(&self) -> (usize, N, N) {
+        let [a, b] = &self.segment.ends;
+        let mut best = (0, N::ONE, -N::INFINITY);
+        for axis in 0..3 {
+            let above = min(a[axis], b[axis]) - self.half[axis];
+            let below = -self.half[axis] - max(a[axis], b[axis]);
+            if max(above, below) > best.2 {
+                let sign = if above >= below { N::ONE } else { -N::ONE };
+                best = (axis, sign, max(above, below));
+            }
+        }
+        best
+    }
+
+    /// The axis of the edges that leave the largest gap, if it is larger than `least`, the unit vector along
+    /// which they do, and the gap.
+    fn best_edge(&self, least: N) -> Option<(usize, Vector<N, 3>, N)> {
+        let (from, along) = (&self.segment.ends[0], &self.segment.along);
+        let (mut best, mut bound) = (None, least);
+        for (axis, one, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let (x, y) = (-along[other], along[one]);
+            let height = x * from[one] + y * from[other];
+            let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
+            let sine = (x * x + y * y).sqrt();
+            // Written so that what is parallel to the axis, or no number, says nothing.
+            let is_plain = sine > noise() && (height.abs() - reach) > bound * sine;
+            if is_plain {
+                let turned = if height < N::ZERO { -sine } else { sine };
+                let mut outward = Vector::<N, 3>::zeros();
+                (outward[one], outward[other]) = (x / turned, y / turned);
+                bound = (height.abs() - reach) / sine;
+                best = Some((axis, outward, bound));
+            }
+        }
+        best
+    }
+
+    /// How far along a vector the box reaches.
+    fn level(&self, along: &Vector<N, 3>) -> N {
+        along[0].abs() * self.half[0]
+            + along[1].abs() * self.half[1]
+            + along[2].abs() * self.half[2]
+    }
+
+    /// The answer along the normal of a face that the segment reaches below.
+    fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
+        let [a, b] = &self.segment.ends;
+        let climb = (b[axis] - a[axis]) * sign;
+        let on_segment = if climb.abs() <= noise() {
+            self.middle_over(axis)?
+        } else if climb < N::ZERO {
+            *b
+        } else {
+            *a
+        };
+        let room = noise::<N>();
+        let is_over = (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + room);
+        let mut on_solid = on_segment;
+        on_solid[axis] = self.half[axis] * sign;
+        let outward = Vector::<N, 3>::ith(axis, sign);
+        is_over.then_some(Parting { outward, on_segment, on_solid, distance: gap })
+    }
+
+    /// The middle of the part of the segment that lies over a face.
+    fn middle_over(&self, face: usize) -> Option<Vector<N, 3>> {
+        let (from, along) = (&self.segment.ends[0], &self.segment.along);
+        let (mut first, mut last) = (N::ZERO, N::ONE);
+        for axis in (0..3).filter(|&axis| axis != face) {
+            if along[axis].abs() <= noise() {
+                continue;
+            }
+            let [one, other] =
+                [-self.half[axis], self.half[axis]].map(|side| (side - from[axis]) / along[axis]);
+            (first, last) = (max(first, min(one, other)), min(last, max(one, other)));
+        }
+        (first <= last).then(|| self.segment.at((first + last) * N::HALF))
+    }
+
+    /// The answer along the common perpendicular of the segment and the edges along an axis.
+    fn at_edge(&self, axis: usize, outward: &Vector<N, 3>, gap: N) -> Option<Parting<N>> {
+        let mut ends = [Point::origin(); 2];
+        for at in 0..3 {
+            let side = if outward[at] < N::ZERO { -self.half[at] } else { self.half[at] };
+            (ends[0][at], ends[1][at]) = (if at == axis { -side } else { side }, side);
+        }
+        let core = self.segment.ends.map(Point::from);
+        let (on_segment, on_solid) = nearest_of_segments(&core, &ends);
+        let [on_segment, on_solid] = [on_segment.coords, on_solid.coords];
+        let aside = on_segment - on_solid - outward * gap;
+        let is_across = aside.norm_squared() <= N::lit(16.0) * noise::<N>() * noise();
+        is_across.then_some(Parting { outward: *outward, on_segment, on_solid, distance: gap })
+    }
+
+    /// The nearest points of the two, which are apart.
+    fn nearest(&self) -> Option<Parting<N>> {
+        let share = self.nearest_share();
+        let on_segment = self.segment.at(share);
+        let on_solid = on_segment.zip_map(&self.half, |x, half| min(max(x, -half), half));
+        let away = on_segment - on_solid;
+        let points = [on_segment, on_solid];
+        let is_off = |axis: &usize| away[*axis].abs() > noise();
+        let (count, axis) =
+            (0..3).filter(is_off).fold((0, 0), |(count, _), axis| (count + 1, axis));
+        if count == 1 {
+            let sign = if away[axis] < N::ZERO { -N::ONE } else { N::ONE };
+            let outward = Vector::<N, 3>::ith(axis, sign);
+            let found = self.segment.proved(outward, self.half[axis], points);
+            if found.is_some() {
+                return found;
+            }
+        }
+        let is_between = share > N::ZERO && share < N::ONE;
+        let across = if is_between { self.perpendicular(&away) } else { None };
+        let outward = across.or_else(|| {
+            let length = away.norm();
+            (length > noise()).then(|| away / length)
+        })?;
+        self.segment.proved(outward, self.level(&outward), points)
+    }
+
+    /// Of a way off that leads from an edge of the box, the direction perpendicular to it and the segment:
+    /// right to the last bits however near the two are. `None` off a corner or a face, or where these are
+    /// parallel.
+    fn perpendicular(&self, away: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let (axis, one, other) = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+            .into_iter()
+            .find(|&(axis, ..)| away[axis] == N::ZERO)?;
+        if away[one] == N::ZERO || away[other] == N::ZERO {
+            return None;
+        }
+        let along = &self.segment.along;
+        let (x, y) = (-along[other], along[one]);
+        let sine = (x * x + y * y).sqrt();
+        if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= noise() {
+            return None;
+        }
+        let turned = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };
+        let mut outward = Vector::<N, 3>::zeros();
+        (outward[one], outward[other]) = (x / turned, y / turned);
+        Some(outward)
+    }
+
+    /// The share of the way along the segment at which it is nearest to the box.
+    fn nearest_share(&self) -> N {
+        let (from, along) = (&self.segment.ends[0], &self.segment.along);
+        let slope = |share: N| {
+            let at = self.segment.at(share);
+            let part = |axis: usize| {
+                let inside = min(max(at[axis], -self.half[axis]), self.half[axis]);
+                along[axis] * (at[axis] - inside)
+            };
+            part(0) + part(1) + part(2)
+        };
+        let (mut low, mut high) = ((N::ZERO, slope(N::ZERO)), (N::ONE, slope(N::ONE)));
+        if low.1 >= N::ZERO {
+            return N::ZERO;
+        }
+        if high.1 <= N::ZERO {
+            return N::ONE;
+        }
+        let sides =
+            (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].map(|at| (axis, at)));
+        for (axis, side) in sides {
+            let share = (side - from[axis]) / along[axis];
+            // Written so that what is no number is passed over.
+            if share > low.0 && share < high.0 {
+                let slope = slope(share);
+                let end = if slope < N::ZERO { &mut low } else { &mut high };
+                *end = (share, slope);
+            }
+        }
+        low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1))
+    }
+}

@@ -1,0 +1,60 @@
+//! Eight segments at once against a ball.
+
+use super::super::balls::ball_segment;
+use super::{ChainQuestion, Eight, Links};
+use crate::collide::Pair;
+use crate::collide::packet::{LANES, Tiles};
+use crate::math::lanes::{bits, with_lanes};
+use crate::math::simd::{Level, Simd};
+use crate::math::{Real, Wide, min};
+use crate::shape::{Ball, Kind, Segment};
+
+/// The separations of a ball from segments; `None` where the numbers end.
+pub(super) fn links<N: Real>(
+    level: Level,
+    question: &ChainQuestion<'_, N>,
+    ball: &Ball<N>,
+    links: &mut Links<N>,
+) -> Option<()> {
+    for (block, tiles) in question.tiles.iter().enumerate() {
+        let (beyond, least) = at(level, tiles, question, ball.radius())?;
+        links.from_middle = min(links.from_middle, least);
+        let mut within = !beyond & question.lanes_of(block);
+        while within != 0 {
+            let lane = within.trailing_zeros() as usize;
+            within &= within - 1;
+            let [a, b, _] = tiles.corners(lane);
+            let segment = Segment::of_finite(a - question.origin, b - question.origin);
+            let (first, second) = (question.solid, Kind::Segment(&segment));
+            let pair = Pair { first, second, pose12: question.pose12 };
+            let found = ball_segment::separation(&pair, question.limit);
+            links.found.extend(found.map(|found| (block * LANES + lane, found)));
+        }
+    }
+    Some(())
+}
+
+/// Which segments are beyond the limit, and how near the nearest is to the middle, by the vectors of an
+/// instruction set, on which the answer does not depend.
+fn at<N: Real>(
+    level: Level,
+    tiles: &Tiles<N, 2>,
+    question: &ChainQuestion<'_, N>,
+    radius: N,
+) -> Option<(u8, N)> {
+    with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
+}
+
+/// By the distances that [`ball_segment`] finds.
+#[inline(always)]
+fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    tiles: &Tiles<N, 2>,
+    question: &ChainQuestion<'_, N>,
+    radius: N,
+) -> Option<(u8, N)> {
+    let eight = Eight::<V>::of(simd, tiles, question)?;
+    let distance = eight.from_middle.sqrt() - V::all(simd, radius);
+    let beyond = distance.simd_gt(V::all(simd, question.limit));
+    Some((bits(beyond), eight.least()))
+}

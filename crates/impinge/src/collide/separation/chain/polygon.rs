@@ -1,0 +1,217 @@
+//! Eight segments at once against a polygon of up to eight vertices, inflated or not.
+
+use super::super::polygons::outline::{Outline, Row};
+use super::super::polygons::polygon_polygon::{Axis, of_axis};
+use super::{ChainQuestion, Eight, Links};
+use crate::collide::packet::LANES;
+use crate::math::lanes::{bits, dot, either, negated, over, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Real, Vector, Wide, min};
+use crate::shape::Segment;
+
+/// The separations of segments from a polygon; `None` where the usual ways do not lead to one.
+pub(super) fn links<N: Real>(
+    level: Level,
+    question: &ChainQuestion<'_, N>,
+    links: &mut Links<N>,
+) -> Option<()> {
+    with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
+}
+
+#[inline(always)]
+fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &ChainQuestion<'_, N>,
+    links: &mut Links<N>,
+) -> Option<()> {
+    let solid = Outline::of::<S, V>(simd, &question.solid).filter(|solid| solid.count <= LANES)?;
+    let solid = solid.placed::<S, V>(simd, &question.pose12);
+    let solid = PolygonExtents::new::<S, V>(simd, solid);
+    for (block, tiles) in question.tiles.iter().enumerate() {
+        let eight = Eight::<V>::of(simd, tiles, question)?;
+        links.from_middle = min(links.from_middle, eight.least());
+        let axes = SegmentAxes::of(simd, &eight, &solid, question.limit);
+        let mut within = !axes.beyond & question.lanes_of(block);
+        while within != 0 {
+            let lane = (within.trailing_zeros() as usize).min(LANES - 1);
+            within &= within - 1;
+            let [a, b, _] = tiles.corners(lane);
+            let segment = Segment::of_finite(a - question.origin, b - question.origin);
+            let own = Outline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
+            let outlines = [&own, &solid.outline];
+            let found = of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
+            if found.distance <= question.limit {
+                links.found.push((block * LANES + lane, found));
+            }
+        }
+    }
+    Some(())
+}
+
+/// A polygon in the frame of the segments, and how far it reaches along its own directions.
+struct PolygonExtents<N: Real> {
+    outline: Outline<N>,
+    size: N,
+    reaches: Row<N>,
+    tips: [Row<N>; 2],
+    tip_reaches: Row<N>,
+    /// A bit for each vertex with a tip.
+    are_tips: u64,
+}
+
+impl<N: Real> PolygonExtents<N> {
+    #[inline(always)]
+    fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: Outline<N>) -> Self {
+        let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
+        let (ways, is_tip) = outline.tips::<S, V>(simd, 0);
+        for axis in 0..2 {
+            ways[axis].store(&mut tips[axis]);
+        }
+        let mut reaches = [N::ZERO; LANES];
+        for (vertex, reach) in reaches.iter_mut().enumerate().take(outline.count) {
+            *reach = outline.normal(vertex).dot(&outline.at(vertex).coords);
+        }
+        let are_tips = is_tip.to_bitmask();
+        if are_tips != 0 {
+            outline.reach(simd, &ways).store(&mut tip_reaches);
+        }
+        let size = outline.size::<S, V>(simd);
+        Self { outline, size, reaches, tips, tip_reaches, are_tips }
+    }
+}
+
+/// The best directions from segments to a polygon.
+struct SegmentAxes<N> {
+    gaps: Row<N>,
+    normals: [Row<N>; 2],
+    noise: Row<N>,
+    /// A bit for each segment that is beyond the limit.
+    beyond: u8,
+}
+
+/// The direction that leaves the largest gap so far.
+struct BestDirection<V> {
+    gap: V,
+    normal: [V; 2],
+}
+
+impl<V> BestDirection<V> {
+    /// Tries another direction; of equals the first counts.
+    #[inline(always)]
+    fn attempt<S: Simd>(&mut self, gap: V, normal: &[V; 2])
+    where
+        V: Wide<S>,
+    {
+        let is_more = gap.simd_gt(self.gap);
+        self.gap = is_more.select(gap, self.gap);
+        self.normal = either(is_more, normal, &self.normal);
+    }
+}
+
+impl<N: Real> SegmentAxes<N> {
+    #[inline(always)]
+    fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        eight: &Eight<V>,
+        solid: &PolygonExtents<N>,
+        limit: N,
+    ) -> Self {
+        let [a, b] = &eight.ends;
+        let mut best = of_segments(simd, [a, b], &eight.side, eight.squared, &solid.outline);
+        add_polygon(simd, [a, b], solid, &mut best);
+        let rounding = solid.outline.rounding;
+        let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
+        let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
+        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
+        let room = noise + V::all(simd, N::EPSILON * rounding);
+        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
+        // A lower bound: what it rejects by more than rounding is out of reach.
+        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
+        let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
+        let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
+        best.gap.store(&mut axes.gaps);
+        best.normal[0].store(&mut axes.normals[0]);
+        best.normal[1].store(&mut axes.normals[1]);
+        noise.store(&mut axes.noise);
+        axes
+    }
+
+    fn axis(&self, lane: usize) -> Axis<N> {
+        let normal = Vector::<N, 2>::new(self.normals[0][lane], self.normals[1][lane]);
+        Axis { gap: self.gaps[lane], normal }
+    }
+}
+
+/// The best of the segments' own directions: the normals to both sides and the ways out at both ends.
+#[inline(always)]
+fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    side: &[V; 2],
+    squared: V,
+    solid: &Outline<N>,
+) -> BestDirection<V> {
+    let length = squared.sqrt();
+    let front = [side[1] / length, -(side[0] / length)];
+    let back = negated(&front);
+    // As the tips of an outline with two sides.
+    let tip = [front[1] - back[1], back[0] - front[0]];
+    let tip = over(&tip, dot(&tip, &tip).sqrt());
+    let (low, high) = heights(simd, &front, solid);
+    let (first, second) = (dot(&front, a), dot(&front, b));
+    let mut best = BestDirection { gap: low - first, normal: front };
+    let (tip_low, tip_high) = heights(simd, &tip, solid);
+    let (tip_first, tip_second) = (dot(&tip, a), dot(&tip, b));
+    best.attempt(tip_low - tip_first.larger(tip_second), &tip);
+    best.attempt(second - high, &back);
+    best.attempt(tip_first.smaller(tip_second) - tip_high, &negated(&tip));
+    best
+}
+
+/// How low and how high a polygon lies along directions.
+#[inline(always)]
+fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    directions: &[V; 2],
+    solid: &Outline<N>,
+) -> (V, V) {
+    let (mut low, mut high) = (V::all(simd, N::INFINITY), V::all(simd, -N::INFINITY));
+    for vertex in 0..solid.count {
+        let at: [V; 2] = spread(simd, &solid.at(vertex).coords);
+        let along = dot(directions, &at);
+        (low, high) = (along.smaller(low), along.larger(high));
+    }
+    (low, high)
+}
+
+/// The polygon's directions, each a side's before its tip.
+#[inline(always)]
+fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    solid: &PolygonExtents<N>,
+    best: &mut BestDirection<V>,
+) {
+    for vertex in 0..solid.outline.count.min(LANES) {
+        let normal = solid.outline.normal(vertex);
+        add(simd, [a, b], [normal.x, normal.y], solid.reaches[vertex], best);
+        if solid.are_tips >> vertex & 1 == 1 {
+            let direction = [solid.tips[0][vertex], solid.tips[1][vertex]];
+            add(simd, [a, b], direction, solid.tip_reaches[vertex], best);
+        }
+    }
+}
+
+/// A direction out of the polygon, and the polygon's extent along it.
+#[inline(always)]
+fn add<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [a, b]: [&[V; 2]; 2],
+    direction: [N; 2],
+    extent: N,
+    best: &mut BestDirection<V>,
+) {
+    let direction = [V::all(simd, direction[0]), V::all(simd, direction[1])];
+    let low = dot(&direction, a).smaller(dot(&direction, b));
+    best.attempt(low - V::all(simd, extent), &negated(&direction));
+}

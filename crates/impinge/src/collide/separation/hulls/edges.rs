@@ -1,0 +1,362 @@
+//! Queries of edges: faces of the Minkowski difference where the solids overlap, nearest points where they
+//! are apart.
+
+use super::face::ReferenceFace;
+use super::polyhedral::Polyhedral;
+use super::vertices::Vertices;
+use super::{LANES, noise};
+use crate::collide::separation::segments::nearest::nearest_of_segments;
+use crate::convex::Separation;
+use crate::math::lanes::{self, LanePose, by_axis, dot, highest_lane, load, spread};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide, cross, unit};
+use crate::shape::PolytopeEdge;
+
+/// As many edges as 32 vertices may have.
+pub(super) const MAX_EDGES: usize = 90;
+
+/// An edge of the solid with the reference face, in its frame.
+pub(super) struct ReferenceEdge<N: Real> {
+    pub(super) index: usize,
+    pub(super) from: Vector<N, 3>,
+    pub(super) along: Vector<N, 3>,
+    pub(super) squared: N,
+}
+
+/// Eight edges of the other solid, in the same frame.
+pub(super) struct EdgeBlock<N: Real> {
+    pub(super) indices: [u8; LANES],
+    pub(super) from: [[N; LANES]; 3],
+    pub(super) along: [[N; LANES]; 3],
+}
+
+impl<N: Real> EdgeBlock<N> {
+    /// Up to eight edges of a solid. The rest are copies of the first.
+    #[inline(always)]
+    pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        solid: &Polyhedral<'_, N>,
+        vertices: &Vertices<N>,
+        candidates: &[u8],
+    ) -> Self {
+        let zero = [[N::ZERO; LANES]; 3];
+        let mut block = Self { indices: [0; LANES], from: zero, along: zero };
+        let mut ends = zero;
+        for lane in 0..LANES {
+            let index = candidates[if lane < candidates.len() { lane } else { 0 }];
+            block.indices[lane] = index;
+            let [from, to] = solid.ends(vertices, usize::from(index));
+            for axis in 0..3 {
+                (block.from[axis][lane], ends[axis][lane]) = (from[axis], to[axis]);
+            }
+        }
+        for (axis, ends) in ends.iter().enumerate() {
+            let along = V::load(simd, ends) - V::load(simd, &block.from[axis]);
+            along.store(&mut block.along[axis]);
+        }
+        block
+    }
+}
+
+/// The indices of some edges, ascending.
+pub(super) struct CandidateEdges {
+    indices: [u8; MAX_EDGES],
+    len: usize,
+}
+
+impl CandidateEdges {
+    #[inline(always)]
+    pub(super) fn of(edges: &[PolytopeEdge], is_candidate: impl Fn(&PolytopeEdge) -> bool) -> Self {
+        let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
+        for (index, edge) in (0_u8..).zip(edges) {
+            // Without a branch: the next edge takes the place of one that is no candidate.
+            candidates.indices[candidates.len] = index;
+            candidates.len += usize::from(is_candidate(edge));
+        }
+        candidates
+    }
+
+    /// Those that end at one of some vertices, given as bits.
+    #[inline(always)]
+    fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
+        Self::of(
+            edges,
+            #[inline(always)]
+            |edge| (vertices >> edge.vertices[0] | vertices >> edge.vertices[1]) & 1 == 1,
+        )
+    }
+
+    pub(super) fn indices(&self) -> &[u8] {
+        &self.indices[..self.len]
+    }
+}
+
+/// An edge of each solid that are a face of the Minkowski difference.
+pub(super) struct EdgeQuery<N> {
+    edges: [usize; 2],
+    /// How far the solids are apart along its normal.
+    pub(super) separation: N,
+}
+
+impl<N: Real> ReferenceFace<'_, '_, N> {
+    /// The edges of each solid that may hold the points of the answer, if these are no farther from
+    /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
+    /// other.
+    #[inline(always)]
+    fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> [CandidateEdges; 2] {
+        let slack = N::lit(4.0) * noise();
+        let (least, most) = (self.other.heights.low - reach - slack, self.offset() + reach + slack);
+        let own = self.own.heights.up_to::<S, V>(simd, -least);
+        let other = self.other.heights.up_to::<S, V>(simd, most);
+        [
+            CandidateEdges::at(self.own.solid.edges, own),
+            CandidateEdges::at(self.other.solid.edges, other),
+        ]
+    }
+
+    #[inline(always)]
+    fn edge(&self, index: u8) -> ReferenceEdge<N> {
+        let index = usize::from(index);
+        let [from, to] = self.own.solid.ends(self.own.vertices, index);
+        let along = to - from;
+        ReferenceEdge { index, from, along, squared: along.norm_squared() }
+    }
+
+    /// The outward normals of the two faces beside an edge.
+    #[inline(always)]
+    fn normals_beside(&self, edge: usize) -> [Vector<N, 3>; 2] {
+        self.own.solid.edges[edge].faces.map(|face| self.own.solid.normal(face as usize))
+    }
+
+    /// The outward normals of the two faces beside each edge of a block.
+    #[inline(always)]
+    fn normals_beside_block<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        block: &EdgeBlock<N>,
+    ) -> [[V; 3]; 2] {
+        let (solid, mut normals) = (self.other.solid, [[[N::ZERO; LANES]; 3]; 2]);
+        for (lane, &index) in block.indices.iter().enumerate() {
+            let faces = solid.edges[usize::from(index)].faces;
+            for (normals, face) in normals.iter_mut().zip(faces) {
+                let normal = solid.normal(face as usize);
+                for (row, &coordinate) in normals.iter_mut().zip(&normal) {
+                    row[lane] = coordinate;
+                }
+            }
+        }
+        let pose: LanePose<V, 3> = LanePose::of(simd, &self.pose);
+        [pose.vector(&load(simd, &normals[0])), pose.vector(&load(simd, &normals[1]))]
+    }
+
+    /// Queries the edge directions: the pair of edges that is a face of the Minkowski difference and parts
+    /// the solids most, if by more than the reference face does, and more than rounding errors.
+    #[inline(always)]
+    pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> Option<EdgeQuery<N>> {
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
+            (None, self.separation() + N::TWO * noise());
+        for eight in candidates2.indices().chunks(LANES) {
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
+            let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
+            for &index in candidates1.indices() {
+                let edge1 = self.edge(index);
+                let normals1 = self.normals_beside(edge1.index);
+                let separations =
+                    separations::<S, N, V>(simd, (&edge1, &normals1), (&edges2, &normals2));
+                let Some(separations) = separations else { continue };
+                let separation = highest_lane(separations);
+                let is_before = |best: &EdgeQuery<N>| best.edges[0] > edge1.index;
+                if separation > largest
+                    || separation == largest && best.as_ref().is_some_and(is_before)
+                {
+                    let is_largest = separations.simd_eq(V::all(simd, separation)).to_bitmask();
+                    let lane = is_largest.trailing_zeros() as usize;
+                    let edges = [edge1.index, usize::from(edges2.indices[lane])];
+                    (best, largest) = (Some(EdgeQuery { edges, separation }), separation);
+                }
+            }
+        }
+        best
+    }
+
+    /// The answer where the common perpendicular of two edges meets both, if it is proved.
+    #[inline(always)]
+    pub(super) fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        query: &EdgeQuery<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (points, across) = self.nearest_points(query.edges);
+        let (normal, _) = unit(&across)?;
+        let [normal1, normal2] = self.normals_beside(query.edges[0]);
+        let is_outward = normal.dot(&(normal1 + normal2)) > N::ZERO;
+        self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
+    }
+
+    /// The nearest points of the edges of two solids that are apart, if supporting planes prove them.
+    #[inline(always)]
+    pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+    ) -> Option<Separation<N, 3>> {
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
+        for eight in candidates2.indices().chunks(LANES) {
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
+            for &index in candidates1.indices() {
+                let edge1 = self.edge(index);
+                let squares = squared_distances::<S, N, V>(simd, &edge1, &edges2);
+                let lowest = -highest_lane(-squares);
+                let is_before = |best: [usize; 2]| best[0] > edge1.index;
+                if lowest < least || lowest == least && nearest.is_some_and(is_before) {
+                    let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
+                    let lane = is_lowest.trailing_zeros() as usize;
+                    (nearest, least) =
+                        (Some([edge1.index, usize::from(edges2.indices[lane])]), lowest);
+                }
+            }
+        }
+        let (points, across) = self.nearest_points(nearest?);
+        self.proved::<S, V>(simd, &normal_between(&points, &across)?, points)
+    }
+
+    /// The nearest points of two edges, and a vector perpendicular to both, to either side.
+    fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
+        let ends1 = self.own.solid.ends(self.own.vertices, edge1);
+        let ends2 = self.other.solid.ends(self.other.vertices, edge2);
+        nearest_points(&ends1, &ends2)
+    }
+
+    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
+    /// supporting planes.
+    #[inline(always)]
+    fn proved<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        normal: &Vector<N, 3>,
+        points: [Vector<N, 3>; 2],
+    ) -> Option<Separation<N, 3>> {
+        let low = self.other.vertices.low::<S, V>(simd, normal);
+        let high = -self.own.vertices.low::<S, V>(simd, &-normal);
+        proved(normal, low - high, points)
+    }
+}
+
+/// The nearest points of two edges, and a vector perpendicular to both, to either side.
+pub(super) fn nearest_points<N: Real>(
+    ends1: &[Vector<N, 3>; 2],
+    ends2: &[Vector<N, 3>; 2],
+) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
+    let (point1, point2) = nearest_of_segments(&ends1.map(Point::from), &ends2.map(Point::from));
+    let across = cross(&(ends1[1] - ends1[0]), &(ends2[1] - ends2[0]));
+    ([point1.coords, point2.coords], across)
+}
+
+/// The direction from the first to the second of the nearest points of two edges: their common perpendicular,
+/// which is right to the last bits however near the points are, if it leads from one to the other.
+pub(super) fn normal_between<N: Real>(
+    [from, to]: &[Vector<N, 3>; 2],
+    across: &Vector<N, 3>,
+) -> Option<Vector<N, 3>> {
+    let away = to - from;
+    let is_across = |across: &Vector<N, 3>| {
+        (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
+    };
+    match unit(across).map(|(across, _)| across).filter(is_across) {
+        Some(across) if across.dot(&away) < N::ZERO => Some(-across),
+        Some(across) => Some(across),
+        None => unit(&away).map(|(normal, _)| normal),
+    }
+}
+
+/// The answer along a unit vector with this distance of supporting planes, if two points lie along it as far
+/// apart.
+pub(super) fn proved<N: Real>(
+    normal: &Vector<N, 3>,
+    distance: N,
+    [on_own, on_other]: [Vector<N, 3>; 2],
+) -> Option<Separation<N, 3>> {
+    let off = on_other - on_own - normal * distance;
+    let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
+    let (point1, point2) = (Point::from(on_own), Point::from(on_other));
+    is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
+}
+
+/// The separations of the solids along the common perpendiculars of eight pairs of edges: of those that are a
+/// face of the Minkowski difference, of the others minus infinity; `None` if no pair is one.
+#[inline(always)]
+fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    (edge1, normals1): (&ReferenceEdge<N>, &[Vector<N, 3>; 2]),
+    (edges2, normals2): (&EdgeBlock<N>, &[[V; 3]; 2]),
+) -> Option<V> {
+    let zero = V::all(simd, N::ZERO);
+    let (along1, along2): ([V; 3], [V; 3]) =
+        (spread(simd, &edge1.along), load(simd, &edges2.along));
+    // A pair is one if the arcs between the normals beside each edge cross on the Gauss map, those of the
+    // second solid negated.
+    let left1 = dot(&along2, &spread(simd, &normals1[0])).simd_lt(zero);
+    let right1 = dot(&along2, &spread(simd, &normals1[1])).simd_lt(zero);
+    let left2 = dot(&along1, &normals2[0]).simd_lt(zero);
+    let right2 = dot(&along1, &normals2[1]).simd_lt(zero);
+    let is_face = (left1 ^ right1) & (left2 ^ right2) & (left2 ^ right1);
+    if is_face.to_bitmask() == 0 {
+        return None;
+    }
+    let across = lanes::cross(&along1, &along2);
+    let squared = dot(&across, &across);
+    let from1: [V; 3] = spread(simd, &edge1.from);
+    let away = by_axis(
+        #[inline(always)]
+        |axis| V::load(simd, &edges2.from[axis]) - from1[axis],
+    );
+    let height = dot(&across, &away) / squared.sqrt();
+    let outward = left1.select(-height, height);
+    // Parallel edges have no perpendicular, and faces that part as much.
+    let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
+    let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
+    Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))
+}
+
+/// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
+/// 5.1.9. Edges of no length count as their first ends.
+#[inline(always)]
+pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    edge1: &ReferenceEdge<N>,
+    edges2: &EdgeBlock<N>,
+) -> V {
+    let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+    let clamp = |share: V| share.larger(zero).smaller(one);
+    let (along1, along2): ([V; 3], [V; 3]) =
+        (spread(simd, &edge1.along), load(simd, &edges2.along));
+    let from1: [V; 3] = spread(simd, &edge1.from);
+    let away = by_axis(
+        #[inline(always)]
+        |axis| from1[axis] - V::load(simd, &edges2.from[axis]),
+    );
+    let least = V::all(simd, N::MIN_POSITIVE);
+    let squared1 = V::all(simd, edge1.squared).larger(least);
+    let squared2 = dot(&along2, &along2).larger(least);
+    let (both, toward1, toward2) =
+        (dot(&along1, &along2), dot(&along1, &away), dot(&along2, &away));
+    let spread = (squared1 * squared2 - both * both).larger(least);
+    let share1 = clamp((both * toward2 - toward1 * squared2) / spread);
+    let share2 = clamp((both * share1 + toward2) / squared2);
+    let share1 = clamp((both * share2 - toward1) / squared1);
+    let off: [V; 3] = by_axis(
+        #[inline(always)]
+        |axis| away[axis] + along1[axis] * share1 - along2[axis] * share2,
+    );
+    dot(&off, &off)
+}

@@ -1,0 +1,297 @@
+//! The reference face, and what of the other solid lies over it.
+
+use core::ops::ControlFlow;
+
+use super::noise;
+use super::polyhedral::Polyhedral;
+use super::vertices::{Heights, Vertices, height_above};
+use crate::collide::separation::segments::nearest::nearest_on_segment;
+use crate::convex::Separation;
+use crate::math::simd::Simd;
+use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, min};
+
+/// A solid in the frame of the one with the reference face.
+pub(super) struct LocalSolid<'s, 'a, N: Real> {
+    pub(super) solid: &'s Polyhedral<'a, N>,
+    pub(super) vertices: &'s Vertices<N>,
+    /// Of the vertices, along the normal of the face or, of its own solid, against it.
+    pub(super) heights: Heights<N>,
+}
+
+/// The face of all that the other solid lies farthest above, or least deep below.
+pub(super) struct ReferenceFace<'s, 'a, N: Real> {
+    pub(super) own: LocalSolid<'s, 'a, N>,
+    pub(super) other: LocalSolid<'s, 'a, N>,
+    /// The pose of the other solid.
+    pub(super) pose: Pose<N, 3>,
+    index: usize,
+    normal: Vector<N, 3>,
+    shrink: N,
+}
+
+/// The lowest point of the other solid along the normal of the face.
+enum LowestPoint<N: Real> {
+    /// It lies over the face, up to rounding errors.
+    Over(Vector<N, 3>),
+    /// It lies beside the face; a length that the distance of the solids, or their depth, does not exceed.
+    Beside(N),
+}
+
+impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
+    /// The face of this index of the first solid; both solids come with their vertices in its frame.
+    #[inline(always)]
+    pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        index: usize,
+        [(own, own_vertices), (other, other_vertices)]: [(&'s Polyhedral<'a, N>, &'s Vertices<N>);
+            2],
+        pose: Pose<N, 3>,
+        shrink: N,
+    ) -> Self {
+        let normal = own.normal(index);
+        let heights = own_vertices.heights::<S, V>(simd, &-normal);
+        let own = LocalSolid { solid: own, vertices: own_vertices, heights };
+        let heights = other_vertices.heights::<S, V>(simd, &normal);
+        let other = LocalSolid { solid: other, vertices: other_vertices, heights };
+        Self { own, other, pose, index, normal, shrink }
+    }
+}
+
+impl<N: Real> ReferenceFace<'_, '_, N> {
+    /// The answer; `None` if it is not proved.
+    ///
+    /// Edges are queried twice: first those near the plane, which mostly decide and are few, then all
+    /// within reach. No closures: those are not inlined into vector code.
+    #[inline(always)]
+    pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+    ) -> Option<Separation<N, 3>> {
+        let separation = self.separation();
+        let (over, reaches) = match self.lowest_point(self.lowest_vertices::<S, V>(simd)) {
+            LowestPoint::Over(point) if separation > N::ZERO => return Some(self.at(&point)),
+            LowestPoint::Over(point) => (Some(self.at(&point)), [-separation; 2]),
+            LowestPoint::Beside(reach) if separation > N::ZERO => {
+                (None, [min(separation * N::TWO + N::lit(1.0 / 16.0), reach), reach])
+            }
+            LowestPoint::Beside(reach) => (None, [-separation, max(reach, -separation)]),
+        };
+        for reach in reaches {
+            let is_last = reach >= reaches[1];
+            if let ControlFlow::Break(found) = self.within::<S, V>(simd, reach, is_last, over) {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// The answer by edges within a reach, unless more of them may have a better one.
+    #[inline(always)]
+    fn within<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        reach: N,
+        is_last: bool,
+        over: Option<Separation<N, 3>>,
+    ) -> ControlFlow<Option<Separation<N, 3>>> {
+        let mut are_apart = self.separation() > N::ZERO;
+        if !are_apart {
+            let Some(query) = self.query_edges::<S, V>(simd, reach) else {
+                return if over.is_some() {
+                    ControlFlow::Break(over)
+                } else if is_last {
+                    ControlFlow::Break(self.nearly_over::<S, V>(simd))
+                } else {
+                    ControlFlow::Continue(())
+                };
+            };
+            let found = self.edge_contact::<S, V>(simd, &query);
+            if let Some(found) = found
+                && (is_last || self.is_certain::<S, V>(simd, &found))
+            {
+                return ControlFlow::Break(Some(found));
+            }
+            are_apart = found.is_none() && query.separation > N::ZERO;
+        }
+        let found = if are_apart { self.nearest_edges::<S, V>(simd, reach) } else { None };
+        let is_decided = found.is_some() || is_last;
+        if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Whether an answer of edges is one whatever other edges there are: the solids are apart, or
+    /// have a point in common, so that none farther from the plane than the way out along the normal of
+    /// the face can be better.
+    #[inline(always)]
+    fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        found: &Separation<N, 3>,
+    ) -> bool {
+        let middle = (found.point1.coords + found.point2.coords) * N::HALF;
+        found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle)
+    }
+
+    /// Whether both solids contain a point, up to rounding errors.
+    #[inline(always)]
+    fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
+        let in_other = self.pose.rotation.tr_mul(&(point - self.pose.translation));
+        let (own, other) = (self.own.solid.planes, self.other.solid.planes);
+        height_above::<S, N, V>(simd, own, self.shrink, point) <= noise()
+            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
+    }
+
+    /// How far the other solid lies above the plane of the face.
+    pub(super) fn separation(&self) -> N {
+        self.other.heights.low - self.offset()
+    }
+
+    /// How far along its normal the face lies.
+    pub(super) fn offset(&self) -> N {
+        self.own.solid.offset(self.index) * self.shrink
+    }
+
+    /// The answer with a point of the other solid that lies over the face.
+    fn at(&self, point: &Vector<N, 3>) -> Separation<N, 3> {
+        let distance = self.separation();
+        let (point1, point2) = (Point::from(point - self.normal * distance), Point::from(*point));
+        Separation { distance, normal: self.normal, point1, point2 }
+    }
+
+    /// The first of the lowest vertices that lies over the face, or, of edges and faces that are lowest,
+    /// some point that does.
+    fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
+        let (mut reach, mut rest) = (N::INFINITY, lowest);
+        while rest != 0 {
+            let point = self.other.vertices.at(rest.trailing_zeros() as usize);
+            match self.distance_beside(&point) {
+                None => return LowestPoint::Over(point),
+                Some(beside) => reach = min(beside, reach),
+            }
+            rest &= rest - 1;
+        }
+        let among = if lowest.count_ones() > 1 { self.point_among(lowest) } else { None };
+        among.map_or(LowestPoint::Beside(reach), LowestPoint::Over)
+    }
+
+    /// The vertices of the other solid that are lowest, up to rounding errors, as bits.
+    #[inline(always)]
+    fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
+        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
+    }
+
+    /// The answer where no edges are better than the face by more than rounding errors, though the lowest
+    /// vertex lies beside it: the solids are almost coplanar there, and an edge that is as low but for
+    /// rounding errors has a part over the face.
+    #[inline(always)]
+    fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
+        let most = self.other.heights.low + N::lit(3.0) * noise();
+        let low = self.other.heights.up_to::<S, V>(simd, most);
+        let is_low = |vertex: u32| low >> vertex & 1 == 1;
+        for edge in self.other.solid.edges {
+            let [from, to] = edge.vertices;
+            if !is_low(from) && !is_low(to) {
+                continue;
+            }
+            let ends = if is_low(from) { [from, to] } else { [to, from] };
+            let [from, to] = ends.map(|vertex| self.other.vertices.at(vertex as usize));
+            let Some((share, _)) = self.span([from, to]) else { continue };
+            let point = from + (to - from) * share;
+            if self.normal.dot(&point) <= most {
+                return Some(self.at(&point));
+            }
+        }
+        None
+    }
+
+    /// The ends of the sides of the face, and the inward normals of its side planes, as long as the sides. The
+    /// side of a triangle, which runs forth and back, also has planes across its ends.
+    fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
+        let ring = self.own.solid.ring(self.index);
+        let at = |vertex: u32| self.own.vertices.at(vertex as usize);
+        let mut from = at(ring[ring.len() - 1]);
+        let around = ring.iter().map(move |&vertex| {
+            let to = at(vertex);
+            let ends = [core::mem::replace(&mut from, to), to];
+            (ends, cross(&self.normal, &(ends[1] - ends[0])))
+        });
+        let caps = if ring.len() == 2 { [[0, 1], [1, 0]].as_slice() } else { &[] };
+        let across = caps.iter().map(move |&[end, other]| {
+            let end = at(ring[end]);
+            ([end; 2], at(ring[other]) - end)
+        });
+        around.chain(across)
+    }
+
+    /// The distance from the face of a point that does not lie over it; `None` of one that does, up
+    /// to rounding errors.
+    fn distance_beside(&self, point: &Vector<N, 3>) -> Option<N> {
+        let mut least: Option<N> = None;
+        for (ends, inward) in self.sides() {
+            let inside = inward.dot(&(point - ends[0]));
+            let is_beside = inside < N::ZERO
+                && inside * inside > noise::<N>() * noise() * inward.norm_squared();
+            if is_beside {
+                let nearest = nearest_on_segment(&ends.map(Point::from), &Point::from(*point)).0;
+                let squared = (point - nearest.coords).norm_squared();
+                least = Some(least.map_or(squared, |least| min(squared, least)));
+            }
+        }
+        least.map(N::sqrt)
+    }
+
+    /// A point of the edges between some vertices that lies over the face; or, of the faces between
+    /// them, over a corner of the face.
+    fn point_among(&self, lowest: u32) -> Option<Vector<N, 3>> {
+        let solid = self.other.solid;
+        let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
+        let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
+        let mut crossing = edges.filter_map(|edge| {
+            self.clipped(edge.vertices.map(|vertex| self.other.vertices.at(vertex as usize)))
+        });
+        if let Some(point) = crossing.next() {
+            return Some(point);
+        }
+        let corner = self.own.vertices.at(self.own.solid.ring(self.index)[0] as usize);
+        // The side of a triangle covers nothing.
+        let has_area = |face: &usize| solid.ring(*face).len() > 2;
+        let is_low = |face: &usize| solid.ring(*face).iter().all(is_lowest);
+        let mut faces = (0..solid.faces()).filter(has_area).filter(is_low);
+        faces
+            .any(|face| self.is_under(face, &corner))
+            .then(|| corner + self.normal * self.separation())
+    }
+
+    /// The middle of the part of an edge that lies over the face.
+    fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
+        let (from, to) = self.span([a, b])?;
+        Some(a + (b - a) * ((from + to) * N::HALF))
+    }
+
+    /// Where the part of an edge that lies over the face begins and ends, as shares of the edge.
+    fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
+        let (mut from, mut to) = (N::ZERO, N::ONE);
+        for (ends, inward) in self.sides() {
+            let [inside1, inside2] = [a, b].map(|end| inward.dot(&(end - ends[0])));
+            if inside1 < N::ZERO && inside2 < N::ZERO {
+                return None;
+            }
+            if (inside1 < N::ZERO) != (inside2 < N::ZERO) {
+                let at = inside1 / (inside1 - inside2);
+                (from, to) =
+                    if inside1 < N::ZERO { (max(at, from), to) } else { (from, min(at, to)) };
+            }
+        }
+        (from <= to).then_some((from, to))
+    }
+
+    /// Whether a face of the other solid that is coplanar lies over a point.
+    fn is_under(&self, face: usize, point: &Vector<N, 3>) -> bool {
+        let ring = self.other.solid.ring(face);
+        let at = |corner: usize| self.other.vertices.at(ring[corner % ring.len()] as usize);
+        // It faces the other way, so it runs clockwise about the normal.
+        (0..ring.len()).all(|corner| {
+            let (from, to) = (at(corner), at(corner + 1));
+            cross(&self.normal, &(to - from)).dot(&(point - from)) <= N::ZERO
+        })
+    }
+}

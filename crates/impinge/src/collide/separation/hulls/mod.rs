@@ -1,0 +1,154 @@
+//! The separating axis test between two convex polyhedra of few parts: triangles, boxes and hulls, and segments
+//! against triangles and hulls ([`segment`]).
+//!
+//! That of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013), with vertices,
+//! planes and edges in lanes of eight:
+//!
+//! 1. The faces of both solids are queried for the one that the other solid lies farthest above, the
+//!    reference face ([`vertices`]).
+//! 2. If the lowest vertex of the other solid lies over that face, it is the answer ([`face`]).
+//! 3. Else edges are queried ([`edges`]), only those with an end near enough to the plane of the reference
+//!    face: of solids that overlap the pairs of edges that are a face of the Minkowski difference, found by
+//!    their arcs on the Gauss map; of solids that are apart the nearest points of edges.
+//!
+//! An answer is accepted only if it is proved: its two points lie as far apart as a pair of supporting
+//! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no state: the
+//! answer depends on the pair alone.
+
+mod edges;
+mod face;
+mod polyhedral;
+pub(super) mod segment;
+#[cfg(test)]
+pub(crate) mod tests;
+mod vertices;
+
+use self::face::ReferenceFace;
+pub(super) use self::polyhedral::{LocalFeatures, Polyhedral, THIN};
+use self::vertices::Vertices;
+use super::general;
+use crate::collide::Pair;
+use crate::convex::{Separation, Units};
+use crate::math::lanes::with_lanes;
+use crate::math::simd::{Level, Simd};
+use crate::math::{Pose, Real, Wide};
+
+/// How many vertices, faces or edges are treated at once.
+const LANES: usize = 8;
+/// Blocks for 32 vertices, and for the 60 faces that as many vertices may have.
+const BLOCKS: usize = 4;
+pub(super) const PLANE_BLOCKS: usize = 8;
+
+/// The separation of two solids with flat faces: triangles, boxes and convex hulls.
+///
+/// Of equal faces those of the first solid come before those of the second, in their order, and all
+/// before edges; of equal pairs of edges that of the lower indices counts. Cost: the product of the
+/// numbers of vertices and faces, by eights; thin triangles, flat boxes and larger hulls fall back to the
+/// general algorithm.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    match result(Level::new(), pair, limit) {
+        SatResult::Beyond => None,
+        SatResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        SatResult::Unproved => general::of_flat_cores(pair, limit),
+    }
+}
+
+/// The result of the test for a pair.
+fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
+    let features = [LocalFeatures::of(pair.first), LocalFeatures::of(pair.second)];
+    let first = Polyhedral::of(pair.first, features[0].as_ref());
+    let second = Polyhedral::of(pair.second, features[1].as_ref());
+    match (&first, &second) {
+        (Some(first), Some(second))
+            if first.has_width(second.reach) && second.has_width(first.reach) =>
+        {
+            sat(level, [first, second], &pair.pose12, limit)
+        }
+        _ => SatResult::Unproved,
+    }
+}
+
+/// The result of the test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum SatResult<N: Real> {
+    /// The solids are farther apart than the limit.
+    Beyond,
+    Found(Separation<N, 3>),
+    /// No answer is proved.
+    Unproved,
+}
+
+/// What arithmetic cannot resolve, in units of the pair.
+pub(super) fn noise<N: Real>() -> N {
+    N::lit(8.0) * N::EPSILON
+}
+
+/// What a lower bound has to exceed to be out of reach, in units of the pair: a limit of the caller's, and
+/// rounding.
+pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
+    let limit = limit * units.shrink;
+    limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs())
+}
+
+/// The test with the vectors of an instruction set; the result does not depend on it.
+fn sat<N: Real>(
+    level: Level,
+    solids: [&Polyhedral<'_, N>; 2],
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> SatResult<N> {
+    if !pose12.is_finite() {
+        return SatResult::Beyond;
+    }
+    with_lanes!(level, simd => sat_in_lanes::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
+}
+
+#[inline(always)]
+fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [first, second]: [&Polyhedral<'_, N>; 2],
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> SatResult<N> {
+    let units = Units::of(first.reach, second.reach, &pose12.translation);
+    let (shrink, beyond) = (units.shrink, out_of_reach(&units, limit));
+    let in_first = Pose { rotation: pose12.rotation, translation: pose12.translation * shrink };
+    let in_second = in_first.inverse();
+    let own1 = Vertices::in_own_frame::<S, V>(simd, first, shrink);
+    let own2 = Vertices::in_own_frame::<S, V>(simd, second, shrink);
+    let placed2 = own2.placed::<S, V>(simd, &in_first);
+    let face1 = placed2.query_faces::<S, V>(simd, first.planes, shrink);
+    if face1.separation > beyond {
+        return SatResult::Beyond;
+    }
+    let placed1 = own1.placed::<S, V>(simd, &in_second);
+    let face2 = placed1.query_faces::<S, V>(simd, second.planes, shrink);
+    if face2.separation > beyond {
+        return SatResult::Beyond;
+    }
+    // The other solid is placed in the frame of the one with the reference face.
+    let is_second = face2.separation > face1.separation + noise();
+    let (index, solids, pose) = if is_second {
+        (face2.index, [(second, &own2), (first, &placed1)], in_second)
+    } else {
+        (face1.index, [(first, &own1), (second, &placed2)], in_first)
+    };
+    let reference = ReferenceFace::new::<S, V>(simd, index, solids, pose, shrink);
+    let Some(found) = reference.resolve::<S, V>(simd) else { return SatResult::Unproved };
+    let found = found.scaled(units.scale);
+    SatResult::Found(if is_second { in_first_frame(&found, pose12) } else { found })
+}
+
+/// An answer found in the frame of the second solid, in that of the first, at which it lies at
+/// `pose12`.
+pub(super) fn in_first_frame<N: Real>(
+    found: &Separation<N, 3>,
+    pose12: &Pose<N, 3>,
+) -> Separation<N, 3> {
+    Separation {
+        distance: found.distance,
+        normal: -pose12.vector(&found.normal),
+        point1: pose12.point(&found.point2),
+        point2: pose12.point(&found.point1),
+    }
+}

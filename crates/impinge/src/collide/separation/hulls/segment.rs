@@ -1,0 +1,319 @@
+//! Segments and capsules against triangles and hulls: the separating axis test of a polyhedron of two vertices
+//! and one edge.
+//!
+//! A segment has no faces, so the reference face is always the solid's. Over it the lower end is the answer. If
+//! that lies beside it, edges decide: where the two overlap those between a face that the segment climbs over
+//! and one that it does not, which with the segment are the faces of the Minkowski difference; where they are
+//! apart the nearest of the edges of faces that some point of the segment lies above.
+
+use super::super::general;
+use super::super::segments::nearest::core;
+use super::edges::{
+    CandidateEdges, EdgeBlock, ReferenceEdge, nearest_points, normal_between, proved,
+    squared_distances,
+};
+use super::vertices::Vertices;
+use super::{LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, noise, out_of_reach};
+use crate::collide::Pair;
+use crate::convex::{Separation, Units};
+use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, max_component, min};
+
+/// The separation of a segment or capsule from a triangle or a convex hull.
+///
+/// Cost: linear in the numbers of faces and edges, by eights. Thin triangles, large hulls and what is not
+/// proved fall back to the general algorithm.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let (_, radius) = core(pair, &pair.first);
+    match result(Level::new(), pair, limit + radius) {
+        SatResult::Beyond => None,
+        SatResult::Found(found) => {
+            Some(found.rounded(radius, N::ZERO)).filter(|found| found.distance <= limit)
+        }
+        SatResult::Unproved => general::of_flat_cores(pair, limit),
+    }
+}
+
+/// The result of the test for the cores of a pair.
+pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
+    let (ends, _) = core(pair, &pair.first);
+    let features = LocalFeatures::of(pair.second);
+    Polyhedral::of(pair.second, features.as_ref())
+        .filter(|solid| solid.faces() > 3)
+        .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
+}
+
+/// The test with the vectors of an instruction set; the result does not depend on it.
+fn sat<N: Real>(
+    level: Level,
+    ends: &[Point<N, 3>; 2],
+    solid: &Polyhedral<'_, N>,
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> SatResult<N> {
+    let reach = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
+    let units = Units::of(reach, solid.reach, &pose12.translation);
+    if !(pose12.is_finite() && units.scale.is_finite_number()) {
+        return SatResult::Unproved;
+    }
+    let place = |end: &Point<N, 3>| {
+        pose12.rotation.tr_mul(&((end.coords - pose12.translation) * units.shrink))
+    };
+    let query = SegmentQuery {
+        solid,
+        ends: [place(&ends[0]), place(&ends[1])],
+        // From the ends as given, which loses nothing to the way between the origins.
+        along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
+        shrink: units.shrink,
+    };
+    let beyond = out_of_reach(&units, limit);
+    let result = with_lanes!(level, simd => query.sat_in_lanes::<_, N::Lanes<_>>(simd, beyond));
+    match result {
+        SatResult::Found(found) => {
+            SatResult::Found(in_first_frame(&found.scaled(units.scale), pose12))
+        }
+        other => other,
+    }
+}
+
+/// A segment in the frame of a solid, in units of the pair. Answers are from the solid to the segment.
+struct SegmentQuery<'a, N: Real> {
+    solid: &'a Polyhedral<'a, N>,
+    ends: [Vector<N, 3>; 2],
+    /// From the first end to the second.
+    along: Vector<N, 3>,
+    shrink: N,
+}
+
+/// The segment and the planes of all faces.
+struct FaceHeights<N> {
+    /// The face that the segment is highest above, the first of equals, and how high.
+    index: usize,
+    separation: N,
+    /// A bit for each face: the second end is higher above its plane than the first.
+    climbed: u64,
+    /// A bit for each face: some point of the segment is above its plane.
+    visible: u64,
+}
+
+impl<N: Real> SegmentQuery<'_, N> {
+    #[inline(always)]
+    fn sat_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, beyond: N) -> SatResult<N> {
+        let faces = self.query_faces::<S, V>(simd);
+        if faces.separation > beyond {
+            return SatResult::Beyond;
+        }
+        let vertices = Vertices::in_own_frame::<S, V>(simd, self.solid, self.shrink);
+        let found = if faces.separation > N::ZERO {
+            match self.over_face(&vertices, &faces) {
+                Some(found) => Some(found),
+                None => self.nearest_edge::<S, V>(simd, &vertices, &faces),
+            }
+        } else {
+            match self.query_edges::<S, V>(simd, &vertices, &faces) {
+                None => self.over_face(&vertices, &faces),
+                Some((_, separation)) if separation > N::ZERO => {
+                    self.nearest_edge::<S, V>(simd, &vertices, &faces)
+                }
+                Some((edge, _)) => self.edge_contact::<S, V>(simd, &vertices, edge, &faces),
+            }
+        };
+        found.map_or(SatResult::Unproved, SatResult::Found)
+    }
+
+    /// Queries the face directions.
+    #[inline(always)]
+    fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> FaceHeights<N> {
+        let [a, b]: [[V; 3]; 2] = [spread(simd, &self.ends[0]), spread(simd, &self.ends[1])];
+        let (shrink, zero) = (V::all(simd, self.shrink), V::all(simd, N::ZERO));
+        let mut faces = FaceHeights { index: 0, separation: -N::INFINITY, climbed: 0, visible: 0 };
+        for (number, block) in self.solid.planes.iter().enumerate() {
+            let normals: [V; 3] = load(simd, &block.normals);
+            let offsets = V::load(simd, &block.offsets) * shrink;
+            let (high1, high2) = (dot(&normals, &a) - offsets, dot(&normals, &b) - offsets);
+            let low = high1.smaller(high2);
+            faces.climbed |= high2.simd_gt(high1).to_bitmask() << (number * LANES);
+            faces.visible |= high1.larger(high2).simd_gt(zero).to_bitmask() << (number * LANES);
+            let highest = highest_lane(low);
+            if highest > faces.separation {
+                let is_highest = low.simd_eq(V::all(simd, highest)).to_bitmask();
+                faces.index = number * LANES + is_highest.trailing_zeros() as usize;
+                faces.separation = highest;
+            }
+        }
+        faces
+    }
+
+    /// The point at a share of the way, measured from the nearer end.
+    fn at(&self, share: N) -> Vector<N, 3> {
+        if share <= N::HALF {
+            self.ends[0] + self.along * share
+        } else {
+            self.ends[1] - self.along * (N::ONE - share)
+        }
+    }
+
+    /// The answer along the normal of the highest face, if the lower end lies over it; of a segment along it
+    /// the middle of what lies over it.
+    fn over_face(
+        &self,
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let normal = self.solid.normal(faces.index);
+        let (first, last) = self.span(vertices, faces.index, &normal)?;
+        let climb = self.along.dot(&normal);
+        let point = if climb.abs() <= noise() {
+            self.at((first + last) * N::HALF)
+        } else if climb > N::ZERO && first <= N::ZERO {
+            self.ends[0]
+        } else if climb < N::ZERO && last >= N::ONE {
+            self.ends[1]
+        } else {
+            return None;
+        };
+        let distance = faces.separation;
+        let (point1, point2) = (Point::from(point - normal * distance), Point::from(point));
+        Some(Separation { distance, normal, point1, point2 })
+    }
+
+    /// Where the part of the segment that lies over a face begins and ends, as shares of the whole; `None` of a
+    /// face without an area, which nothing bounds along its length.
+    fn span(&self, vertices: &Vertices<N>, face: usize, normal: &Vector<N, 3>) -> Option<(N, N)> {
+        let ring = self.solid.ring(face);
+        let (mut first, mut last) = (N::ZERO, N::ONE);
+        let mut from = vertices.at(ring[ring.len() - 1] as usize);
+        for &vertex in ring {
+            let to = vertices.at(vertex as usize);
+            let side = to - from;
+            if ring.len() < 3 || side.norm_squared() <= noise::<N>() * noise() {
+                return None;
+            }
+            let inward = cross(normal, &side);
+            let [a, b] = self.ends.map(|end| inward.dot(&(end - from)));
+            from = to;
+            if a < N::ZERO && b < N::ZERO {
+                return None;
+            }
+            if a < N::ZERO {
+                first = max(first, a / (a - b));
+            } else if b < N::ZERO {
+                last = min(last, a / (a - b));
+            }
+        }
+        (first <= last).then_some((first, last))
+    }
+
+    /// Queries the edge directions: the edge that with the segment is a face of the Minkowski difference and
+    /// parts the two most, if by more than the reference face does, and more than rounding errors; and by
+    /// how much.
+    #[inline(always)]
+    fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<(usize, N)> {
+        let (edges, climbed) = (self.solid.edges, faces.climbed);
+        let candidates = CandidateEdges::of(
+            edges,
+            #[inline(always)]
+            |edge| (climbed >> edge.faces[0] ^ climbed >> edge.faces[1]) & 1 == 1,
+        );
+        let (along, end): ([V; 3], [V; 3]) =
+            (spread(simd, &self.along), spread(simd, &self.ends[0]));
+        let tiny = V::all(simd, noise::<N>() * noise());
+        let (mut best, mut largest) = (None, faces.separation + N::TWO * noise());
+        for eight in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+            let outward = block.indices.map(|index| self.outward(usize::from(index), climbed));
+            let across = lanes::cross(&load(simd, &block.along), &along);
+            let squared = dot(&across, &across);
+            let away: [V; 3] = by_axis(
+                #[inline(always)]
+                |axis| end[axis] - V::load(simd, &block.from[axis]),
+            );
+            let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
+            // Parallel edges have no perpendicular, and faces that part as much.
+            let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
+            let highest = highest_lane(separations);
+            if highest > largest {
+                let is_largest = separations.simd_eq(V::all(simd, highest)).to_bitmask();
+                let lane = is_largest.trailing_zeros() as usize;
+                (best, largest) = (Some(usize::from(block.indices[lane])), highest);
+            }
+        }
+        best.map(|edge| (edge, largest))
+    }
+
+    /// One if the product of an edge and the segment leads out of the solid, else minus one: the edge runs
+    /// around its first face, so the product leads out if the segment climbs over that.
+    fn outward(&self, edge: usize, climbed: u64) -> N {
+        let [first, _] = self.solid.edges[edge].faces;
+        if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
+    }
+
+    /// The answer where the common perpendicular of an edge and the segment meets both, if it is proved.
+    #[inline(always)]
+    fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        edge: usize,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (points, across) = nearest_points(&self.solid.ends(vertices, edge), &self.ends);
+        let normal = across * (self.outward(edge, faces.climbed) / across.norm());
+        self.proved::<S, V>(simd, vertices, &normal, points)
+    }
+
+    /// The nearest points of an edge and the segment, if supporting planes prove them.
+    #[inline(always)]
+    fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        faces: &FaceHeights<N>,
+    ) -> Option<Separation<N, 3>> {
+        let (edges, visible) = (self.solid.edges, faces.visible);
+        let candidates = CandidateEdges::of(
+            edges,
+            #[inline(always)]
+            |edge| (visible >> edge.faces[0] | visible >> edge.faces[1]) & 1 == 1,
+        );
+        let (from, along) = (self.ends[0], self.along);
+        let segment = ReferenceEdge { index: 0, from, along, squared: along.norm_squared() };
+        let (mut nearest, mut least) = (None, N::INFINITY);
+        for eight in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+            let squares = squared_distances::<S, N, V>(simd, &segment, &block);
+            let lowest = -highest_lane(-squares);
+            if lowest < least {
+                let is_lowest = squares.simd_eq(V::all(simd, lowest)).to_bitmask();
+                let lane = is_lowest.trailing_zeros() as usize;
+                (nearest, least) = (Some(usize::from(block.indices[lane])), lowest);
+            }
+        }
+        let (points, across) = nearest_points(&self.solid.ends(vertices, nearest?), &self.ends);
+        self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
+    }
+
+    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
+    /// supporting planes.
+    #[inline(always)]
+    fn proved<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        vertices: &Vertices<N>,
+        normal: &Vector<N, 3>,
+        points: [Vector<N, 3>; 2],
+    ) -> Option<Separation<N, 3>> {
+        let low = min(normal.dot(&self.ends[0]), normal.dot(&self.ends[1]));
+        let high = -vertices.low::<S, V>(simd, &-normal);
+        proved(normal, low - high, points)
+    }
+}

@@ -1,0 +1,420 @@
+//! The distance of two solids, of which an overlap need not be measured.
+
+use super::balls::{
+    ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
+    ball_triangle, ball_triangle2,
+};
+use super::flat_core::FlatCore;
+use super::projection::center_in_second;
+use super::segments::segment_segment;
+use super::{general, plane_any, revolved};
+use crate::collide::Pair;
+use crate::convex::{self, Simplicial};
+use crate::math::{Point, Real, Space};
+use crate::shape::{Geometry, Kind};
+
+/// Solids with separating axes are searched for an overlap where the way out along the line of their middles
+/// is longer than this, in units of the pair: axes tell as soon that they are apart.
+const DEEP: f64 = 1.0 / 8.0;
+
+/// How the separation of a pair is found.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum DistanceMethod {
+    /// Nothing is saved if the depth is not asked for.
+    Formula,
+    /// By formulas for features; depths take longer than the proof that there is one.
+    Features,
+    /// The same by separating axes.
+    Axes,
+    /// By formulas for features; what these leave is left to an algorithm that can do without depths.
+    Revolved,
+    /// By the general algorithm.
+    Search,
+}
+
+/// The signed distance of two solids of space, at most `limit`; where they overlap any number that is not
+/// positive, so that clear overlaps need not be measured. Else it is that of the separation, to the bit; so
+/// pairs that are not in the order of kinds are left to that, which turns them round.
+pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    if let Some(known) = known_in_space(pair) {
+        return (known <= limit).then_some(known);
+    }
+    let way = way_in_space(pair);
+    if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
+        return revolved::distance(pair, limit);
+    }
+    distance(pair, limit, way)
+}
+
+/// [`distance_in_space`], in 2D.
+pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+    if let Some(known) = known(pair, beside_ball_in_plane) {
+        return (known <= limit).then_some(known);
+    }
+    distance(pair, limit, way_in_plane(pair))
+}
+
+/// The signed distance where the formula for it is a part of that for the separation.
+fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
+    use Kind::{Capsule, Segment};
+    match (pair.first, pair.second) {
+        (Segment(_), Segment(_) | Capsule(_)) | (Capsule(_), Capsule(_)) => {
+            Some(segment_segment::distance(pair))
+        }
+        _ => known(pair, beside_ball_in_space),
+    }
+}
+
+/// [`known_in_space`], of what is the same in any dimension; of balls it follows from how a solid is seen from
+/// their middle.
+#[inline(always)]
+fn known<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    beside_ball: fn(N, Kind<'_, N, D>, &Point<N, D>) -> Option<N>,
+) -> Option<N> {
+    match (pair.first, pair.second) {
+        (Kind::Ball(ball1), Kind::Ball(ball2)) => {
+            let radii = [ball1.radius(), ball2.radius()];
+            Some(ball_ball::distance(&pair.pose12.translation, radii))
+        }
+        (solid, Kind::Plane(plane)) => plane_any::distance(solid, plane, &pair.pose12),
+        (Kind::Ball(ball), other) => {
+            beside_ball(ball.radius(), other, &center_in_second(&pair.pose12))
+        }
+        _ => None,
+    }
+}
+
+/// The distance of a ball around a point from a solid of space, in the frame of that: the projection of the
+/// point without its direction, taken off in the order of the separation.
+fn beside_ball_in_space<N: Real>(
+    radius: N,
+    kind: Kind<'_, N, 3>,
+    center: &Point<N, 3>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
+        Kind::Polytope(hull) => ball_polytope::project(hull, center).distance,
+        Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, center).distance,
+        Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
+        Kind::Rounded(solid) => {
+            let core = beside_ball_in_space(radius, solid.inner().0, center)?;
+            return Some(core - solid.radius());
+        }
+        other => return beside_ball(radius, other, center),
+    };
+    Some(apart - radius)
+}
+
+/// [`beside_ball_in_space`], in 2D.
+fn beside_ball_in_plane<N: Real>(
+    radius: N,
+    kind: Kind<'_, N, 2>,
+    center: &Point<N, 2>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
+        Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
+        Kind::Rounded(solid) => {
+            let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
+            return Some(core - solid.radius());
+        }
+        other => return beside_ball(radius, other, center),
+    };
+    Some(apart - radius)
+}
+
+/// What is the same in any dimension.
+#[inline]
+fn beside_ball<N: Real, const D: usize>(
+    radius: N,
+    kind: Kind<'_, N, D>,
+    center: &Point<N, D>,
+) -> Option<N> {
+    let apart = match kind {
+        Kind::Segment(segment) => ball_segment::distance_from(segment, center),
+        Kind::Capsule(capsule) => {
+            ball_segment::distance_from(capsule.segment(), center) - capsule.radius()
+        }
+        Kind::Cuboid(cuboid) => ball_cuboid::project(cuboid.half_extents(), center).distance,
+        _ => return None,
+    };
+    Some(apart - radius)
+}
+
+fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+    way: DistanceMethod,
+) -> Option<N> {
+    if is_plain(pair, limit) {
+        if way == DistanceMethod::Search && are_bare(pair) {
+            return general::distance(pair, limit);
+        }
+        if way != DistanceMethod::Formula && certainly_overlap(pair, way) {
+            return Some(N::ZERO);
+        }
+    }
+    super::separation(pair, limit).map(|found| found.distance)
+}
+
+/// Overlaps need not be measured, and the solids are in the order of kinds.
+fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
+    limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
+}
+
+/// None of the solids is a rounded one.
+fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
+    let is_rounded = |kind| matches!(kind, Kind::Rounded(_));
+    !is_rounded(pair.first) && !is_rounded(pair.second)
+}
+
+/// Whether two solids certainly overlap, clearly more than rounding decides. `false` says nothing. Of rounded
+/// solids the cores need not overlap.
+///
+/// Costs a few support points of each solid; where they are apart these are for nothing.
+fn certainly_overlap<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    way: DistanceMethod,
+) -> bool {
+    let least = if way == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
+    if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
+        return convex::overlap(&map1, &map2, &pair.pose12, least);
+    }
+    let (first, second) = (Geometry(pair.first), Geometry(pair.second));
+    match (first.as_support_map(), second.as_support_map()) {
+        (Some(map1), Some(map2)) => convex::overlap(map1, map2, &pair.pose12, least),
+        _ => false,
+    }
+}
+
+/// What is rounded; a solid that is not is itself.
+fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
+    if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
+}
+
+/// Of the kinds in their order: see the table of space.
+fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
+    use Kind::{
+        Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
+    };
+    match (inner(pair.first), inner(pair.second)) {
+        (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
+            DistanceMethod::Formula
+        }
+        (
+            Segment(_) | Capsule(_),
+            Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
+        ) => DistanceMethod::Formula,
+        (Cuboid(_), Cuboid(_)) => DistanceMethod::Formula,
+        (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => {
+            DistanceMethod::Axes
+        }
+        (Cylinder(..), Cylinder(..)) => DistanceMethod::Features,
+        (
+            Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
+            Cylinder(..) | Cone(..),
+        )
+        | (Cylinder(..) | Cone(..), Cone(..)) => DistanceMethod::Revolved,
+        _ => DistanceMethod::Search,
+    }
+}
+
+/// Of the kinds in their order: see the table of the plane.
+fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
+    use Kind::{Ball, Composite, Plane};
+    let (first, second) = (inner(pair.first), inner(pair.second));
+    match (first, second) {
+        (Ball(_), _) | (_, Ball(_) | Plane(_) | Composite(_)) | (Plane(_) | Composite(_), _) => {
+            DistanceMethod::Formula
+        }
+        _ if FlatCore::of(first).is_some() && FlatCore::of(second).is_some() => {
+            DistanceMethod::Formula
+        }
+        _ => DistanceMethod::Search,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::separation::hulls::tests::Random;
+    use crate::collide::separation::separation;
+    use crate::math::na::{Quaternion, UnitQuaternion};
+    use crate::math::{Point, Pose, Space, Vector};
+    use crate::shape::{
+        Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid, Plane,
+        Rounded, Segment, Shape, Triangle,
+    };
+
+    /// How many of the poses were found to overlap, of how many that do; all of these must do.
+    fn found<N: Simplicial<D> + Space<D>, const D: usize>(
+        solids: &[Box<dyn Shape<N, D>>],
+        poses: &[Pose<N, D>],
+        way: fn(&Pair<'_, N, D>) -> DistanceMethod,
+    ) -> (usize, usize) {
+        let (mut found, mut overlapping) = (0, 0);
+        for (first, second) in solids.iter().flat_map(|a| solids.iter().map(move |b| (a, b))) {
+            for &pose12 in poses {
+                let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
+                let depth = separation(&pair, N::INFINITY).expect("finite").distance;
+                let is_deep = depth < N::ZERO;
+                let is_searched = way(&pair) != DistanceMethod::Formula;
+                let is_found = is_searched && certainly_overlap(&pair, DistanceMethod::Features);
+                assert!(is_deep || !is_found, "they are apart at {pose12:?}");
+                let known = distance(&pair, N::INFINITY, way(&pair)).expect("finite");
+                if depth > N::ZERO {
+                    assert_eq!(known, depth, "the same where they are apart at {pose12:?}");
+                } else {
+                    assert!(known <= N::ZERO, "they touch at {pose12:?}");
+                }
+                overlapping += usize::from(is_deep && is_searched);
+                found += usize::from(is_found);
+            }
+        }
+        (found, overlapping)
+    }
+
+    /// Steps away from where the first stands.
+    fn steps<N: Real, const D: usize>(direction: Vector<N, D>, size: f64) -> Vec<Vector<N, D>> {
+        (0..24).map(|n| direction * N::lit(size * 0.1 * f64::from(n))).collect()
+    }
+
+    fn space<N: Real>(size: f64) {
+        let one = N::lit(size);
+        let p = |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z)) * one;
+        let corners = [
+            p(0.0, -1.0, 0.2),
+            p(1.0, 0.0, 0.1),
+            p(0.0, 1.0, -0.3),
+            p(0.2, 0.1, 1.0),
+            p(-1.0, 0.1, 0.0),
+        ];
+        let half = Vector::<N, 3>::new(one, one * N::HALF, one);
+        let solids: [Box<dyn Shape<N, 3>>; 7] = [
+            Box::new(ConvexHull::from_points(&corners)),
+            Box::new(Cuboid::new(half)),
+            Box::new(Cylinder::new(one, one)),
+            Box::new(Cone::new(one, one)),
+            Box::new(Ellipsoid::new(half)),
+            Box::new(Capsule::new(one, one * N::HALF)),
+            Box::new(Triangle::new(corners[0], corners[1], corners[3])),
+        ];
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(
+            N::lit(0.8),
+            N::lit(0.1),
+            N::lit(-0.3),
+            N::lit(0.5),
+        ));
+        let rotation = turn.to_rotation_matrix().into_inner();
+        let directions = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.4, -0.7, 0.6)];
+        let poses: Vec<_> = directions
+            .into_iter()
+            .flat_map(|(x, y, z)| steps(Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z)), size))
+            .flat_map(|at| {
+                let straight = Pose::from_translation(at);
+                [straight, Pose { rotation, ..straight }]
+            })
+            .collect();
+        let (found, overlapping) = found(&solids, &poses, way_in_space);
+        assert!(found * 2 > overlapping, "{found} of {overlapping} in space");
+    }
+
+    fn plane<N: Real>(size: f64) {
+        let one = N::lit(size);
+        let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x), N::lit(y)) * one;
+        let corners = [p(0.0, -1.0), p(1.0, 0.0), p(0.1, 1.0), p(-0.5, 0.5)];
+        let half = Vector::<N, 2>::new(one, one * N::HALF);
+        let solids: [Box<dyn Shape<N, 2>>; 5] = [
+            Box::new(ConvexPolygon::from_points(&corners)),
+            Box::new(Cuboid::new(half)),
+            Box::new(Ellipsoid::new(half)),
+            Box::new(Capsule::new(one, one * N::HALF)),
+            Box::new(Triangle::new(corners[0], corners[1], corners[2])),
+        ];
+        let poses: Vec<_> = [(1.0, 0.1), (-0.3, 0.8)]
+            .into_iter()
+            .flat_map(|(x, y)| steps(Vector::<N, 2>::new(N::lit(x), N::lit(y)), size))
+            .map(Pose::from_translation)
+            .collect();
+        let (found, overlapping) = found(&solids, &poses, way_in_plane);
+        assert!(found * 2 > overlapping, "{found} of {overlapping} in the plane");
+    }
+
+    type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
+
+    /// Distances that are a part of the separation are so to the bit, however the solids lie.
+    fn are_parts<N: Space<D>, const D: usize>(
+        firsts: &Solids<N, D>,
+        seconds: &Solids<N, D>,
+        pose_of: impl Fn(&mut Random) -> Pose<N, D>,
+        known: impl Fn(&Pair<'_, N, D>) -> Option<N>,
+    ) {
+        let random = &mut Random(5);
+        for _ in 0..400 {
+            let pose12 = pose_of(random);
+            for (first, second) in firsts.iter().flat_map(|a| seconds.iter().map(move |b| (a, b))) {
+                let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
+                let expected = separation(&pair, N::INFINITY).expect("finite").distance;
+                let found = known(&pair).expect("a formula");
+                assert_eq!(found, expected, "{first:?} and {second:?} at {pose12:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_from_balls_and_half_spaces_are_those_of_the_separation() {
+        let p = |x: f32, y: f32, z: f32| Point::<f32, 3>::new(x, y, z);
+        let corners = [p(0.0, -1.0, 0.2), p(1.0, 0.0, 0.1), p(0.0, 1.0, -0.3), p(0.2, 0.1, 1.0)];
+        let half = Vector::<f32, 3>::new(1.0, 0.5, 0.75);
+        let solids = || -> Vec<Box<dyn Shape<f32, 3>>> {
+            vec![
+                Box::new(Segment::new(corners[0], corners[1])),
+                Box::new(Capsule::new(0.5, 0.25)),
+                Box::new(Triangle::new(corners[0], corners[1], corners[3])),
+                Box::new(Cuboid::new(half)),
+                Box::new(ConvexHull::from_points(&corners)),
+                Box::new(Cylinder::new(0.5, 0.75)),
+                Box::new(Cone::new(0.75, 0.5)),
+                Box::new(Rounded::new(Rounded::new(Cuboid::new(half), 0.125), 0.3)),
+                Box::new(Rounded::new(Capsule::new(0.5, 0.3), 0.1)),
+                Box::new(Plane::new(Vector::<f32, 3>::y_axis())),
+            ]
+        };
+        let ball: [Box<dyn Shape<f32, 3>>; 1] = [Box::new(Ball::new(0.3))];
+        let pose_of = |random: &mut Random| random.turn::<f32>();
+        are_parts(&ball, &solids(), pose_of, known_in_space);
+        let plane: [Box<dyn Shape<f32, 3>>; 1] =
+            [Box::new(Plane::new(-Vector::<f32, 3>::x_axis()))];
+        are_parts(&solids()[..9], &plane, pose_of, known_in_space);
+        let flat: [Box<dyn Shape<f32, 2>>; 4] = [
+            Box::new(Triangle::new(corners[0].xy(), corners[1].xy(), corners[3].xy())),
+            Box::new(ConvexPolygon::from_points(&corners.map(|corner| corner.xy()))),
+            Box::new(Rounded::new(Cuboid::new(half.xy()), 0.1)),
+            Box::new(Plane::new(Vector::<f32, 2>::y_axis())),
+        ];
+        let ball: [Box<dyn Shape<f32, 2>>; 1] = [Box::new(Ball::new(0.3))];
+        let pose_of = |random: &mut Random| Pose::from_translation(random.vector::<f32>().xy());
+        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_in_plane));
+    }
+
+    #[test]
+    fn what_is_found_to_overlap_does() {
+        for size in [1.0, 1e-9, 1e6] {
+            space::<f32>(size);
+            space::<f64>(size);
+            plane::<f32>(size);
+            plane::<f64>(size);
+        }
+    }
+
+    #[test]
+    fn nothing_is_known_of_poses_that_are_none() {
+        let cone = Cone::new(1.0_f32, 1.0);
+        let pose12 = Pose::from_translation(Vector::<f32, 3>::new(f32::NAN, 0.0, 0.0));
+        let (first, second) = (cone.geometry().0, cone.geometry().0);
+        let pair = Pair { first, second, pose12 };
+        assert!(!certainly_overlap(&pair, DistanceMethod::Features), "not a number");
+        assert_eq!(distance_in_space(&pair, f32::INFINITY), None, "not a number");
+    }
+}

@@ -1,0 +1,324 @@
+//! Convex outlines in 2D: what points, segments, triangles, boxes and polygons have in common.
+
+use smallvec::{SmallVec, smallvec};
+
+use crate::collide::separation::segments::segment_lanes::is_usual;
+use crate::math::lanes::{LanePose, dot, either, highest_lane, load, spread};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::shape::{Kind, Polytope, Segment, Triangle};
+
+/// How many vertices are looked at side by side.
+pub(in crate::collide::separation) const LANES: usize = 8;
+
+/// Outlines of more vertices are left to the general algorithm.
+const MAX_BLOCKS: usize = 4;
+
+/// A number for each of eight vertices.
+pub(in crate::collide::separation) type Row<N> = [N; LANES];
+
+/// A convex polygon in some frame, inflated by a radius.
+///
+/// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
+pub(in crate::collide::separation) struct Outline<N: Real> {
+    blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
+    /// Of vertices.
+    pub(in crate::collide::separation) count: usize,
+    pub(in crate::collide::separation) rounding: N,
+}
+
+/// Eight vertices; the last one fills the rest.
+#[derive(Clone, Copy)]
+pub(in crate::collide::separation) struct OutlineBlock<N> {
+    pub(in crate::collide::separation) vertices: [Row<N>; 2],
+    /// The unit outward normals of the sides that start there; of a point anything.
+    pub(in crate::collide::separation) normals: [Row<N>; 2],
+}
+
+impl<N: Real> Outline<N> {
+    /// The outline of a solid in its own frame; `None` of other kinds and of polygons of too many vertices, and
+    /// where the length of a side is no usual number.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        kind: &Kind<'_, N, 2>,
+    ) -> Option<Self> {
+        match kind {
+            Kind::Ball(ball) => Some(Self::of_point(&Point::origin(), ball.radius())),
+            Kind::Segment(segment) => Self::of_segment::<S, V>(simd, segment, N::ZERO),
+            Kind::Capsule(capsule) => {
+                Self::of_segment::<S, V>(simd, capsule.segment(), capsule.radius())
+            }
+            Kind::Triangle(triangle) => Self::of_triangle::<S, V>(simd, triangle),
+            Kind::Cuboid(cuboid) => Some(Self::of_box(cuboid.half_extents())),
+            Kind::Polytope(polygon) => Self::of_polygon(polygon),
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
+    fn of_block(vertices: [Row<N>; 2], normals: [Row<N>; 2], count: usize, rounding: N) -> Self {
+        Self { blocks: smallvec![OutlineBlock { vertices, normals }], count, rounding }
+    }
+
+    #[inline(always)]
+    fn of_point(point: &Point<N, 2>, radius: N) -> Self {
+        Self::of_block([[point.x; LANES], [point.y; LANES]], [[N::ZERO; LANES]; 2], 1, radius)
+    }
+
+    /// A segment without length is a point.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn of_segment<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        segment: &Segment<N, 2>,
+        radius: N,
+    ) -> Option<Self> {
+        if segment.a() == segment.b() {
+            return Some(Self::of_point(segment.a(), radius));
+        }
+        let [is_last, _] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &segment.a().coords);
+        let b: [V; 2] = spread(simd, &segment.b().coords);
+        let (vertices, ends) = (either(is_last, &b, &a), either(is_last, &a, &b));
+        Self::of_ends(simd, &vertices, &ends, 2, radius)
+    }
+
+    /// The corners may be given in either order; equal ones count once.
+    #[inline(always)]
+    fn of_triangle<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        triangle: &Triangle<N, 2>,
+    ) -> Option<Self> {
+        let [a, b, c] = triangle.corners();
+        if a == b || b == c || c == a {
+            let other = if a == b { c } else { b };
+            return Self::of_segment::<S, V>(simd, &Segment::of_finite(*a, *other), N::ZERO);
+        }
+        let is_clockwise = cross2(&(b - a), &(c - a)) < N::ZERO;
+        let (b, c) = if is_clockwise { (c, b) } else { (b, c) };
+        let [is_later, is_last] = later_lanes::<S, N, V>(simd);
+        let a: [V; 2] = spread(simd, &a.coords);
+        let b: [V; 2] = spread(simd, &b.coords);
+        let c: [V; 2] = spread(simd, &c.coords);
+        let vertices = either(is_last, &c, &either(is_later, &b, &a));
+        let ends = either(is_last, &a, &either(is_later, &c, &b));
+        Self::of_ends(simd, &vertices, &ends, 3, N::ZERO)
+    }
+
+    #[inline(always)]
+    fn of_box(half: &Vector<N, 2>) -> Self {
+        let ([x, y], no, yes) = ([half.x, half.y], N::ZERO, N::ONE);
+        let vertices = [[-x, x, x, -x, -x, -x, -x, -x], [-y, -y, y, y, y, y, y, y]];
+        let normals = [
+            [-no, yes, no, -yes, -yes, -yes, -yes, -yes],
+            [-yes, no, yes, -no, -no, -no, -no, -no],
+        ];
+        Self::of_block(vertices, normals, 4, N::ZERO)
+    }
+
+    #[inline(always)]
+    fn of_polygon(polygon: &Polytope<N, 2>) -> Option<Self> {
+        let (vertices, planes) = (polygon.blocks(), polygon.planes());
+        if vertices.len() > MAX_BLOCKS {
+            return None;
+        }
+        let blocks = vertices.iter().zip(planes);
+        let blocks = blocks.map(|(vertices, planes)| OutlineBlock {
+            vertices: *vertices,
+            normals: planes.normals,
+        });
+        Some(Self { blocks: blocks.collect(), count: polygon.vertices().len(), rounding: N::ZERO })
+    }
+
+    /// The outline of these vertices, of which the sides end there; `None` as above.
+    #[inline(always)]
+    fn of_ends<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        vertices: &[V; 2],
+        ends: &[V; 2],
+        count: usize,
+        radius: N,
+    ) -> Option<Self> {
+        let side = [ends[0] - vertices[0], ends[1] - vertices[1]];
+        let squared = dot(&side, &side);
+        if !is_usual(simd, squared).all_true() {
+            return None;
+        }
+        let length = squared.sqrt();
+        let normals = [side[1] / length, -(side[0] / length)];
+        Some(Self::of_block(stored(vertices), stored(&normals), count, radius))
+    }
+
+    /// The same outline seen from the frame in which its own has the given pose.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
+        mut self,
+        simd: S,
+        pose: &Pose<N, 2>,
+    ) -> Self {
+        let pose: LanePose<V, 2> = LanePose::of(simd, pose);
+        for block in &mut self.blocks {
+            block.vertices = stored(&pose.point(&load(simd, &block.vertices)));
+            block.normals = stored(&pose.vector(&load(simd, &block.normals)));
+        }
+        self
+    }
+
+    #[inline(always)]
+    pub(in crate::collide::separation) fn at(&self, vertex: usize) -> Point<N, 2> {
+        let [xs, ys] = &self.blocks[vertex / LANES].vertices;
+        Point::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
+    }
+
+    /// The outward normal of the side that starts at a vertex.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn normal(&self, vertex: usize) -> Vector<N, 2> {
+        let [xs, ys] = &self.blocks[vertex / LANES].normals;
+        Vector::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
+    }
+
+    #[inline(always)]
+    pub(in crate::collide::separation) const fn next(&self, vertex: usize) -> usize {
+        if vertex + 1 < self.count { vertex + 1 } else { 0 }
+    }
+
+    #[inline(always)]
+    pub(in crate::collide::separation) const fn previous(&self, vertex: usize) -> usize {
+        if vertex > 0 { vertex - 1 } else { self.count - 1 }
+    }
+
+    #[inline(always)]
+    pub(in crate::collide::separation) const fn is_point(&self) -> bool {
+        self.count < 2
+    }
+
+    /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn size<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+    ) -> N {
+        let size = |block: &OutlineBlock<N>| {
+            let [xs, ys]: [V; 2] = load(simd, &block.vertices);
+            highest_lane(xs.abs() + ys.abs())
+        };
+        self.blocks.iter().fold(N::ZERO, |most, block| max(size(block), most))
+    }
+
+    /// The vertex farthest along a direction, the first of equals, and how far.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn top<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        direction: &Vector<N, 2>,
+    ) -> (N, usize) {
+        let direction: [V; 2] = spread(simd, direction);
+        let (mut most, mut vertex) = (-N::INFINITY, 0);
+        for (number, block) in self.blocks.iter().enumerate() {
+            let along: V = dot(&direction, &load(simd, &block.vertices));
+            let (high, lane) = highest(simd, along);
+            if high > most {
+                (most, vertex) = (high, number * LANES + lane);
+            }
+        }
+        (most, vertex)
+    }
+
+    /// How far the outline reaches along each of eight directions.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn reach<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        directions: &[V; 2],
+    ) -> V {
+        let mut most = V::all(simd, -N::INFINITY);
+        for (number, block) in self.blocks.iter().enumerate() {
+            let [xs, ys] = &block.vertices;
+            // The last vertex fills the rest.
+            let halves = if self.count - number * LANES > LANES / 2 { 2 } else { 1 };
+            for half in 0..halves {
+                for lane in 0..LANES / 2 {
+                    let lane = (half * LANES / 2 + lane) & (LANES - 1);
+                    let at = [V::all(simd, xs[lane]), V::all(simd, ys[lane])];
+                    most = dot(directions, &at).larger(most);
+                }
+            }
+        }
+        most
+    }
+
+    /// All vertices, with the normals of the sides that start there, eight at a time.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn blocks(&self) -> &[OutlineBlock<N>] {
+        &self.blocks
+    }
+
+    /// The directions half-way between the normals of the sides at each vertex of a block, and where they count:
+    /// where the angle is sharper than a right one.
+    ///
+    /// Sides alone would leave gaps of more than a right angle between the directions, so that flat outlines that
+    /// point at each other would count as overlapping.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn tips<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        block: usize,
+    ) -> ([V; 2], V::Mask) {
+        let normals = &self.blocks[block].normals;
+        let last = self.normal(self.previous(block * LANES));
+        let [mut xs, mut ys] = [[last.x; LANES], [last.y; LANES]];
+        xs[1..].copy_from_slice(&normals[0][..LANES - 1]);
+        ys[1..].copy_from_slice(&normals[1][..LANES - 1]);
+        let (before, after): ([V; 2], [V; 2]) = (load(simd, &[xs, ys]), load(simd, normals));
+        let is_tip = dot(&before, &after).simd_lt(V::all(simd, N::ZERO));
+        // Turned by a quarter: from normals to the directions of the sides.
+        let tip = [-before[1] - -after[1], before[0] - after[0]];
+        let length = dot(&tip, &tip).sqrt();
+        ([tip[0] / length, tip[1] / length], is_tip)
+    }
+}
+
+#[inline(always)]
+fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(vectors: &[V; 2]) -> [Row<N>; 2] {
+    let mut rows = [[N::ZERO; LANES]; 2];
+    vectors[0].store(&mut rows[0]);
+    vectors[1].store(&mut rows[1]);
+    rows
+}
+
+/// All lanes but the first, and all but the first two.
+#[inline(always)]
+fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2] {
+    let (no, yes) = (N::ZERO, N::ONE);
+    let zero = V::all(simd, no);
+    [
+        V::load(simd, &[no, yes, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+        V::load(simd, &[no, no, yes, yes, yes, yes, yes, yes]).simd_gt(zero),
+    ]
+}
+
+/// The greatest of eight numbers, and the first lane that has it.
+#[inline(always)]
+pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    numbers: V,
+) -> (N, usize) {
+    let mut lanes = [N::ZERO; LANES];
+    numbers.store(&mut lanes);
+    let [a, b, c, d, e, f, g, h] = lanes;
+    let most = max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)));
+    let is_most = numbers.simd_eq(V::all(simd, most)).to_bitmask();
+    (most, (is_most.trailing_zeros() as usize).min(LANES - 1))
+}
+
+/// The vector in a lane.
+#[inline(always)]
+pub(in crate::collide::separation) fn lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    vectors: &[V; 2],
+    lane: usize,
+) -> Point<N, 2> {
+    let mut rows = [[N::ZERO; LANES]; 2];
+    vectors[0].store(&mut rows[0]);
+    vectors[1].store(&mut rows[1]);
+    Point::<N, 2>::new(rows[0][lane], rows[1][lane])
+}

@@ -1,0 +1,232 @@
+//! What the best axis of two polygons says of their nearest points: mostly that a corner is above a side, or that
+//! two corners are the nearest, and else each end of the sides next to it against each side of the other, eight
+//! at a time.
+
+use super::outline::{Outline, highest, lane};
+use super::polygon_polygon::{Axis, in_middle};
+use crate::collide::separation::segments::segment_lanes::nearest_on_segment;
+use crate::convex::Separation;
+use crate::math::lanes::{dot, either, minus, spread};
+use crate::math::simd::Simd;
+use crate::math::{Point, Real, Vector, Wide, perp, unit};
+
+/// Two outlines and a direction from the first to the second that leaves a gap between them, perhaps below zero.
+pub(in crate::collide::separation) struct Facing<'a, N: Real> {
+    outlines: [&'a Outline<N>; 2],
+    axis: Axis<N>,
+    /// The vertex of each that is farthest toward the other.
+    tops: [usize; 2],
+    /// Lengths up to this are rounding errors.
+    noise: N,
+}
+
+impl<'a, N: Real> Facing<'a, N> {
+    #[inline(always)]
+    pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
+        simd: S,
+        outlines: [&'a Outline<N>; 2],
+        axis: &Axis<N>,
+        noise: N,
+    ) -> Self {
+        let (_, top1) = outlines[0].top::<S, V>(simd, &axis.normal);
+        let (_, top2) = outlines[1].top::<S, V>(simd, &-axis.normal);
+        Self { outlines, axis: *axis, tops: [top1, top2], noise }
+    }
+
+    /// The separation of the two; `None` if the axis is not the one of the nearest points.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+    ) -> Option<Separation<N, 2>> {
+        let gap = self.axis.gap;
+        match self.settled() {
+            None if gap <= N::ZERO => Some(self.overlapping()),
+            None if gap.is_finite_number() => self.apart::<S, V>(simd),
+            settled => settled,
+        }
+    }
+
+    /// The separation, where the axis is the normal of a side that a corner is above, where it leaves no doubt
+    /// that the two overlap, or where corners next to it are the nearest points. The axis need not be the best
+    /// one then: the normals of the sides will do.
+    #[inline(always)]
+    pub(in crate::collide::separation) fn settled(&self) -> Option<Separation<N, 2>> {
+        let gap = self.axis.gap;
+        if !gap.is_finite_number() {
+            return None;
+        }
+        let (is_above1, end1) = self.beside(0);
+        let (is_above2, end2) = self.beside(1);
+        if gap < -self.noise || gap <= N::ZERO && (is_above1 || is_above2) {
+            return Some(self.overlapping());
+        }
+        let [top1, top2] = [self.top(0), self.top(1)];
+        if is_above1 {
+            return Some(self.along_axis(top2 - self.axis.normal * gap, top2));
+        }
+        if is_above2 {
+            return Some(self.along_axis(top1, top1 + self.axis.normal * gap));
+        }
+        self.of_corners([end1, end2])
+    }
+
+    #[inline(always)]
+    fn top(&self, which: usize) -> Point<N, 2> {
+        self.outlines[which].at(self.tops[which])
+    }
+
+    #[inline(always)]
+    fn along_axis(&self, point1: Point<N, 2>, point2: Point<N, 2>) -> Separation<N, 2> {
+        Separation { distance: self.axis.gap, normal: self.axis.normal, point1, point2 }
+    }
+
+    /// How far a vertex of an outline is below its top.
+    #[inline(always)]
+    fn below(&self, which: usize, vertex: usize) -> N {
+        let down = self.axis.normal.dot(&(self.top(which) - self.outlines[which].at(vertex)));
+        if which == 0 { down } else { -down }
+    }
+
+    /// Whether the axis is the normal of a side at the top of an outline and the top of the other one is above
+    /// that side; and the end of the side that is nearer to it, the top if there is no such side.
+    #[inline(always)]
+    fn beside(&self, which: usize) -> (bool, usize) {
+        let (outline, top) = (self.outlines[which], self.tops[which]);
+        let (next, previous) = (outline.next(top), outline.previous(top));
+        let slack = N::lit(4.0) * self.noise;
+        let other = if self.below(which, next) <= slack {
+            next
+        } else if self.below(which, previous) <= slack {
+            previous
+        } else {
+            return (false, top);
+        };
+        let (from, to, above) = (outline.at(top), outline.at(other), self.top(1 - which));
+        let along = to - from;
+        let (after, before) = ((above - from).dot(&along), (to - above).dot(&along));
+        (after > N::ZERO && before > N::ZERO, if before < after { other } else { top })
+    }
+
+    /// The separation, if these corners are the nearest points: each lies in front of both sides of the other.
+    #[inline(always)]
+    fn of_corners(&self, ends: [usize; 2]) -> Option<Separation<N, 2>> {
+        let [point1, point2] = [self.outlines[0].at(ends[0]), self.outlines[1].at(ends[1])];
+        let between = point2 - point1;
+        let is_behind = |which: usize, toward: &Vector<N, 2>| {
+            let (outline, end) = (self.outlines[which], ends[which]);
+            let at = outline.at(end);
+            let before = at - outline.at(outline.previous(end));
+            let after = outline.at(outline.next(end)) - at;
+            toward.dot(&before) >= N::ZERO && toward.dot(&after) <= N::ZERO
+        };
+        if !(is_behind(0, &between) && is_behind(1, &-between)) {
+            return None;
+        }
+        let (normal, distance) = unit(&between).filter(|(_, length)| *length > self.noise)?;
+        Some(Separation { distance, normal, point1, point2 })
+    }
+
+    /// Outlines that touch or overlap.
+    #[inline(always)]
+    fn overlapping(&self) -> Separation<N, 2> {
+        let tangent = perp(&self.axis.normal);
+        let [low1, high1] = self.feature(0, &tangent);
+        let [low2, high2] = self.feature(1, &tangent);
+        in_middle([low1, high1], [low2.0, high2.0], &self.axis)
+    }
+
+    /// The lowest and highest, as measured along a tangent, of the top and those of its neighbours that are as
+    /// far along the normal.
+    #[inline(always)]
+    fn feature(&self, which: usize, tangent: &Vector<N, 2>) -> [(N, Point<N, 2>); 2] {
+        let (outline, top) = (self.outlines[which], self.tops[which]);
+        let at = outline.at(top);
+        let (mut low, mut high) = ((tangent.dot(&at.coords), at), (tangent.dot(&at.coords), at));
+        for vertex in [outline.previous(top), outline.next(top)] {
+            let at = outline.at(vertex);
+            let along = tangent.dot(&at.coords);
+            if self.below(which, vertex) <= self.noise {
+                low = if along < low.0 { (along, at) } else { low };
+                high = if along > high.0 { (along, at) } else { high };
+            }
+        }
+        [low, high]
+    }
+
+    /// Outlines that are apart along the axis; `None` if it is not the one of the nearest points.
+    #[inline(always)]
+    fn apart<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 2>> {
+        let ([own, other], noise) = (self.outlines, self.noise);
+        let (around1, around2) = (around(own, self.tops[0]), around(other, self.tops[1]));
+        let points = nearest_points::<S, N, V>(simd, &around1, &around2)?;
+        let between = points.1 - points.0;
+        let slack = N::lit(8.0) * noise;
+        let beside = (between - self.axis.normal * self.axis.gap).norm();
+        let direct = unit(&between).filter(|_| beside > noise);
+        let mut axis = self.axis;
+        if let Some((normal, length)) = direct {
+            let high1 = own.top::<S, V>(simd, &normal).0;
+            let high2 = other.top::<S, V>(simd, &-normal).0;
+            if -high2 - high1 + slack >= axis.gap {
+                axis = Axis { gap: length, normal };
+            }
+        }
+        let is_met = between.norm() - axis.gap <= N::lit(4.0) * noise;
+        let (point1, point2) = points;
+        is_met.then_some(Separation { distance: axis.gap, normal: axis.normal, point1, point2 })
+    }
+}
+
+/// A vertex between the one before and the one after.
+#[inline(always)]
+fn around<N: Real>(outline: &Outline<N>, vertex: usize) -> [Point<N, 2>; 3] {
+    [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
+}
+
+/// The nearest points of the sides at two vertices, each given with its neighbours; `None` where the
+/// numbers end.
+///
+/// Each end of a side against a side of the other outline: lane 4 is set for the second side of the
+/// first outline, lane 2 for that of the second, lane 1 for the second end. Of equals the first counts
+/// in the order of sides of the first, sides of the second, ends of the first, ends of the second.
+#[inline(always)]
+pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    around1: &[Point<N, 2>; 3],
+    around2: &[Point<N, 2>; 3],
+) -> Option<(Point<N, 2>, Point<N, 2>)> {
+    let (zero, no, yes) = (V::all(simd, N::ZERO), N::ZERO, N::ONE);
+    let is_second1 = V::load(simd, &[no, no, no, no, yes, yes, yes, yes]).simd_gt(zero);
+    let is_second2 = V::load(simd, &[no, no, yes, yes, no, no, yes, yes]).simd_gt(zero);
+    let is_end = V::load(simd, &[no, yes, no, yes, no, yes, no, yes]).simd_gt(zero);
+    let before1: [V; 2] = spread(simd, &around1[0].coords);
+    let at1: [V; 2] = spread(simd, &around1[1].coords);
+    let after1: [V; 2] = spread(simd, &around1[2].coords);
+    let before2: [V; 2] = spread(simd, &around2[0].coords);
+    let at2: [V; 2] = spread(simd, &around2[1].coords);
+    let after2: [V; 2] = spread(simd, &around2[2].coords);
+    let from1 = either(is_second1, &at1, &before1);
+    let to1 = either(is_second1, &after1, &at1);
+    let from2 = either(is_second2, &at2, &before2);
+    let to2 = either(is_second2, &after2, &at2);
+    let end1 = either(is_end, &to1, &from1);
+    let end2 = either(is_end, &to2, &from2);
+    let on2 = nearest_on_segment(simd, &[from2, to2], &end1).point;
+    let on1 = nearest_on_segment(simd, &[from1, to1], &end2).point;
+    let (way1, way2) = (minus(&on2, &end1), minus(&on1, &end2));
+    let (low1, lane1) = highest(simd, -dot(&way1, &way1));
+    let (low2, lane2) = highest(simd, -dot(&way2, &way2));
+    let (low1, low2) = (-low1, -low2);
+    let is_usual = low1 < N::INFINITY && low2 < N::INFINITY;
+    if !is_usual {
+        return None;
+    }
+    let (rank1, rank2) = ((lane1 >> 1) * 4 + (lane1 & 1), (lane2 >> 1) * 4 + (lane2 & 1) + 2);
+    let is_first = low1 < low2 || low1 == low2 && rank1 < rank2;
+    Some(if is_first {
+        (lane(&end1, lane1), lane(&on2, lane1))
+    } else {
+        (lane(&on1, lane2), lane(&end2, lane2))
+    })
+}

@@ -1,0 +1,81 @@
+//! Balls against other solids: everything follows from where the centre lies.
+
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Vector, unit};
+
+pub(super) use crate::math::perpendicular_to;
+
+/// A point seen from a solid, in the frame of the solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Projection<N: Real, const D: usize> {
+    /// Positive outside, negative inside: the signed distance of the point from the surface.
+    pub(crate) distance: N,
+    /// The unit vector out of the solid along which that distance is measured.
+    pub(crate) outward: Vector<N, D>,
+    /// The point of the surface nearest to the given one.
+    pub(crate) point: Point<N, D>,
+}
+
+impl<N: Real, const D: usize> Projection<N, D> {
+    /// The separation of a ball around the projected point, at the origin of the first frame, from
+    /// the solid, whose pose is `pose12`. `None` beyond `limit`.
+    pub(super) fn of_ball(
+        &self,
+        radius: N,
+        pose12: &Pose<N, D>,
+        limit: N,
+    ) -> Option<Separation<N, D>> {
+        let distance = self.distance - radius;
+        let normal = -pose12.vector(&self.outward);
+        let point1 = Point::from(normal * radius);
+        let point2 = pose12.point(&self.point);
+        (distance <= limit).then_some(Separation { distance, normal, point1, point2 })
+    }
+}
+
+/// What arithmetic cannot resolve about points that far from the origin.
+pub(super) fn noise<N: Real>(reach: N) -> N {
+    N::lit(8.0) * N::EPSILON * reach
+}
+
+/// The centre of a ball at the origin of the first frame, in the frame of the second solid.
+pub(super) fn center_in_second<N: Real, const D: usize>(pose12: &Pose<N, D>) -> Point<N, D> {
+    pose12.inverse_point(&Point::origin())
+}
+
+/// The first axis: the direction that degenerate cases fall back on.
+pub(super) fn first_axis<N: Real, const D: usize>() -> Vector<N, D> {
+    let mut axis = Vector::<N, D>::zeros();
+    axis[0] = N::ONE;
+    axis
+}
+
+/// `v` made perpendicular to the unit vector `d`, of unit length; `None` where nothing certain
+/// remains.
+///
+/// Subtracts twice: the first remainder may be small and so inexact (Kahan: twice is enough).
+pub(super) fn made_perpendicular<N: Real, const D: usize>(
+    v: &Vector<N, D>,
+    d: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let (v, _) = unit(v)?;
+    let (once, remainder) = unit(&(v - d * v.dot(d)))?;
+    let (twice, _) = unit(&(once - d * once.dot(d)))?;
+    (remainder > N::lit(16.0) * N::EPSILON).then_some(twice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn perpendicular_vectors() {
+        let d = Vector::<f64, 3>::new(0.6, 0.0, 0.8);
+        assert_eq!(perpendicular_to(&d), Vector::<f64, 3>::new(0.0, 1.0, 0.0), "the idle axis");
+        let flat = Vector::<f64, 2>::new(0.0, -1.0);
+        assert_eq!(perpendicular_to(&flat), Vector::<f64, 2>::new(1.0, 0.0), "in the plane");
+        let v = made_perpendicular(&Vector::<f64, 3>::new(5.0, 1e-6, 0.0), &first_axis());
+        assert_eq!(v, Some(Vector::<f64, 3>::new(0.0, 1.0, 0.0)), "the small part survives");
+        assert_eq!(made_perpendicular(&first_axis::<f64, 3>(), &first_axis()), None, "parallel");
+    }
+}

@@ -1,0 +1,273 @@
+//! Solids with flat faces, segments, capsules, cylinders and cones beside cylinders and cones.
+//!
+//! How far a point is from a cylinder or a cone, or how deep inside, is a formula ([`profile`]), and convex. So the
+//! nearest point of the flat solid is searched over the hull of a few of its vertices, to which the lowest along the
+//! direction found is added until there is no lower one: the simplicial decomposition of B. von Hohenbalken
+//! ("Simplicial decomposition in nonlinear programming algorithms", 1977), here over points, chords and triangles.
+//!
+//! The direction in the end is a supporting plane of both solids, and two points lie across from each other along
+//! it, or the answer is not given. Where the solids are apart nothing else is needed. Where a point of the flat
+//! solid is inside the round one, the ball about it as large as it is deep is in there too, so no way out is
+//! shorter; where a point of the round solid is below a face, the ball about it must be in the flat one. What is
+//! not proved like that, an edge across a rim above all, is left to the arcs of [`ridges`].
+
+mod chord;
+pub(super) mod cylinder_cylinder;
+mod faces;
+mod profile;
+mod rounds;
+#[cfg(test)]
+mod tests;
+
+use self::cylinder_cylinder::{Found, RevolvedResult};
+use self::profile::{Part, Profile, Seen};
+use super::flat_core::FlatCore;
+use super::general;
+use super::hulls::{noise, out_of_reach};
+use super::ridges::{self, Round};
+use super::wrong_kinds;
+use crate::collide::Pair;
+use crate::convex::{Separation, Units};
+use crate::math::{Pose, Real, Vector, cross, unit};
+use crate::shape::{Geometry, SupportMap};
+
+/// Cap on the vertices that are added.
+const ROUNDS: usize = 12;
+
+/// The sine above which two directions say what is across both of them.
+const RESOLVED: f64 = 1.0 / 64.0;
+
+/// Points that are nearer to where they belong need not come nearer, and what is lower by no more is as low.
+fn still<N: Real>() -> N {
+    noise::<N>() * N::HALF
+}
+
+/// The separation of a solid with flat faces, a segment, a capsule, a cylinder or a cone from a cylinder or cone.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let otherwise = || match FlatCore::of(pair.first) {
+        Some(_) => ridges::separation(pair, limit),
+        None => general::separation(pair, limit),
+    };
+    attempt(pair, limit).unwrap_or_else(otherwise)
+}
+
+/// The distance in [`separation`], or any number that is not positive if the solids overlap.
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    match (attempt(pair, limit), FlatCore::of(pair.first)) {
+        (Some(found), _) => found.map(|found| found.distance),
+        (None, Some(_)) => ridges::distance(pair, limit),
+        (None, None) => general::distance(pair, limit),
+    }
+}
+
+/// The separation, if it is decided.
+fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation<N, 3>>> {
+    let (first, second) = (Geometry(pair.first), Geometry(pair.second));
+    let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
+        wrong_kinds(pair)
+    };
+    let pose12 = &pair.pose12;
+    if !pose12.is_finite() {
+        return Some(None);
+    }
+    let units = Units::of(map1.reach(), map2.reach(), &pose12.translation);
+    let profile = Profile::new(Round::new(&pair.second, units.shrink)?);
+    let shift = pose12.translation * units.shrink;
+    let beyond = out_of_reach(&units, limit + map1.rounding());
+    let result = match FlatCore::of(pair.first) {
+        Some(flat) => {
+            Meeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
+        }
+        None => {
+            let first = Profile::new(Round::new(&pair.first, units.shrink)?);
+            rounds::resolve([first, profile], pose12, shift, beyond)
+        }
+    };
+    let found = result.answer(&units, pose12)?;
+    let rounded = found.map(|found| found.rounded(map1.rounding(), N::ZERO));
+    Some(rounded.filter(|found| found.distance <= limit))
+}
+
+/// The result where the answer, if there is one, is in the frame of the second solid.
+fn seen_from_second<N: Real>(found: Option<Found<N>>) -> RevolvedResult<N> {
+    found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
+}
+
+/// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
+struct Meeting<'a, N: Real> {
+    flat: FlatCore<'a, N, 3>,
+    pose12: &'a Pose<N, 3>,
+    shift: Vector<N, 3>,
+    shrink: N,
+    profile: Profile<N>,
+}
+
+/// A point of the flat solid with the direction along which it is nearest to the round one.
+#[derive(Clone, Copy)]
+struct Place<N: Real> {
+    point: Vector<N, 3>,
+    /// That of the round one.
+    nearest: Vector<N, 3>,
+    /// Unit, out of the round solid, which reaches so far along it.
+    outward: Vector<N, 3>,
+    level: N,
+}
+
+/// The points over which a place is the nearest; no more than are needed.
+#[derive(Clone, Copy)]
+enum Hull<N: Real> {
+    Point(Vector<N, 3>),
+    Chord([Vector<N, 3>; 2]),
+    Triangle,
+}
+
+impl<N: Real> Meeting<'_, N> {
+    fn resolve(&self, beyond: N) -> RevolvedResult<N> {
+        let middle = self.placed(&self.flat.center().coords);
+        let first = self.lowest(&self.profile.seen_from(middle).outward);
+        let (mut hull, mut place) = self.at_point(first);
+        for _ in 0..ROUNDS {
+            let low = self.lowest(&place.outward);
+            if let Some(result) = place.result(&low, beyond) {
+                return result;
+            }
+            match self.nearer(&hull, &place, low) {
+                Some(next) => (hull, place) = next,
+                None => break,
+            }
+        }
+        seen_from_second(self.by_face())
+    }
+
+    /// A point of the flat solid, given in its own frame and length.
+    fn placed(&self, point: &Vector<N, 3>) -> Vector<N, 3> {
+        self.pose12.rotation.tr_mul(&(point * self.shrink - self.shift))
+    }
+
+    /// The vertex of the flat solid that is lowest along a direction.
+    fn lowest(&self, outward: &Vector<N, 3>) -> Vector<N, 3> {
+        let toward = -(self.pose12.rotation * outward);
+        self.placed(&self.flat.core_support(&toward).coords)
+    }
+
+    fn at_point(&self, point: Vector<N, 3>) -> (Hull<N>, Place<N>) {
+        (Hull::Point(point), Place::of(&self.profile, &self.profile.seen_from(point)))
+    }
+
+    /// The nearest place over a hull and one more vertex, which is lower than all of it.
+    fn nearer(
+        &self,
+        hull: &Hull<N>,
+        place: &Place<N>,
+        low: Vector<N, 3>,
+    ) -> Option<(Hull<N>, Place<N>)> {
+        match hull {
+            Hull::Point(point) => self.profile.along([*point, low], true),
+            Hull::Chord([a, b]) => self.over([*a, *b, low], place),
+            // No more than a chord and a triangle are ever searched: the place stands for its triangle.
+            Hull::Triangle => self.profile.along([place.point, low], true),
+        }
+    }
+
+    /// The nearest place of a triangle with a last corner that is lower than the given place, the nearest of the
+    /// opposite side.
+    fn over(&self, [a, b, c]: [Vector<N, 3>; 3], place: &Place<N>) -> Option<(Hull<N>, Place<N>)> {
+        let across = cross(&(b - a), &(c - a));
+        let (turned, area) = unit(&across).filter(|(_, area)| *area > noise())?;
+        let outward = if turned.dot(&place.outward) < N::ZERO { -turned } else { turned };
+        let mut nearest = self.profile.round.support(&outward);
+        let level = outward.dot(&nearest);
+        // Of the points of a cap or a line, the one that is known to be near.
+        if outward.dot(&place.nearest) >= level - noise() {
+            nearest = place.nearest;
+        }
+        let height = outward.dot(&a) - level;
+        let point = nearest + outward * height;
+        let room = -noise::<N>() * area;
+        let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
+            cross(&(to - from), &(point - from)).dot(&turned)
+        };
+        let sides = [over(&b, &c), over(&c, &a), over(&a, &b)];
+        if sides.iter().all(|&side| side >= room) {
+            let is_proved = height > N::ZERO || self.holds(&nearest, -height);
+            return is_proved.then_some((Hull::Triangle, Place { point, nearest, outward, level }));
+        }
+        let mut best: Option<(Hull<N>, Place<N>)> = None;
+        for (chord, other) in [([b, c], a), ([a, c], b)] {
+            let Some((hull, found)) = self.profile.along(chord, false) else { continue };
+            let is_least = found.outward.dot(&(found.point - other)) <= still();
+            if is_least {
+                return Some((hull, found));
+            }
+            if best.as_ref().is_none_or(|(_, best)| found.distance() < best.distance()) {
+                best = Some((hull, found));
+            }
+        }
+        best
+    }
+
+    /// Whether the flat solid holds the ball about a point.
+    fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
+        let center = self.pose12.rotation * center + self.shift;
+        let room = noise::<N>() - radius;
+        match self.flat {
+            FlatCore::Cuboid(cuboid) => {
+                let half = cuboid.half_extents() * self.shrink;
+                (0..3).all(|axis| center[axis].abs() <= half[axis] + room)
+            }
+            FlatCore::Polytope(hull) => hull
+                .faces()
+                .iter()
+                .all(|face| face.normal.dot(&center) <= face.offset * self.shrink + room),
+            _ => false,
+        }
+    }
+}
+
+impl<N: Real> Place<N> {
+    /// Of a point that is on a corner, but for rounding, the direction may be none that the corner is farthest along:
+    /// the level tells.
+    fn of(profile: &Profile<N>, seen: &Seen<N>) -> Self {
+        let level = profile.level(&seen.outward);
+        Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
+    }
+
+    /// Where a way, a unit vector, is about level, with a direction that is across it to the last bits.
+    fn across(profile: &Profile<N>, seen: &Seen<N>, along: &Vector<N, 3>) -> Option<Self> {
+        let by_rim = match seen.part {
+            Part::Rim => unit(&cross(along, &seen.around())),
+            _ => None,
+        };
+        let outward = match by_rim {
+            Some((across, sine)) if sine > N::lit(RESOLVED) => {
+                if across.dot(&seen.outward) < N::ZERO { -across } else { across }
+            }
+            _ => unit(&(seen.outward - along * along.dot(&seen.outward)))?.0,
+        };
+        let level = profile.level(&outward);
+        Some(Self { point: seen.point, nearest: seen.nearest(), outward, level })
+    }
+
+    fn distance(&self) -> N {
+        self.outward.dot(&self.point) - self.level
+    }
+
+    /// What follows from the point that is lowest along its direction: that the solids are farther apart than
+    /// `beyond`, or, if nothing is lower than the place, whether that is the answer. `None` if something is.
+    fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
+        let height = self.outward.dot(low) - self.level;
+        if height > beyond {
+            return Some(RevolvedResult::Beyond);
+        }
+        let is_lowest = self.outward.dot(&(self.point - low)) <= still();
+        is_lowest.then(|| seen_from_second(self.proved(height)))
+    }
+
+    /// The answer, if the two points lie across from each other as far apart as supporting planes.
+    fn proved(&self, height: N) -> Option<Found<N>> {
+        let aside = self.point - self.nearest - self.outward * height;
+        let is_across = aside.norm_squared() <= noise::<N>() * noise();
+        let found = Found { distance: height, normal: self.outward, on_other: self.point };
+        is_across.then_some(found)
+    }
+}

@@ -1,0 +1,152 @@
+//! Vertices, normals and edges of a solid with flat faces, seen from a round one.
+
+use smallvec::SmallVec;
+
+use crate::collide::separation::hulls::noise;
+use crate::math::{Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
+use crate::shape::{Cuboid, Kind, Polytope, Triangle};
+
+/// Larger solids are left to the general algorithm, which does not look at all of their parts.
+const MAX_VERTICES: usize = 128;
+
+/// An edge: its ends, and the ends of the arc of normals along which it is lowest.
+#[derive(Clone, Copy)]
+pub(super) struct Edge {
+    pub(super) vertices: [u32; 2],
+    pub(super) normals: [u32; 2],
+}
+
+/// A solid with flat faces, in units of the pair.
+pub(super) struct Flat<N: Real> {
+    /// In its own frame, and in that of the round solid.
+    pub(super) own_vertices: SmallVec<[Vector<N, 3>; 16]>,
+    pub(super) vertices: SmallVec<[Vector<N, 3>; 16]>,
+    /// Unit vectors out of the solid, in its own frame: those of all faces, and where there are not enough of
+    /// them others, so that arcs between two cover all normals of the edges.
+    pub(super) own_normals: SmallVec<[Vector<N, 3>; 16]>,
+    /// The same into the solid, in the frame of the round one, with a vertex that is lowest along it.
+    pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 16]>,
+    pub(super) edges: SmallVec<[Edge; 32]>,
+}
+
+impl<N: Real> Flat<N> {
+    /// A solid in the frame of another, whose pose in its own is `pose12`; `None` for one that has no normals,
+    /// is too large, or has other faces.
+    pub(super) fn new(kind: &Kind<'_, N, 3>, pose12: &Pose<N, 3>, shrink: N) -> Option<Self> {
+        let mut flat = Self {
+            own_vertices: SmallVec::new(),
+            vertices: SmallVec::new(),
+            own_normals: SmallVec::new(),
+            normals: SmallVec::new(),
+            edges: SmallVec::new(),
+        };
+        match kind {
+            Kind::Segment(segment) => flat.fill_segment([segment.a(), segment.b()], shrink)?,
+            Kind::Capsule(capsule) => {
+                let segment = capsule.segment();
+                flat.fill_segment([segment.a(), segment.b()], shrink)?;
+            }
+            Kind::Triangle(triangle) => flat.fill_triangle(triangle, shrink)?,
+            Kind::Cuboid(cuboid) => flat.fill_box(cuboid, shrink),
+            Kind::Polytope(polytope) => flat.fill_polytope(polytope, shrink)?,
+            _ => return None,
+        }
+        flat.place(&pose12.rotation.transpose(), &(pose12.translation * shrink));
+        Some(flat)
+    }
+
+    /// The vertex that is lowest along a direction: the first of equals.
+    pub(super) fn lowest(&self, direction: &Vector<N, 3>) -> usize {
+        let (mut lowest, mut low) = (0, N::INFINITY);
+        for (index, vertex) in self.vertices.iter().enumerate() {
+            let height = direction.dot(vertex);
+            if height < low {
+                (lowest, low) = (index, height);
+            }
+        }
+        lowest
+    }
+
+    fn place(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
+        for vertex in &self.own_vertices {
+            self.vertices.push(turn * (vertex - translation));
+        }
+        for (normal, outward) in self.normals.iter_mut().zip(&self.own_normals) {
+            normal.0 = -(turn * outward);
+        }
+    }
+
+    /// A unit vector out of the solid, with a vertex that is farthest along it.
+    fn push_normal(&mut self, outward: Vector<N, 3>, vertex: u32) {
+        self.own_normals.push(outward);
+        self.normals.push((outward, vertex));
+    }
+
+    fn push_edge(&mut self, vertices: [u32; 2], normals: [u32; 2]) {
+        self.edges.push(Edge { vertices, normals });
+    }
+
+    fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
+        self.own_vertices.extend(ends.map(|end| end.coords * shrink));
+        let along = self.own_vertices[1] - self.own_vertices[0];
+        let (along, _) = unit(&along).filter(|(_, length)| *length > noise())?;
+        let (u, v) = orthonormal_basis(&along);
+        [u, v, -u, -v].into_iter().for_each(|normal| self.push_normal(normal, 0));
+        [[0, 1], [1, 2], [2, 3], [3, 0]].into_iter().for_each(|arc| self.push_edge([0, 1], arc));
+        Some(())
+    }
+
+    fn fill_triangle(&mut self, triangle: &Triangle<N, 3>, shrink: N) -> Option<()> {
+        let corners = triangle.corners().map(|corner| corner.coords * shrink);
+        self.own_vertices.extend(corners);
+        let (e, f) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let longest = (corners[2] - corners[1]).norm() + e.norm() + f.norm();
+        let thick = |&(_, area): &(Vector<N, 3>, N)| area > N::EPSILON.sqrt() * longest * longest;
+        let (normal, _) = unit(&cross(&e, &f)).filter(thick)?;
+        self.push_normal(normal, 0);
+        self.push_normal(-normal, 0);
+        for (number, [from, to]) in (2..).zip([[0_u32, 1], [1, 2], [2, 0]]) {
+            let side = corners[to as usize] - corners[from as usize];
+            self.push_normal(unit(&cross(&side, &normal))?.0, from);
+            self.push_edge([from, to], [0, number]);
+            self.push_edge([from, to], [number, 1]);
+        }
+        Some(())
+    }
+
+    /// Extents may be zero: the arc of an edge without length is one of normals of its vertex, and as true.
+    fn fill_box(&mut self, cuboid: &Cuboid<N, 3>, shrink: N) {
+        let half = cuboid.half_extents() * shrink;
+        for signs in 0..8_usize {
+            let at = |axis: usize| if signs >> axis & 1 == 1 { half[axis] } else { -half[axis] };
+            self.own_vertices.push(Vector::<N, 3>::new(at(0), at(1), at(2)));
+        }
+        for axis in 0..3 {
+            let mut normal = Vector::<N, 3>::zeros();
+            normal[axis] = N::ONE;
+            self.push_normal(-normal, 0);
+            self.push_normal(normal, 7);
+        }
+        for axis in 0..3_u32 {
+            let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
+            for (side1, side2) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let low = (side1 << next) | (side2 << after);
+                self.push_edge([low, low | (1 << axis)], [2 * next + side1, 2 * after + side2]);
+            }
+        }
+    }
+
+    fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {
+        if polytope.vertices().len() > MAX_VERTICES {
+            return None;
+        }
+        self.own_vertices.extend(polytope.vertices().iter().map(|vertex| vertex.coords * shrink));
+        for face in polytope.faces() {
+            self.push_normal(face.normal, polytope.face_vertices(face)[0]);
+        }
+        for edge in polytope.edges() {
+            self.push_edge(edge.vertices, edge.faces);
+        }
+        Some(())
+    }
+}

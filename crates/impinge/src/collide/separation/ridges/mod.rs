@@ -1,0 +1,267 @@
+//! A solid with flat faces in a cylinder or a cone: how deep, without growing a polytope.
+//!
+//! The depth along a unit vector `m` is the support function of the difference of the cores, and the
+//! answer is the least one. On a smooth part of the sphere of directions a least one needs radii of
+//! curvature of the difference of at least the depth, in both directions across. Vertices of the flat
+//! solid have none, and a rim has one along itself only, the apex of a cone none. So the least depth lies on
+//! what is left: the normals of faces and caps; the arcs of normals of an edge, between those of its
+//! faces (the Gauss map); and the circle of normals of the round side. Faces are looked at one by one, arcs
+//! are searched by [`arc`], which proves what it finds. Nothing is iterated over two dimensions, as growing a
+//! polytope towards a curved surface does.
+//!
+//! Extents may be zero: an edge without length has an arc of normals of its vertex, which are worth a look
+//! like all others. What the arcs cannot tell is left to the general algorithm: a round solid, segment or
+//! triangle of hardly any size, of which no normals are known; a polytope with normals so poor, being flat up
+//! to rounding, that its vertices deny the depth found; and rings of normals that are all about as good, where
+//! an arc along the ring is cut too often.
+//!
+//! That faces and edges are enough for two polytopes is the separating axis test; the rest follows the
+//! same thought for the kinds of part that cylinders and cones have.
+
+mod arc;
+mod flat;
+mod round;
+
+use smallvec::SmallVec;
+
+use self::arc::{Arc, Line, Search};
+use self::flat::Flat;
+pub(super) use self::round::Round;
+use super::flat_core::FlatCore;
+use super::{general, wrong_kinds};
+use crate::collide::Pair;
+use crate::convex::{self, Peak, Peaks, Separation};
+use crate::math::{Pose, Real, Vector, cross, max, min, unit};
+use crate::shape::{Geometry, SupportMap};
+
+/// The separation of a solid with flat faces, or a segment or capsule, from a cylinder or cone.
+///
+/// Apart, it is that of the general algorithm to the bit.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let (flat, round) = cores(pair);
+    let loosened = general::loosened(&flat, round, &pair.pose12, limit);
+    let found = convex::separation_by(&flat, round, &pair.pose12, loosened, &OverlapPeaks { pair });
+    found.filter(|found| found.distance <= limit)
+}
+
+/// The distance in [`separation`], or zero if the solids certainly overlap.
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    let (flat, round) = cores(pair);
+    let loosened = general::loosened(&flat, round, &pair.pose12, limit);
+    let found = convex::distance_by(&flat, round, &pair.pose12, loosened, &OverlapPeaks { pair });
+    found.filter(|distance| *distance <= limit)
+}
+
+/// The flat solid and the round one.
+fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn SupportMap<N, 3>) {
+    match (FlatCore::of(pair.first), Geometry(pair.second).as_support_map()) {
+        (Some(flat), Some(round)) => (flat, round),
+        _ => wrong_kinds(pair),
+    }
+}
+
+/// Two solids whose cores overlap.
+struct OverlapPeaks<'a, 'b, N: Real> {
+    pair: &'b Pair<'a, N, 3>,
+}
+
+impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
+    fn best(&self, shrink: N, gap: N) -> Option<Peak<N, 3>> {
+        let round = Round::new(&self.pair.second, shrink)?;
+        let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
+        let mut meeting = DepthSearch {
+            flat: &flat,
+            round: &round,
+            least: N::INFINITY,
+            at: DepthFeature::Face(0),
+            normal: Vector::<N, 3>::y(),
+        };
+        meeting.search(gap)?;
+        if !meeting.is_confirmed(gap) {
+            return None;
+        }
+        Some(meeting.peak(&self.pair.pose12, shrink))
+    }
+}
+
+/// Where on the sphere of directions the least depth is.
+#[derive(Clone, Copy)]
+enum DepthFeature {
+    /// A normal of the flat solid, by its number.
+    Face(usize),
+    /// The normal of a cap.
+    Cap,
+    /// On the arc of an edge, by its number.
+    Edge(usize),
+    /// On the circle of normals of the round side.
+    Side,
+}
+
+/// What is known of two solids, in the frame of the round one and units of the pair. Directions lead from
+/// the round solid to the flat one.
+struct DepthSearch<'a, N: Real> {
+    flat: &'a Flat<N>,
+    round: &'a Round<N>,
+    /// The least depth so far, and where it is.
+    least: N,
+    at: DepthFeature,
+    normal: Vector<N, 3>,
+}
+
+impl<N: Real> DepthSearch<'_, N> {
+    fn search(&mut self, gap: N) -> Option<()> {
+        let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
+        for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
+            let end = self.round.support(normal);
+            let depth = normal.dot(&(end - self.flat.vertices[*vertex as usize]));
+            self.note(depth, DepthFeature::Face(index), *normal);
+            ends.push(end);
+        }
+        for &up in self.round.caps() {
+            let normal = Vector::<N, 3>::y() * N::lit(up);
+            let low = self.flat.lowest(&normal);
+            let depth = self.round.half - normal.dot(&self.flat.vertices[low]);
+            self.note(depth, DepthFeature::Cap, normal);
+        }
+        if self.search_edges(&ends, gap).is_some() {
+            return self.search_side(gap);
+        }
+        // Normals around the axis are all about as good, and parts of each arc that crosses them cannot be told
+        // from the best; but the best itself is found at once by the side.
+        self.search_side(gap)?;
+        self.search_edges(&ends, gap)
+    }
+
+    fn search_edges(&mut self, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
+        (0..self.flat.edges.len()).try_for_each(|edge| self.search_edge(edge, ends, gap))
+    }
+
+    fn note(&mut self, depth: N, at: DepthFeature, normal: Vector<N, 3>) {
+        if depth < self.least {
+            (self.least, self.at, self.normal) = (depth, at, normal);
+        }
+    }
+
+    /// All vertices confirm the depth found, not only those of the face or edge that it was found by: theirs are
+    /// the lowest for as long as the normals of the faces are right.
+    fn is_confirmed(&self, gap: N) -> bool {
+        let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
+        let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
+        depth - self.least <= N::lit(8.0) * gap
+    }
+
+    /// Along the normals of an edge, in whose plane the end of the edge is a point; `ends` are the support
+    /// points of the round solid along the normals of the flat one.
+    fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
+        let (round, vertices) = (self.round, &self.flat.vertices);
+        let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
+        let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
+        let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
+        let ends = [first, second].map(|normal| ends[normal as usize]);
+        let heights = ends.map(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
+        if arc::are_above(&heights, self.least - gap) {
+            return Some(());
+        }
+        let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
+        let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
+        // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
+        // square: next to the normal of a cap the point of its rim runs as fast as the normal turns.
+        if cosine > N::ZERO && sine <= gap {
+            return Some(());
+        }
+        let line = |point: &Vector<N, 3>| {
+            let away = point - vertex;
+            Line { base: N::ZERO, toward: Vector::<N, 2>::new(away.dot(&from), away.dot(&across)) }
+        };
+        let arc = Arc {
+            ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
+            lines: ends.map(|end| line(&end)),
+        };
+        let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
+        let mut search = Search::new(self.least, gap);
+        search.run(arc, |u| line(&round.support(&lift(u))))?;
+        if let Some(u) = search.best {
+            self.note(search.least, DepthFeature::Edge(edge), lift(&u));
+        }
+        Some(())
+    }
+
+    /// Along the normals of the round side.
+    fn search_side(&mut self, gap: N) -> Option<()> {
+        let (flat, slope) = (self.flat, self.round.slope());
+        let lift = |u: &Vector<N, 2>| {
+            Vector::<N, 3>::new(u.x * slope.aside, slope.along, u.y * slope.aside)
+        };
+        let line = |u: &Vector<N, 2>| {
+            let vertex = flat.vertices[flat.lowest(&lift(u))];
+            let toward = Vector::<N, 2>::new(vertex.x, vertex.z) * -slope.aside;
+            Line { base: slope.reach - slope.along * vertex.y, toward }
+        };
+        let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
+        let mut search = Search::new(self.least, gap);
+        let starts = [x, y, -x, -y];
+        let lines = starts.map(|u| line(&u));
+        (0..4).for_each(|index| search.note(&starts[index], &lines[index]));
+        for index in 0..4 {
+            let next = (index + 1) % 4;
+            let arc =
+                Arc { ends: [starts[index], starts[next]], lines: [lines[index], lines[next]] };
+            search.run(arc, line)?;
+        }
+        if let Some(u) = search.best {
+            self.note(search.least, DepthFeature::Side, lift(&u));
+        }
+        Some(())
+    }
+
+    /// The answer in the frame of the flat solid.
+    fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
+        let turned = -(pose12.rotation * self.normal);
+        let (is_exact, normal) = match self.at {
+            DepthFeature::Face(index) => (true, self.flat.own_normals[index]),
+            DepthFeature::Cap => (true, turned),
+            _ => (false, unit(&turned).map_or(turned, |(normal, _)| normal)),
+        };
+        let low = self.touched();
+        let on_round =
+            self.round.touched(&self.normal, low.iter().map(|v| &self.flat.vertices[*v]));
+        let in_first = |point: Vector<N, 3>| pose12.rotation * point + pose12.translation * shrink;
+        Peak {
+            normal,
+            is_exact,
+            on1: low.iter().map(|&vertex| self.flat.own_vertices[vertex]).collect(),
+            on2: on_round.into_iter().map(in_first).collect(),
+        }
+    }
+
+    /// The vertices of the flat solid that may touch.
+    fn touched(&self) -> SmallVec<[usize; 8]> {
+        if let DepthFeature::Edge(edge) = self.at {
+            return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();
+        }
+        let height = |vertex: &Vector<N, 3>| self.normal.dot(vertex);
+        let vertices = &self.flat.vertices;
+        let low = vertices.iter().fold(N::INFINITY, |low, vertex| min(height(vertex), low));
+        let slack = N::EPSILON.sqrt();
+        let is_low = |index: &usize| height(&vertices[*index]) <= low + slack;
+        (0..vertices.len()).filter(is_low).take(8).collect()
+    }
+}
+
+/// The unit vector across the first of two normals of an edge, on the side of the second: by the edge or by
+/// the normals, whichever says it better.
+fn across<N: Real>(edge: &Vector<N, 3>, [from, to]: [&Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
+    let aside = unit(&(to - from * from.dot(to)));
+    let Some((by_edge, length)) = unit(&cross(edge, from)) else { return Some(aside?.0) };
+    match aside {
+        Some((aside, sine)) if sine >= length => Some(aside),
+        // Normals about opposite to each other do not say on which side; the edge runs so that it does.
+        Some((aside, sine)) if sine > N::EPSILON.sqrt() && aside.dot(&by_edge) < N::ZERO => {
+            Some(-by_edge)
+        }
+        _ => Some(by_edge),
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

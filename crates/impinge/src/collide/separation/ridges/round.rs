@@ -1,0 +1,96 @@
+//! Cylinders and cones about the y axis, as what supports.
+
+use smallvec::SmallVec;
+
+use crate::collide::separation::hulls::noise;
+use crate::collide::separation::revolved::cylinder_cylinder::radial;
+use crate::math::{Real, Vector, unit};
+use crate::shape::Kind;
+
+/// The normals of a round side: how far they reach aside and along the axis, and how far the solid reaches
+/// along each of them.
+pub(super) struct Slope<N> {
+    pub(super) aside: N,
+    pub(super) along: N,
+    pub(super) reach: N,
+}
+
+/// A cylinder or a cone with its apex up, in units of the pair.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Round<N: Real> {
+    pub(in super::super) half: N,
+    pub(in super::super) radius: N,
+    pub(in super::super) is_cone: bool,
+}
+
+impl<N: Real> Round<N> {
+    /// `None` for another kind, or one without a size.
+    pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
+        let (half, radius, is_cone) = match kind {
+            Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
+            Kind::Cone(cone, _) => (cone.half_height(), cone.radius(), true),
+            _ => return None,
+        };
+        let round = Self { half: half * shrink, radius: radius * shrink, is_cone };
+        (round.half > noise() && round.radius > noise()).then_some(round)
+    }
+
+    /// The heights of the caps in parts of the half height.
+    pub(in super::super) fn caps(&self) -> &'static [f64] {
+        if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
+    }
+
+    /// A point farthest along a direction.
+    pub(in super::super) fn support(&self, direction: &Vector<N, 3>) -> Vector<N, 3> {
+        let aside = radial(direction);
+        let squared = aside.norm_squared();
+        let is_aside = squared > N::EPSILON * N::EPSILON;
+        let scale = if is_aside { self.radius / squared.sqrt() } else { N::ZERO };
+        let (x, z) = (aside.x * scale, aside.y * scale);
+        if !self.is_cone {
+            let y = if direction.y < N::ZERO { -self.half } else { self.half };
+            return Vector::<N, 3>::new(x, y, z);
+        }
+        let rim = Vector::<N, 3>::new(x, -self.half, z);
+        let apex = self.apex();
+        if apex.dot(direction) > rim.dot(direction) { apex } else { rim }
+    }
+
+    fn apex(&self) -> Vector<N, 3> {
+        Vector::<N, 3>::new(N::ZERO, self.half, N::ZERO)
+    }
+
+    /// The normals of the side.
+    pub(super) fn slope(&self) -> Slope<N> {
+        if !self.is_cone {
+            return Slope { aside: N::ONE, along: N::ZERO, reach: self.radius };
+        }
+        let normal = unit(&Vector::<N, 2>::new(N::TWO * self.half, self.radius));
+        let (aside, along) = normal.map_or((N::ONE, N::ZERO), |(normal, _)| (normal.x, normal.y));
+        Slope { aside, along, reach: along * self.half }
+    }
+
+    /// Points of which mixes may touch others along a direction, which lie at or about `below`.
+    pub(in super::super) fn touched<'a>(
+        &self,
+        direction: &Vector<N, 3>,
+        below: impl Iterator<Item = &'a Vector<N, 3>>,
+    ) -> SmallVec<[Vector<N, 3>; 8]> {
+        let is_below = direction.y < N::ZERO;
+        let has_cap = is_below || !self.is_cone;
+        let is_cap = has_cap && radial(direction).norm_squared() <= N::EPSILON;
+        let end = if is_below { -self.half } else { self.half };
+        let at = |aside: Vector<N, 2>, y: N| {
+            Vector::<N, 3>::new(aside.x * self.radius, y, aside.y * self.radius)
+        };
+        if is_cap {
+            // The diameter of the cap through each.
+            let across = |point| unit(&radial(point)).map_or(Vector::<N, 2>::x(), |found| found.0);
+            let rims = below.take(4).map(across);
+            return rims.flat_map(|aside| [at(aside, end), at(-aside, end)]).collect();
+        }
+        let aside = unit(&radial(direction)).map_or(Vector::<N, 2>::x(), |found| found.0);
+        let top = if self.is_cone { self.apex() } else { at(aside, self.half) };
+        SmallVec::from_slice(&[at(aside, -self.half), top])
+    }
+}

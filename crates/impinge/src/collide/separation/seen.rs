@@ -1,0 +1,79 @@
+//! A point seen from a solid of any kind: all that there is to know of a ball around it.
+
+use super::balls::{
+    ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,
+    ball_segment, ball_tapered, ball_triangle, ball_triangle2,
+};
+use super::projection::{Projection, first_axis};
+use crate::math::{Point, Real, unit};
+use crate::shape::Kind;
+
+/// A point seen from a solid of the plane, in the frame of that; `None` where there is no closed form.
+pub(crate) fn seen_in_plane<N: Real>(
+    kind: Kind<'_, N, 2>,
+    point: &Point<N, 2>,
+) -> Option<Projection<N, 2>> {
+    match kind {
+        Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), point),
+        Kind::Polytope(polygon) => Some(ball_polygon::project(polygon, point)),
+        Kind::Rounded(solid) => {
+            let core = seen_in_plane(solid.inner().0, point)?;
+            Some(inflated(&core, solid.radius()))
+        }
+        other => seen(other, point),
+    }
+}
+
+/// [`seen_in_plane`], in 3D.
+pub(crate) fn seen_in_space<N: Real>(
+    kind: Kind<'_, N, 3>,
+    point: &Point<N, 3>,
+) -> Option<Projection<N, 3>> {
+    Some(match kind {
+        Kind::Triangle(triangle) => ball_triangle::project(triangle.corners(), point),
+        Kind::Polytope(hull) => ball_polytope::project(hull, point),
+        Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, point),
+        Kind::Cone(cone, _) => ball_cone::project(cone, point),
+        Kind::Rounded(solid) => inflated(&seen_in_space(solid.inner().0, point)?, solid.radius()),
+        other => return seen(other, point),
+    })
+}
+
+/// What is the same in any dimension.
+#[inline]
+fn seen<N: Real, const D: usize>(
+    kind: Kind<'_, N, D>,
+    point: &Point<N, D>,
+) -> Option<Projection<N, D>> {
+    Some(match kind {
+        Kind::Ball(ball) => {
+            let (outward, apart) = unit(&point.coords).unwrap_or((first_axis(), N::ZERO));
+            let center = Projection { distance: apart, outward, point: Point::origin() };
+            inflated(&center, ball.radius())
+        }
+        Kind::Segment(segment) => ball_segment::project(&[*segment.a(), *segment.b()], point),
+        Kind::Capsule(capsule) => {
+            let core = capsule.segment();
+            inflated(&ball_segment::project(&[*core.a(), *core.b()], point), capsule.radius())
+        }
+        Kind::Cuboid(cuboid) => ball_cuboid::project(cuboid.half_extents(), point),
+        Kind::Ellipsoid(ellipsoid) => ball_ellipsoid::project(ellipsoid, point),
+        Kind::TaperedCapsule(capsule) => ball_tapered::project(capsule, point).0,
+        Kind::Plane(plane) => {
+            let outward = plane.normal().into_inner();
+            let distance = outward.dot(&point.coords);
+            Projection { distance, outward, point: point - outward * distance }
+        }
+        _ => return None,
+    })
+}
+
+/// As the solid is seen whose points are no farther than `radius` from one that is seen so.
+#[inline]
+fn inflated<N: Real, const D: usize>(core: &Projection<N, D>, radius: N) -> Projection<N, D> {
+    Projection {
+        distance: core.distance - radius,
+        outward: core.outward,
+        point: core.point + core.outward * radius,
+    }
+}

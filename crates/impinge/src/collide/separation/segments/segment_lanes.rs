@@ -1,0 +1,229 @@
+//! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
+//!
+//! A lone pair of the plane is a batch of one, so that what is asked of two segments, and what a manifold of
+//! them says, are the same bits.
+
+use super::nearest::core;
+use crate::collide::Pair;
+use crate::convex::Separation;
+use crate::math::lanes::{
+    dot, either, either_mask, minus, negated, norm, over, plus, spread, times, with_lanes,
+};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::shape::Kind;
+
+/// The nearest point of a segment to a point.
+pub(crate) struct Nearest<V, M, const D: usize> {
+    pub(crate) point: [V; D],
+    /// It lies between the ends.
+    pub(crate) is_inside: M,
+    /// From the first end to the last.
+    pub(crate) along: [V; D],
+    /// How far along the given point is from the first end, and how far from the last, times the length.
+    pub(crate) from_first: V,
+    pub(crate) to_last: V,
+}
+
+/// The nearest points of segments to points, measured from the nearer end.
+#[inline(always)]
+pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    [first, last]: &[[V; D]; 2],
+    point: &[V; D],
+) -> Nearest<V, V::Mask, D> {
+    let zero = V::all(simd, N::ZERO);
+    let along = minus(last, first);
+    let from_first = dot(&minus(point, first), &along);
+    let to_last = dot(&minus(last, point), &along);
+    let (is_beyond_first, whole) = (from_first.simd_gt(zero), from_first + to_last);
+    let is_inside = is_beyond_first & to_last.simd_gt(zero);
+    let is_first_half = from_first.simd_lt(to_last);
+    let step = times(&along, is_first_half.select(from_first, to_last) / whole);
+    let inside = either(is_first_half, &plus(first, &step), &minus(last, &step));
+    let end = either(is_beyond_first, last, first);
+    let point = either(is_inside, &inside, &end);
+    Nearest { point, is_inside, along, from_first, to_last }
+}
+
+/// The lanes where a square is far from both ends of the range, so that its root is the length.
+#[inline(always)]
+pub(crate) fn is_usual<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, squared: V) -> V::Mask {
+    squared.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
+        & squared.simd_lt(V::all(simd, N::MAX * N::EPSILON))
+}
+
+/// What separates two segments of the plane.
+pub(crate) struct SegmentGap<V, M> {
+    /// A unit vector from the first to the second.
+    pub(crate) normal: [V; 2],
+    pub(crate) gap: V,
+    /// The nearest points.
+    pub(crate) points: [[V; 2]; 2],
+    /// The lanes where all this is so. The segments of the others cross, touch, or have no usual length.
+    pub(crate) is_known: M,
+}
+
+/// An end of one segment and the nearest point of the other.
+struct EndAndSide<V, M> {
+    points: [[V; 2]; 2],
+    /// The point of the other segment lies between its ends.
+    is_inside: M,
+    /// From the first end of that one to the last.
+    along: [V; 2],
+    squared: V,
+}
+
+impl<V, M> EndAndSide<V, M> {
+    /// An end of one of two segments.
+    #[inline(always)]
+    fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2], which: usize, end: usize) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let own = ends[which][end];
+        let near = nearest_on_segment(simd, ends[1 - which], &own);
+        let points = if which == 0 { [own, near.point] } else { [near.point, own] };
+        let between = minus(&points[1], &points[0]);
+        let squared = dot(&between, &between);
+        Self { points, is_inside: near.is_inside, along: near.along, squared }
+    }
+
+    /// The other one where a mask says so.
+    #[inline(always)]
+    fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
+    where
+        V: Wide<S, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let [point1, point2] = &self.points;
+        Self {
+            points: [
+                either(is_other, &other.points[0], point1),
+                either(is_other, &other.points[1], point2),
+            ],
+            is_inside: either_mask(is_other, other.is_inside, self.is_inside),
+            along: either(is_other, &other.along, &self.along),
+            squared: is_other.select(other.squared, self.squared),
+        }
+    }
+}
+
+impl<V, M> SegmentGap<V, M> {
+    /// Between segments that are given by their ends.
+    ///
+    /// Segments that do not cross are nearest at an end of one of them. Where it lies beside the inside of the
+    /// other, the normal is perpendicular to that, however short the way between them is; of points that are
+    /// equally near but for rounding such a one is preferred. Of others the first counts.
+    #[inline(always)]
+    pub(crate) fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> Self
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let mut best = EndAndSide::of(simd, ends, 0, 0);
+        let mut beside = EndAndSide::of(simd, ends, 0, 0);
+        beside.squared = beside.is_inside.select(beside.squared, V::all(simd, N::INFINITY));
+        for (which, end) in [(0, 1), (1, 0), (1, 1)] {
+            let other = EndAndSide::of(simd, ends, which, end);
+            best = best.or(&other, other.squared.simd_lt(best.squared));
+            let is_nearer = other.is_inside & other.squared.simd_lt(beside.squared);
+            beside = beside.or(&other, is_nearer);
+        }
+        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size(simd, ends);
+        let is_beside = beside.squared.sqrt().simd_le(best.squared.sqrt() + noise);
+        best = best.or(&beside, is_beside);
+        let (normal, gap) = best.normal(simd);
+        let is_long =
+            is_usual(simd, length_squared(ends[0])) & is_usual(simd, length_squared(ends[1]));
+        // Farther apart than rounding, and on the two sides of a line.
+        let slack = V::all(simd, N::lit(16.0)) * noise;
+        let parted = lowest(ends[1], &normal) + lowest(ends[0], &negated(&normal));
+        let is_apart = gap.simd_gt(slack) & (parted + slack).simd_gt(gap);
+        let is_known = is_long & is_apart & is_usual(simd, best.squared);
+        Self { normal, gap, points: best.points, is_known }
+    }
+}
+
+impl<V, M> EndAndSide<V, M> {
+    /// The normal and how far the points are apart along it.
+    #[inline(always)]
+    fn normal<S: Simd, N: Real>(&self, simd: S) -> ([V; 2], V)
+    where
+        V: Wide<S, Scalar = N, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let between = minus(&self.points[1], &self.points[0]);
+        let length = self.squared.sqrt();
+        let across = [self.along[1], -self.along[0]];
+        let across = over(&across, norm(&across));
+        let height = dot(&across, &between);
+        let is_behind = height.simd_lt(V::all(simd, N::ZERO));
+        let across = either(is_behind, &negated(&across), &across);
+        let normal = either(self.is_inside, &across, &over(&between, length));
+        (normal, self.is_inside.select(height.abs(), length))
+    }
+}
+
+/// The sum of the coordinates' magnitudes, of the end where it is greatest.
+#[inline(always)]
+fn size<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> V {
+    let mut size = V::all(simd, N::ZERO);
+    for end in ends.into_iter().flatten() {
+        size = (end[0].abs() + end[1].abs()).larger(size);
+    }
+    size
+}
+
+#[inline(always)]
+fn length_squared<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2]) -> V {
+    let along = minus(last, first);
+    dot(&along, &along)
+}
+
+/// How far along a direction the lower end is.
+#[inline(always)]
+fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) -> V {
+    dot(direction, first).smaller(dot(direction, last))
+}
+
+/// The separation of two segments of the plane, inflated or not; `None` of other kinds, and where
+/// [`SegmentGap`] knows none.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    level: Level,
+    pair: &Pair<'_, N, 2>,
+) -> Option<Separation<N, 2>> {
+    let is_segment = |kind: &Kind<'_, N, 2>| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));
+    if !(is_segment(&pair.first) && is_segment(&pair.second)) {
+        return None;
+    }
+    let ((ends1, radius1), (local2, radius2)) = (core(pair, &pair.first), core(pair, &pair.second));
+    let ends2 = local2.map(|end| pair.pose12.point(&end));
+    let cores = with_lanes!(level, simd => alone::<_, N, N::Lanes<_>>(simd, &ends1, &ends2))?;
+    Some(cores.rounded(radius1, radius2))
+}
+
+/// The same pair in all lanes.
+#[inline(always)]
+fn alone<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    [first1, last1]: &[Point<N, 2>; 2],
+    [first2, last2]: &[Point<N, 2>; 2],
+) -> Option<Separation<N, 2>> {
+    let ends1: [[V; 2]; 2] = [spread(simd, &first1.coords), spread(simd, &last1.coords)];
+    let ends2: [[V; 2]; 2] = [spread(simd, &first2.coords), spread(simd, &last2.coords)];
+    let found = SegmentGap::of(simd, [&ends1, &ends2]);
+    let vector = |v: &[V; 2]| Vector::<N, 2>::new(first_lane(&v[0]), first_lane(&v[1]));
+    let [point1, point2] = &found.points;
+    let (point1, point2) = (Point::from(vector(point1)), Point::from(vector(point2)));
+    let (distance, normal) = (first_lane(&found.gap), vector(&found.normal));
+    found.is_known.all_true().then_some(Separation { distance, normal, point1, point2 })
+}
+
+#[inline(always)]
+fn first_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: &V) -> N {
+    let mut lanes = [N::ZERO; 8];
+    numbers.store(&mut lanes);
+    lanes[0]
+}

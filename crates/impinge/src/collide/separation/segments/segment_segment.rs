@@ -1,0 +1,154 @@
+//! Segments and capsules among themselves, in 3D.
+
+use super::nearest::{core, gap_along, nearest_of_segments};
+use crate::collide::Pair;
+use crate::collide::separation::projection::{
+    first_axis, made_perpendicular, noise, perpendicular_to,
+};
+use crate::convex::Separation;
+use crate::math::{Point, Real, Vector, cross, max, unit};
+
+/// The separation of two segments or capsules in 3D.
+///
+/// Segments that meet are parted along their common perpendicular with depth zero; those on one
+/// line along a fixed perpendicular of it; two points at one place along the first axis.
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
+    let ((ends1, rounding1), (local2, rounding2)) =
+        (core(pair, &pair.first), core(pair, &pair.second));
+    let ends2 = local2.map(|end| pair.pose12.point(&end));
+    let (point1, point2) = nearest_of_segments(&ends1, &ends2);
+    let distance = (point2 - point1).norm();
+    (distance - rounding1 - rounding2 <= limit).then(|| {
+        let normal = best_normal(&ends1, &ends2, &(point2 - point1));
+        Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2)
+    })
+}
+
+/// The distance in [`separation`], for which no direction is needed.
+pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -> N {
+    let ((ends1, rounding1), (local2, rounding2)) =
+        (core(pair, &pair.first), core(pair, &pair.second));
+    let (point1, point2) = nearest_of_segments(&ends1, &local2.map(|end| pair.pose12.point(&end)));
+    (point2 - point1).norm() - rounding1 - rounding2
+}
+
+/// The unit vector along which the segments are farthest apart.
+///
+/// Right is the direction between the nearest points. Where these are close that is mostly
+/// rounding, and a direction made from the segments themselves separates better: each candidate is
+/// judged by the gap that it really leaves, the first of equals (up to rounding) is taken.
+fn best_normal<N: Real>(
+    ends1: &[Point<N, 3>; 2],
+    ends2: &[Point<N, 3>; 2],
+    offset: &Vector<N, 3>,
+) -> Vector<N, 3> {
+    let reach = ends1.iter().chain(ends2).fold(N::ZERO, |most, p| max(p.coords.norm(), most));
+    let mut widest = Widest { ends1, ends2, noise: noise(reach), best: None };
+    let direct = unit(offset).map(|(along, _)| along);
+    widest.consider(direct);
+    // No normal leaves a larger gap than the distance, but for less than the noise.
+    let is_best =
+        widest.best.is_some_and(|(gap, _)| gap + widest.noise / N::lit(4.0) >= offset.norm());
+    if let Some(normal) = direct.filter(|_| is_best) {
+        return normal;
+    }
+    let axes = [ends1, ends2].map(|ends| unit(&(ends[1] - ends[0])).map(|(axis, _)| axis));
+    let across = match axes {
+        [Some(axis1), Some(axis2)] => unit(&cross(&axis1, &axis2)).map(|(across, _)| across),
+        _ => None,
+    };
+    for axis in axes {
+        widest.consider(axis.and_then(|axis| made_perpendicular(offset, &axis)));
+    }
+    widest.consider_both(across);
+    for axis in axes {
+        widest.consider_both(axis.map(|axis| perpendicular_to(&axis)));
+    }
+    widest.best.map_or_else(first_axis, |(_, normal)| normal)
+}
+
+/// The normal that leaves the widest gap between two segments; of those that differ by noise the first.
+struct Widest<'a, N: Real> {
+    ends1: &'a [Point<N, 3>; 2],
+    ends2: &'a [Point<N, 3>; 2],
+    noise: N,
+    best: Option<(N, Vector<N, 3>)>,
+}
+
+impl<N: Real> Widest<'_, N> {
+    fn consider(&mut self, normal: Option<Vector<N, 3>>) {
+        let Some(normal) = normal else { return };
+        let gap = gap_along(&normal, self.ends1, self.ends2);
+        if self.best.is_none_or(|(widest, _)| gap > widest + self.noise) {
+            self.best = Some((gap, normal));
+        }
+    }
+
+    fn consider_both(&mut self, normal: Option<Vector<N, 3>>) {
+        self.consider(normal);
+        self.consider(normal.map(|normal| -normal));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::shape::{Capsule, Segment, Shape};
+
+    fn p(x: f64, y: f64, z: f64) -> Point<f64, 3> {
+        Point::<f64, 3>::new(x, y, z)
+    }
+
+    fn of(shape1: &dyn Shape<f64, 3>, shape2: &dyn Shape<f64, 3>) -> Separation<f64, 3> {
+        let (first, second) = (shape1.geometry().0, shape2.geometry().0);
+        let pair = Pair { first, second, pose12: Pose::identity() };
+        separation(&pair, f64::INFINITY).expect("nothing is beyond infinity")
+    }
+
+    #[test]
+    fn one_above_the_other() {
+        let low = Segment::new(p(-1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        let high = Capsule::try_from_ends(p(0.5, -1.0, 2.0), p(0.5, 1.0, 2.0), 0.25);
+        let found = of(&low, &high.expect("finite"));
+        assert_eq!((found.distance, found.normal.z), (1.75, 1.0), "straight up");
+        assert_eq!(found.point1, p(0.5, 0.0, 0.0), "below the crossing");
+        assert_eq!(found.point2, p(0.5, 0.0, 1.75), "the bottom of the capsule");
+    }
+
+    #[test]
+    fn crossing_segments_have_no_depth_but_a_normal() {
+        let along_x = Segment::new(p(-1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        let along_y = Segment::new(p(0.0, -1.0, 0.0), p(0.0, 1.0, 0.0));
+        let found = of(&along_x, &along_y);
+        assert_eq!((found.distance, found.normal.z.abs()), (0.0, 1.0), "out of their plane");
+        let thick = |a, b| Capsule::try_from_ends(a, b, 0.5).expect("finite");
+        let found = of(&thick(*along_x.a(), *along_x.b()), &thick(*along_y.a(), *along_y.b()));
+        assert_eq!((found.distance, found.normal.z.abs()), (-1.0, 1.0), "both radii deep");
+    }
+
+    #[test]
+    fn on_one_line() {
+        let near = Segment::new(p(0.0, 0.0, 0.0), p(2.0, 0.0, 0.0));
+        let beyond = Segment::new(p(5.0, 0.0, 0.0), p(9.0, 0.0, 0.0));
+        let found = of(&near, &beyond);
+        assert_eq!((found.distance, found.normal.x), (3.0, 1.0), "end to end");
+        let over = Segment::new(p(1.0, 0.0, 0.0), p(9.0, 0.0, 0.0));
+        let found = of(&near, &over);
+        assert_eq!((found.distance, found.normal.x), (0.0, 0.0), "they leave sideways");
+        let point = Segment::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
+        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one place");
+    }
+
+    #[test]
+    fn side_by_side() {
+        let left = Segment::new(p(0.0, 0.0, 0.0), p(0.0, 4.0, 0.0));
+        let right = Segment::new(p(3.0, 1.0, 4.0), p(3.0, 9.0, 4.0));
+        let found = of(&left, &right);
+        assert_eq!(found.distance, 5.0, "3 across and 4 up");
+        assert!((found.normal - Vector::<f64, 3>::new(0.6, 0.0, 0.8)).norm() < 1e-15, "across");
+    }
+}

@@ -1,0 +1,67 @@
+//! Which algorithm serves which pair of kinds in 3D.
+
+use super::balls::{
+    ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polytope, ball_segment,
+    ball_tapered, ball_triangle,
+};
+use super::boxes::{cuboid_cuboid, segment_cuboid};
+use super::revolved::cylinder_cylinder;
+use super::segments::segment_segment;
+use super::{Algorithm, Table, flipped, general, hulls, look_up, plane_any, revolved, rounded};
+use crate::collide::Pair;
+use crate::collide::parts;
+use crate::convex::Separation;
+use crate::math::Real;
+
+/// The table of space, for one scalar.
+struct Table3<N>(core::marker::PhantomData<N>);
+
+impl<N: Real> Table3<N> {
+    const TABLE: Table<N, 3> = {
+        let bb: Algorithm<N, 3> = ball_ball::separation;
+        let bs: Algorithm<N, 3> = ball_segment::separation;
+        let b3: Algorithm<N, 3> = ball_triangle::separation;
+        let bc: Algorithm<N, 3> = ball_cuboid::separation;
+        let bh: Algorithm<N, 3> = ball_polytope::separation;
+        let by: Algorithm<N, 3> = ball_cylinder::separation;
+        let bo: Algorithm<N, 3> = ball_cone::separation;
+        let ss: Algorithm<N, 3> = segment_segment::separation;
+        let sc: Algorithm<N, 3> = segment_cuboid::separation;
+        let sf: Algorithm<N, 3> = hulls::segment::separation;
+        let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
+        let be: Algorithm<N, 3> = ball_ellipsoid::separation;
+        let bt: Algorithm<N, 3> = ball_tapered::separation;
+        let rr: Algorithm<N, 3> = rounded::separation;
+        let gg: Algorithm<N, 3> = general::separation;
+        let hh: Algorithm<N, 3> = hulls::separation;
+        let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
+        let re: Algorithm<N, 3> = revolved::separation;
+        let gp: Algorithm<N, 3> = plane_any::separation;
+        let pp: Algorithm<N, 3> = plane_any::plane_plane;
+        let gx: Algorithm<N, 3> = parts::separation;
+        let __: Algorithm<N, 3> = flipped;
+        // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone,
+        // ellipsoid, tapered capsule, rounded, support map, plane, composite.
+        [
+            [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
+            [__, ss, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, hh, hh, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, __, rr, rr, rr, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, gg, gp, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, __, pp, gx],
+            [__, __, __, __, __, __, __, __, __, __, __, __, __, gx],
+        ]
+    };
+}
+
+/// The separation of any pair in 3D.
+pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    look_up(&Table3::<N>::TABLE, pair)(pair, limit)
+}

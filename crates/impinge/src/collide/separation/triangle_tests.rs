@@ -1,0 +1,271 @@
+//! Triangles against triangles, boxes and hulls, held against the general algorithm and against what needs no
+//! trust in either: a plane that parts two solids bounds their distance from below, and two of their points
+//! from above.
+
+use super::{gaps3, general, hulls, separation};
+use crate::collide::Pair;
+use crate::collide::packet::{LANES, PartGap, TiledParts, Tiles};
+use crate::convex::Separation;
+use crate::math::na::UnitQuaternion;
+use crate::math::noise::Noise;
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::{ConvexHull, Cuboid, Geometry, Kind, Shape, SupportMap, Triangle};
+
+impl Noise {
+    fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
+        let turn = UnitQuaternion::from_scaled_axis(self.vector::<f64>(3.0));
+        let matrix = turn.to_rotation_matrix().into_inner().map(N::lit);
+        Pose { rotation: matrix, translation: self.vector(away) }
+    }
+
+    /// Also slivers, segments and points, and some that lie along the axes.
+    fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
+        let mut corner = || Point::from(self.vector::<N>(1.0));
+        let [a, mut b, mut c] = [corner(), corner(), corner()];
+        match round % 9 {
+            0 => c = a + (b - a) * N::lit(0.25),
+            1 => c = a + (b - a) * N::HALF + (c - a) * N::lit(1e-5),
+            2 => (b, c) = (a, a),
+            3 => (b.y, c.y) = (a.y, a.y),
+            4 => (b.y, b.z) = (a.y, a.z),
+            _ => {}
+        }
+        Triangle::new(a, b, c)
+    }
+}
+
+/// What a separation says is so, up to `slack`: its normal parts the solids by its distance, and its
+/// points are as far from each other and lie in them.
+fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: f64, what: &str) {
+    let maps = [pair.first, pair.second].map(|kind| match kind {
+        Kind::Triangle(triangle) => triangle as &dyn SupportMap<N, 3>,
+        Kind::Cuboid(cuboid) => cuboid,
+        Kind::Polytope(hull) => hull,
+        _ => unreachable!("none of these"),
+    });
+    let normal = found.normal;
+    assert!((normal.norm().as_f64() - 1.0).abs() < 1e-6, "{what}: unit");
+    let high = normal.dot(&maps[0].core_support(&normal).coords);
+    let local = pair.pose12.inverse_vector(&-normal);
+    let low = normal.dot(&pair.pose12.point(&maps[1].core_support(&local)).coords);
+    let proof = (low - high - found.distance).as_f64();
+    assert!(proof.abs() <= slack, "{what}: the normal says {} more", proof);
+    let away = found.point2 - found.point1 - normal * found.distance;
+    assert!(away.norm().as_f64() <= slack, "{what}: the points are aside by {away:?}");
+    let on = [found.point1, pair.pose12.inverse_point(&found.point2)];
+    for (map, point) in maps.iter().zip(on) {
+        for along in directions::<N>() {
+            let room = along.dot(&(map.core_support(&along) - point)).as_f64();
+            assert!(room >= -slack, "{what}: a point is outside by {room}");
+        }
+    }
+}
+
+/// Some directions all around.
+fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    let all = steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+    let some = all.filter(|v| *v != [0.0; 3]);
+    some.map(|v| Vector::<f64, 3>::from(v).normalize().map(N::lit))
+}
+
+/// What was met.
+#[derive(Default)]
+struct Tally {
+    overlaps: usize,
+    /// Answers that are not those of the general algorithm to the bit.
+    closed: usize,
+    rounds: usize,
+}
+
+/// Holds the separating axis test against the general algorithm.
+fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
+    let (slack, own) = (256.0 * N::EPSILON.as_f64() * size, hulls::separation::<N>);
+    let found = own(pair, N::INFINITY).expect("within infinity");
+    let general = general::of_flat_cores(pair, N::INFINITY).expect("within infinity");
+    let triangle = match pair.first {
+        Kind::Triangle(triangle) => triangle,
+        _ => unreachable!("a triangle comes first"),
+    };
+    let what = format!("round {}: {triangle:?} {found:?} {general:?}", tally.rounds);
+    let off = (found.distance - general.distance).as_f64();
+    assert!(off.abs() <= slack, "off by {off}: {what}");
+    check_proof(pair, &found, slack, &what);
+    tally.rounds += 1;
+    tally.overlaps += usize::from(found.distance < N::ZERO);
+    tally.closed += usize::from(found != general);
+    assert_eq!(own(pair, found.distance), Some(found), "the limit is its distance: {what}");
+    let less = found.distance - N::lit(slack);
+    assert_eq!(own(pair, less), None, "beyond the limit: {what}");
+}
+
+/// Boxes, hulls and triangles at every depth, of sizes from a tenth to one, some of them flat.
+fn at_random<N: Real>(rounds: usize) {
+    let (mut noise, mut tallies) = (Noise(7), [(); 3].map(|()| Tally::default()));
+    for round in 0..rounds {
+        let triangle = noise.triangle::<N>(round);
+        let mut half = noise.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
+        if round % 7 == 0 {
+            half.y = N::ZERO;
+        }
+        let cuboid = Cuboid::new(half);
+        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<N>(0.6))).collect();
+        let hull = ConvexHull::from_points(&points);
+        let mut pose12 = noise.pose::<N>(if round % 3 == 0 { 1.5 } else { 0.5 });
+        if round % 5 == 0 {
+            pose12 = Pose::from_translation(pose12.translation);
+        }
+        let first = triangle.geometry().0;
+        let other = noise.triangle::<N>(round / 2);
+        let kinds = [cuboid.geometry().0, hull.geometry().0, other.geometry().0];
+        for (second, tally) in kinds.into_iter().zip(&mut tallies) {
+            check_pair(&Pair { first, second, pose12 }, 4.0, tally);
+        }
+    }
+    for Tally { overlaps, closed, rounds } in &tallies {
+        assert!(
+            closed * 4 > *rounds,
+            "{closed} of {rounds} are not those of the general algorithm"
+        );
+        assert!(overlaps * 16 > *rounds, "{overlaps} of {rounds} overlap");
+    }
+}
+
+#[test]
+fn boxes_hulls_and_triangles_at_random() {
+    at_random::<f32>(4000);
+    at_random::<f64>(4000);
+}
+
+#[test]
+fn scaling_by_powers_of_two_is_exact() {
+    let mut noise = Noise(3);
+    for round in 0..300 {
+        let triangle = noise.triangle::<f32>(round);
+        let half = noise.vector::<f32>(0.5).abs();
+        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<f32>(0.6))).collect();
+        let pose12 = noise.pose::<f32>(0.7);
+        let at = |factor: f32| {
+            let corners = triangle.corners().map(|corner| corner * factor);
+            let triangle = Triangle::new(corners[0], corners[1], corners[2]);
+            let points: Vec<_> = points.iter().map(|point| point * factor).collect();
+            let (cuboid, hull) = (Cuboid::new(half * factor), ConvexHull::from_points(&points));
+            let pose12 = Pose { translation: pose12.translation * factor, ..pose12 };
+            [cuboid.geometry().0, hull.geometry().0].map(|second| {
+                let pair = Pair { first: triangle.geometry().0, second, pose12 };
+                let found = separation(&pair, f32::INFINITY).expect("within infinity");
+                (found.distance / factor, found.normal, found.point1 / factor)
+            })
+        };
+        for factor in [2.0_f32.powi(-30), 2.0_f32.powi(30)] {
+            assert_eq!(at(1.0)[0], at(factor)[0], "a box, {factor}");
+            assert_eq!(at(1.0)[1], at(factor)[1], "a hull, {factor}");
+        }
+    }
+}
+
+#[test]
+fn a_box_on_a_face_has_its_normal() {
+    let p = |x, y, z| Point::<f64, 3>::new(x, y, z);
+    let triangle = Triangle::new(p(-4.0, 0.0, -4.0), p(0.0, 0.0, 8.0), p(4.0, 0.0, -4.0));
+    let cuboid = Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 1.0));
+    for (height, distance) in [(0.75, 0.25), (0.5, 0.0), (0.375, -0.125), (-0.25, -0.25)] {
+        let pose12 = Pose::from_translation(Vector::<f64, 3>::new(0.0, height, 0.0));
+        let pair = Pair { first: triangle.geometry().0, second: cuboid.geometry().0, pose12 };
+        let found = separation(&pair, 1.0).expect("within the limit");
+        assert_eq!((found.distance, found.normal.y), (distance, height.signum()), "at {height}");
+        let is_below = [found.point1.x, found.point1.z].iter().all(|x| x.abs() <= 1.0);
+        assert!(is_below && found.point1.y == 0.0, "on the triangle, below the box");
+    }
+}
+
+/// Many triangles against one solid, and each of them alone.
+fn together<N: Real>(rounds: usize) {
+    let (mut noise, mut touching) = (Noise(5), 0);
+    for round in 0..rounds {
+        let half = noise.vector::<N>(1.0).map(|x| if round % 5 == 0 { N::ZERO } else { x.abs() });
+        let points: Vec<_> = (0..4 + round % 9).map(|_| Point::from(noise.vector(1.0))).collect();
+        let (cuboid, hull) = (Cuboid::new(half), ConvexHull::from_points(&points));
+        let mut pose12 = noise.pose::<N>(1.5);
+        if round % 7 == 0 {
+            pose12.rotation = Pose::identity().rotation;
+        }
+        let count = 1 + round % 19;
+        let mut triangles: Vec<_> = (0..count).map(|at| noise.triangle::<N>(round + at)).collect();
+        if round % 11 == 0 {
+            let huge = |point: &Point<N, 3>| point * N::MAX.sqrt();
+            let [a, b, c] = triangles[0].corners();
+            triangles[0] = Triangle::new(huge(a), huge(b), huge(c));
+        }
+        for limit in [N::ZERO, N::lit(0.3), N::MAX] {
+            for solid in [Kind::Cuboid(&cuboid), hull.geometry().0] {
+                touching += check_together(&triangles, solid, &pose12, limit, round);
+            }
+        }
+    }
+    assert!(touching > rounds, "{touching} touch");
+}
+
+/// Answers how many are within the limit and plain.
+fn check_together<N: Real>(
+    triangles: &[Triangle<N, 3>],
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
+    limit: N,
+    round: usize,
+) -> usize {
+    let count = triangles.len();
+    let mut tiles = vec![Tiles::blank(); count.div_ceil(LANES)];
+    for lane in 0..tiles.len() * LANES {
+        tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
+    }
+    let mut near = vec![u8::MAX; tiles.len()];
+    *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
+    let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
+    let (mut touching, mut plain) = (0, vec![false; count]);
+    let mut is_met = vec![false; count];
+    let is_known = gaps3(&parts, solid, pose12, limit, &mut |at, gap| {
+        is_met[at] = true;
+        if let Some(gap) = gap {
+            plain[at] = true;
+            check_gap(gap, &triangles[at], solid, pose12, round);
+        }
+    });
+    assert!(is_known, "round {round}");
+    for (at, triangle) in triangles.iter().enumerate() {
+        let pair = Pair { first: Kind::Triangle(triangle), second: solid, pose12: *pose12 };
+        let is_near = separation(&pair, limit).is_some();
+        assert!(is_met[at] || !is_near, "round {round}: {triangle:?} is within the limit");
+        touching += usize::from(is_near && plain[at]);
+    }
+    touching
+}
+
+/// What is plain of a triangle among others is true of its separation; only along its own normal it may be
+/// farther.
+fn check_gap<N: Real>(
+    gap: &PartGap<N, 3>,
+    triangle: &Triangle<N, 3>,
+    solid: Kind<'_, N, 3>,
+    pose12: &Pose<N, 3>,
+    round: usize,
+) {
+    let pair = Pair { first: Kind::Triangle(triangle), second: solid, pose12: *pose12 };
+    let found = separation(&pair, N::INFINITY).expect("within infinity");
+    let reach = Geometry(solid).as_support_map().expect("it is convex").reach();
+    let sizes = triangle.reach() + reach + pose12.translation.norm();
+    let tolerance = N::lit(16.0) * N::EPSILON * sizes;
+    let off = found.distance - gap.distance;
+    assert!(off >= -N::lit(16.0) * tolerance, "round {round}: not less than {found:?}");
+    let Some(feature) = gap.touched else { return };
+    assert!(off <= N::lit(16.0) * tolerance, "round {round}: not more than {found:?}");
+    let part = triangle.part_at(&found.point1, &found.normal, tolerance);
+    let is_tie = (found.normal - gap.normal).norm() > N::lit(1e-3);
+    assert!(part == Some(feature) || is_tie, "round {round}: {part:?} {feature:?}");
+}
+
+#[test]
+fn many_triangles_together_are_as_near_as_each_alone() {
+    together::<f32>(1000);
+    together::<f64>(1000);
+}

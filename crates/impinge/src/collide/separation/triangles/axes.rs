@@ -1,0 +1,379 @@
+//! The separating axes of eight triangles and one convex polyhedron.
+//!
+//! Two polyhedra overlap iff no normal of a face and no direction perpendicular to an edge of each
+//! parts them, and if they do, the one of these along which they overlap least is the shortest way out
+//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side of the triangle decide
+//! along a direction only where the one is its highest and the other its lowest: where the side climbs
+//! over the plane of one face beside the edge and sinks below the other's, and the triangle lies on
+//! the outer side (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes
+//! pairs of edges by their arcs of normals).
+
+use super::{TriangleQuery, noise};
+use crate::collide::packet::{LANES, Tiles};
+use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
+use crate::math::lanes::{
+    bits, by_axis, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
+};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Matrix, Real, Wide, max, max_component};
+
+/// The sine below which two edges count as parallel, in rounding units.
+const PARALLEL: f64 = 16.0;
+/// As many faces as the lanes of a [`Polyhedral`] hold.
+const MAX_FACES: usize = PLANE_BLOCKS * LANES;
+
+/// The directions that leave the largest gaps between a solid and eight triangles.
+pub(super) struct TriangleAxes<N> {
+    /// A bit for each triangle that is beyond the limit by more than rounding.
+    pub(super) beyond: u8,
+    /// A bit for each triangle that is not thin, and whose direction leaves its gap between all vertices.
+    pub(super) known: u8,
+    /// The length of a unit of each pair, in which neither of the two, nor the way between their origins, is
+    /// larger than 2; and 1 / `scale`, exactly.
+    pub(super) scale: [N; LANES],
+    pub(super) shrink: [N; LANES],
+    /// In the frame of the solid, in units of the pair.
+    pub(super) corners: [[[N; LANES]; 3]; 3],
+    /// Unit, from the triangle to the solid.
+    pub(super) normals: [[N; LANES]; 3],
+    pub(super) gaps: [N; LANES],
+    /// See [`AxisFeature`].
+    pub(super) features: [N; LANES],
+}
+
+/// What a direction is perpendicular to.
+pub(super) enum AxisFeature {
+    Triangle,
+    /// A face of the solid.
+    Face(usize),
+    /// An edge of the solid and a side of the triangle.
+    Edges(usize, usize),
+}
+
+/// The number of the triangle in a lane; faces follow, then three for each edge, one for each side.
+const TRIANGLE: f64 = 0.0;
+const FACES: f64 = 1.0;
+const EDGES: f64 = 1024.0;
+
+impl AxisFeature {
+    /// By the number in a lane.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the indices of faces and edges are small and not negative"
+    )]
+    pub(super) fn of<N: Real>(number: N) -> Self {
+        let number = number.as_f64();
+        if number >= EDGES {
+            let index = (number - EDGES) as usize;
+            Self::Edges(index / 3, index % 3)
+        } else if number >= FACES {
+            Self::Face((number - FACES) as usize)
+        } else {
+            Self::Triangle
+        }
+    }
+}
+
+/// What counts as rounding of lengths in a pair with this unit.
+pub(super) fn slack<N: Real>(scale: N) -> N {
+    N::lit(16.0) * noise::<N>() * scale
+}
+
+impl<N: Real> TriangleQuery<'_, N> {
+    /// The axes by the vectors of an instruction set, on which they do not depend.
+    pub(super) fn axes(&self, level: Level, tiles: &Tiles<N, 3>) -> TriangleAxes<N> {
+        with_lanes!(level, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
+    }
+
+    /// The triangles' own normals, unless those of faces of the solid leave gaps that are larger by more than
+    /// rounding, or two edges by as much more than both.
+    #[inline(always)]
+    fn axes_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        tiles: &Tiles<N, 3>,
+    ) -> TriangleAxes<N> {
+        let packet = PlacedPacket::<S, N, V>::new(simd, self, tiles);
+        let none = packet.shrink.simd_lt(packet.shrink);
+        let mut climbs = [[none; 3]; MAX_FACES];
+        let of_solid = packet.query_faces(&mut climbs);
+        let beyond = packet.is_beyond(of_solid.gap);
+        if bits(beyond) == u8::MAX {
+            return packet.stored(&of_solid, beyond, none);
+        }
+        let directions = packet.directions(&self.pose12.rotation);
+        let (front, is_wide) = (&directions.front, directions.is_wide);
+        let [above, below] = packet.gaps_along(front);
+        let is_above = above.simd_gt(below);
+        let own = TriangleAxis {
+            gap: is_above.select(above, below),
+            normal: either(is_above, &negated(front), front),
+            feature: V::all(simd, N::lit(TRIANGLE)),
+        };
+        let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, noise()));
+        let face = own.or(is_less, &of_solid);
+        let beyond = beyond | (packet.is_beyond(face.gap) & is_wide);
+        let asked = is_wide & !beyond;
+        if asked.to_bitmask() == 0 {
+            return packet.stored(&face, beyond, none);
+        }
+        let best = packet.query_edges(&climbs, &directions, asked, face);
+        // The faces beside an edge may say too much of one that is short.
+        let [_, gap] = packet.gaps_along(&best.normal);
+        let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * noise()));
+        packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
+    }
+}
+
+/// The best directions so far, from the triangles to the solid.
+#[derive(Clone, Copy)]
+struct TriangleAxis<V> {
+    gap: V,
+    normal: [V; 3],
+    feature: V,
+}
+
+impl<V> TriangleAxis<V> {
+    /// Others where a mask says so.
+    #[inline(always)]
+    fn or<S: Simd>(&self, is_other: V::Mask, other: &Self) -> Self
+    where
+        V: Wide<S>,
+    {
+        Self {
+            gap: is_other.select(other.gap, self.gap),
+            normal: either(is_other, &other.normal, &self.normal),
+            feature: is_other.select(other.feature, self.feature),
+        }
+    }
+}
+
+/// The unit vectors along the sides and the normals on the side that sees the corners counter-clockwise, in the
+/// frame of the solid; and which triangles are not thin.
+struct Directions<V, M> {
+    sides: [[V; 3]; 3],
+    front: [V; 3],
+    is_wide: M,
+}
+
+/// Eight triangles and the solid.
+struct PlacedPacket<'a, S, N: Real, V> {
+    simd: S,
+    solid: &'a Polyhedral<'a, N>,
+    /// As seen from their origin.
+    given: [[V; 3]; 3],
+    /// The same in the frame of the solid, in units of the pairs.
+    corners: [[V; 3]; 3],
+    scales: [N; LANES],
+    shrinks: [N; LANES],
+    scale: V,
+    shrink: V,
+    /// What is beyond the limit by more than rounding, in lengths of the pairs.
+    beyond: V,
+}
+
+impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
+    #[inline(always)]
+    fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &Tiles<N, 3>) -> Self {
+        let origin: [V; 3] = spread(simd, &query.parts.origin);
+        let given = [
+            minus(&load(simd, &tiles.corners[0]), &origin),
+            minus(&load(simd, &tiles.corners[1]), &origin),
+            minus(&load(simd, &tiles.corners[2]), &origin),
+        ];
+        let own = max(query.solid.reach, max_component(&query.pose12.translation));
+        let [scales, shrinks] = units(simd, own, &given);
+        let (scale, shrink) = (V::load(simd, &scales), V::load(simd, &shrinks));
+        let center: [V; 3] = spread(simd, &query.pose12.translation);
+        let mut corners = given;
+        for corner in &mut corners {
+            let arm = times(&minus(corner, &center), shrink);
+            *corner = turned(simd, &query.pose12.rotation, &arm);
+        }
+        let slack = V::all(simd, slack(N::ONE)) * scale;
+        let beyond = V::all(simd, query.limit) + slack;
+        Self { simd, solid: query.solid, given, corners, scales, shrinks, scale, shrink, beyond }
+    }
+
+    /// A gap says that a triangle is beyond the limit.
+    #[inline(always)]
+    fn is_beyond(&self, gap: V) -> V::Mask {
+        let has_units = self.shrink.simd_lt(V::all(self.simd, N::INFINITY));
+        (gap * self.scale).simd_gt(self.beyond) & has_units
+    }
+
+    #[inline(always)]
+    fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
+        let blank = [N::ZERO; LANES];
+        let mut axes = TriangleAxes {
+            beyond: bits(beyond),
+            known: bits(known),
+            scale: self.scales,
+            shrink: self.shrinks,
+            corners: [[blank; 3]; 3],
+            normals: [blank; 3],
+            gaps: blank,
+            features: blank,
+        };
+        for (rows, corner) in axes.corners.iter_mut().zip(&self.corners) {
+            for (row, values) in rows.iter_mut().zip(corner) {
+                values.store(row);
+            }
+        }
+        for (row, values) in axes.normals.iter_mut().zip(&best.normal) {
+            values.store(row);
+        }
+        best.gap.store(&mut axes.gaps);
+        best.feature.store(&mut axes.features);
+        axes
+    }
+
+    /// The directions, from the sides as given, which lose nothing to the way between the origins.
+    #[inline(always)]
+    fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
+        let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
+        let ways =
+            [times(&minus(b, a), shrink), times(&minus(c, b), shrink), times(&minus(a, c), shrink)];
+        let squared = [dot(&ways[0], &ways[0]), dot(&ways[1], &ways[1]), dot(&ways[2], &ways[2])];
+        let longest = squared[0].larger(squared[1]).larger(squared[2]);
+        let across = cross(&ways[0], &ways[1]);
+        let area = dot(&across, &across).sqrt();
+        let is_wide = area.simd_gt(V::all(simd, N::lit(THIN)) * longest)
+            & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
+        let mut sides = ways;
+        for (side, squared) in sides.iter_mut().zip(squared) {
+            *side = turned(simd, turn, &over(side, squared.sqrt()));
+        }
+        Directions { sides, front: turned(simd, turn, &over(&across, area)), is_wide }
+    }
+
+    /// The gaps that the opposites of some unit vectors, and these, leave from the triangles to the solid.
+    #[inline(always)]
+    fn gaps_along(&self, along: &[V; 3]) -> [V; 2] {
+        let mut top = -V::all(self.simd, N::INFINITY);
+        let mut bottom = -top;
+        for vertex in 0..self.solid.vertices {
+            let height = dot(&spread(self.simd, &self.solid.vertex(vertex)), along);
+            (bottom, top) = (height.smaller(bottom), height.larger(top));
+        }
+        let [a, b, c] = &self.corners;
+        let (a, b, c) = (dot(a, along), dot(b, along), dot(c, along));
+        let (low, high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
+        [low - top * self.shrink, bottom * self.shrink - high]
+    }
+
+    /// Queries the face directions of the solid; notes for each face which sides climb over its plane.
+    #[inline(always)]
+    fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
+        let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
+        let mut best =
+            TriangleAxis { gap: -V::all(simd, N::INFINITY), normal: [zero; 3], feature: zero };
+        let mut feature = V::all(simd, N::lit(FACES));
+        for (face, climbs) in climbs.iter_mut().enumerate().take(self.solid.faces()) {
+            let outward: [V; 3] = spread(simd, &self.solid.normal(face));
+            let [a, b, c] = &self.corners;
+            let (a, b, c) = (dot(&outward, a), dot(&outward, b), dot(&outward, c));
+            let offset = V::all(simd, self.solid.offset(face)) * self.shrink;
+            let gap = a.smaller(b).smaller(c) - offset;
+            *climbs = [b.simd_gt(a), c.simd_gt(b), a.simd_gt(c)];
+            let found = TriangleAxis { gap, normal: negated(&outward), feature };
+            best = best.or(gap.simd_gt(best.gap), &found);
+            feature += V::all(simd, N::ONE);
+        }
+        best
+    }
+
+    /// Queries the directions perpendicular to an edge of the solid and a side of the triangles, where they leave
+    /// larger gaps than the faces.
+    #[inline(always)]
+    fn query_edges(
+        &self,
+        climbs: &[[V::Mask; 3]; MAX_FACES],
+        directions: &Directions<V, V::Mask>,
+        asked: V::Mask,
+        face: TriangleAxis<V>,
+    ) -> TriangleAxis<V> {
+        let (simd, zero, one) = (self.simd, V::all(self.simd, N::ZERO), V::all(self.simd, N::ONE));
+        let mut feature = V::all(simd, N::lit(EDGES)) - one;
+        let sine = N::lit(PARALLEL) * N::EPSILON;
+        let (mut best, mut bound) = (face, face.gap + V::all(simd, noise()));
+        for edge in self.solid.edges {
+            let [first, second] = edge.faces.map(|face| &climbs[face as usize]);
+            let [from, to] = edge.vertices.map(|end| self.solid.vertex(end as usize));
+            let along = times(&spread(simd, &(to - from)), self.shrink);
+            let start = times(&spread(simd, &from), self.shrink);
+            // The edge runs around the first face, so its product with a side that climbs over that face
+            // leads out of the solid; and the triangle lies beyond the side if the edge runs forward.
+            let is_forward = dot(&directions.front, &along).simd_ge(zero);
+            let least = V::all(simd, sine * sine) * dot(&along, &along);
+            for side in 0..3 {
+                feature += one;
+                let is_asked = (first[side] ^ second[side]) & !(is_forward ^ first[side]) & asked;
+                if is_asked.to_bitmask() == 0 {
+                    continue;
+                }
+                let outward = first[side].select(one, -one);
+                let across = times(&cross(&along, &directions.sides[side]), outward);
+                let slack = dot(&across, &minus(&self.corners[side], &start));
+                let squared = dot(&across, &across);
+                let length = squared.sqrt();
+                // Parallel edges have no perpendicular, and faces that part as much.
+                let is_more = is_asked & squared.simd_gt(least) & slack.simd_gt(bound * length);
+                // Divisions cost more than all of the rest, and few directions are better than those before.
+                if is_more.to_bitmask() == 0 {
+                    continue;
+                }
+                let gap = slack / length;
+                let found = TriangleAxis { gap, normal: over(&across, -length), feature };
+                best = best.or(is_more, &found);
+                bound = is_more.select(gap, bound);
+            }
+        }
+        best
+    }
+}
+
+/// The units of each pair and their inverses; no numbers where there are none. `own` is the size of the solid and
+/// of the way between the origins.
+#[inline(always)]
+fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    own: N,
+    corners: &[[V; 3]; 3],
+) -> [[N; LANES]; 2] {
+    let mut most = V::all(simd, own);
+    for corner in corners {
+        for value in corner {
+            most = value.abs().larger(most);
+        }
+    }
+    let (mut sizes, mut shrinks) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
+    most.store(&mut sizes);
+    for (size, shrink) in sizes.iter_mut().zip(&mut shrinks) {
+        let is_plain = *size > N::ZERO && size.is_finite_number();
+        let scale = size.power_of_two_below();
+        *shrink = if is_plain { N::ONE / scale } else { N::INFINITY };
+        *size = scale;
+    }
+    [sizes, shrinks]
+}
+
+/// Vectors in the frame that a rotation leads from.
+#[inline(always)]
+fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    turn: &Matrix<N, 3>,
+    v: &[V; 3],
+) -> [V; 3] {
+    by_axis(
+        #[inline(always)]
+        |axis| {
+            let column: [V; 3] = by_axis(
+                #[inline(always)]
+                |row| V::all(simd, turn[(row, axis)]),
+            );
+            dot(&column, v)
+        },
+    )
+}

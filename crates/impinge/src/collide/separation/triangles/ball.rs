@@ -1,0 +1,418 @@
+//! Triangles against a ball: which of eight are near, and which of those have a neighbour that hides them.
+//!
+//! A contact with a corner or an edge is one of the whole surface only if no direction into a triangle there
+//! rises along its normal (see `seam.rs`). Where one of these triangles is nearer to the middle of the ball
+//! than the corner or edge, the way to its nearest point is such a direction, so that distances alone tell
+//! what the normals would: of the triangles around the place where a ball rests on a surface one is left.
+//! Close cases are left undecided.
+
+use smallvec::SmallVec;
+
+use crate::bounding_volume::Aabb;
+use crate::collide::packet::{LANES, Tiles};
+use crate::math::lanes::{bits, by_axis, dot, either, load, minus, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide, max_component, min};
+
+/// A triangle with a squared height of more than this, of its longest side, is not thin.
+const TALL: f64 = 1.0 / 1000.0;
+/// Squared distances that differ by more than so many rounding units of all squared lengths are different; and
+/// a feature is certain where another is the nearest only if the ball moves by the root of that.
+const CLEAR: f64 = 64.0;
+/// Corners are numbered after sides.
+const CORNER: f64 = 3.0;
+/// Triangles are beyond reach where they are by so many rounding units of all lengths.
+const ROUNDING: f64 = 128.0;
+/// A height of more than so many rounding units of all coordinates is no rounding.
+const HEIGHT: f64 = 64.0;
+/// What hides a triangle is looked for among so many eights before and after its own.
+const MAX_APART: usize = 8;
+
+/// A ball among triangles.
+pub(crate) struct BallQuestion<'a, N: Real> {
+    pub(crate) tiles: &'a [Tiles<N, 3>],
+    /// How many triangles there are; what is left of the last tiles are copies.
+    pub(crate) count: usize,
+    /// In the frame of the triangles.
+    pub(crate) center: Vector<N, 3>,
+    pub(crate) radius: N,
+    /// What is farther from the surface of the ball is of no interest, nor what is outside a box.
+    pub(crate) limit: N,
+    pub(crate) within: Aabb<N, 3>,
+}
+
+/// The triangles near a ball.
+pub(crate) struct NearTriangles<N> {
+    /// No triangle in the box is nearer to the middle; zero if that is not known.
+    pub(crate) from_middle: N,
+    /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
+    /// those that are hidden.
+    pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
+    /// The squares of the distances of all that are hidden are more than this.
+    pub(crate) hidden_from: N,
+}
+
+/// Finds the triangles near a ball; nothing is hidden unless `has_seams`.
+pub(crate) fn near_triangles<N: Real>(
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> NearTriangles<N> {
+    at(Level::new(), question, has_seams)
+}
+
+/// By the vectors of an instruction set, on which the answer does not depend.
+fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
+    with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
+}
+
+#[inline(always)]
+fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> NearTriangles<N> {
+    let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
+    let mut seen =
+        NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
+    for (block, tiles) in question.tiles.iter().enumerate() {
+        let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
+        let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
+        if within == 0 {
+            continue;
+        }
+        let eight = TrianglePacket::<V>::of(simd, question, tiles);
+        let (mut own, least) = eight.places(simd, question, block, within, has_seams);
+        seen.from_middle = min(seen.from_middle, least);
+        if own.near != 0 {
+            own.sides &= own.near;
+            seen.near.push((block, [own.near, 0]));
+            places.push(own);
+        }
+    }
+    for (at, own) in places.iter().enumerate() {
+        let mut asked = own.sides;
+        while asked != 0 {
+            let lane = asked.trailing_zeros() as usize;
+            asked &= asked - 1;
+            let around =
+                &places[at.saturating_sub(MAX_APART)..places.len().min(at + 1 + MAX_APART)];
+            if is_hidden::<S, N, V>(simd, question, around, own, lane) {
+                seen.near[at].1[1] |= 1 << lane;
+                seen.hidden_from = min(seen.hidden_from, own.least[lane]);
+            }
+        }
+    }
+    seen
+}
+
+/// Which of eight triangles have boxes that meet that of the question.
+#[inline(always)]
+fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &BallQuestion<'_, N>,
+    tiles: &Tiles<N, 3>,
+) -> V::Mask {
+    let (low, high) = (question.within.mins(), question.within.maxs());
+    let all = V::all(simd, N::ZERO);
+    let mut within = all.simd_eq(all);
+    for axis in 0..3 {
+        let [a, b, c] = &tiles.corners;
+        let (a, b, c) = (V::load(simd, &a[axis]), V::load(simd, &b[axis]), V::load(simd, &c[axis]));
+        within = within
+            & a.smaller(b).smaller(c).simd_le(V::all(simd, high[axis]))
+            & a.larger(b).larger(c).simd_ge(V::all(simd, low[axis]));
+    }
+    within
+}
+
+/// Where on eight triangles the nearest points lie.
+struct NearestFeatures<N> {
+    /// Which eight.
+    block: usize,
+    /// A bit for each that may be within reach.
+    near: u8,
+    /// And for each whose nearest point certainly lies on one of its sides or corners.
+    sides: u8,
+    /// Sides by the number of their first corner, corners by their number and three.
+    kinds: [N; LANES],
+    /// The squared distances are not less, nor more; of what hides nothing there is no bound.
+    least: [N; LANES],
+    most: [N; LANES],
+}
+
+/// Eight triangles as the middle of the ball sees them.
+struct TrianglePacket<V> {
+    corners: [[V; 3]; 3],
+    /// The squares of the lengths of the sides, from each corner to the next.
+    squares: [V; 3],
+    /// How far along each side the middle is, times its length.
+    along: [V; 3],
+    /// Four squared areas; and the shares of the corners in the point below the middle, times that.
+    area: V,
+    shares: [V; 3],
+    /// The nearest points; the squares of their distances and of those of the farthest corners.
+    nearest: [V; 3],
+    squared: V,
+    farthest: V,
+}
+
+impl<V> TrianglePacket<V> {
+    #[inline(always)]
+    fn of<S: Simd, N: Real>(simd: S, question: &BallQuestion<'_, N>, tiles: &Tiles<N, 3>) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let center: [V; 3] = spread(simd, &question.center);
+        let a = minus(&load(simd, &tiles.corners[0]), &center);
+        let b = minus(&load(simd, &tiles.corners[1]), &center);
+        let c = minus(&load(simd, &tiles.corners[2]), &center);
+        let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
+        let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
+        let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
+        // Of the two sides at the first corner, seen from there.
+        let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
+        let area = squares[0] * squares[2] - turn * turn;
+        let at_b = along[0] * squares[2] - to_c * turn;
+        let at_c = to_c * squares[0] - along[0] * turn;
+        let shares = [area - at_b - at_c, at_b, at_c];
+        let zero = V::all(simd, N::ZERO);
+        let is_over =
+            shares[0].simd_ge(zero) & at_b.simd_ge(zero) & at_c.simd_ge(zero) & area.simd_gt(zero);
+        let (share_b, share_c) = (at_b / area, at_c / area);
+        let below: [V; 3] = by_axis(
+            #[inline(always)]
+            |axis| a[axis] + ab[axis] * share_b - ca[axis] * share_c,
+        );
+        let beside = [
+            on_side(simd, &a, &ab, along[0] / squares[0]),
+            on_side(simd, &b, &bc, along[1] / squares[1]),
+            on_side(simd, &c, &ca, along[2] / squares[2]),
+        ];
+        let beside = shorter(&shorter(&beside[0], &beside[1]), &beside[2]);
+        let nearest = either(is_over, &below, &beside);
+        let farthest = dot(&a, &a).larger(dot(&b, &b)).larger(dot(&c, &c));
+        let squared = dot(&nearest, &nearest);
+        Self { corners: [a, b, c], squares, along, area, shares, nearest, squared, farthest }
+    }
+
+    /// Where the nearest points lie, and how near the nearest of them is.
+    #[inline(always)]
+    fn places<S: Simd, N: Real>(
+        &self,
+        simd: S,
+        question: &BallQuestion<'_, N>,
+        block: usize,
+        within: u8,
+        has_seams: bool,
+    ) -> (NearestFeatures<N>, N)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let radius = V::all(simd, question.radius);
+        let size = self.farthest.sqrt() + radius;
+        let (bound, is_bound) = self.bound(simd, size);
+        let is_beyond = is_bound & bound.simd_gt(radius + V::all(simd, question.limit));
+        let mut known = [N::ZERO; LANES];
+        bound.store(&mut known);
+        let [a, b, c, d, e, f, g, h] = known;
+        let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
+        let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
+        let near = within & bits(!is_beyond);
+        let mut places =
+            NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
+        if near != 0 && has_seams {
+            let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
+            let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
+            let (kind, room) = self.beside(simd);
+            let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
+            places.sides = bits(is_beside);
+            kind.store(&mut places.kinds);
+            (self.squared - clear).store(&mut places.least);
+            let most = is_tall.select(self.squared + clear, V::all(simd, N::INFINITY));
+            most.store(&mut places.most);
+        }
+        (places, least)
+    }
+
+    /// The distances are not less, as the planes across the ways to the nearest points say, and where they
+    /// say so; else zero.
+    #[inline(always)]
+    fn bound<S: Simd, N: Real>(&self, simd: S, size: V) -> (V, V::Mask)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let ([a, b, c], way, length) = (&self.corners, &self.nearest, self.squared.sqrt());
+        let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
+        let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
+        let bound = low / length - slack;
+        // What is no number bounds nothing, nor what has lost digits by being small.
+        let is_bound = bound.simd_gt(slack)
+            & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
+            & size.simd_lt(V::all(simd, N::MAX.sqrt()));
+        (is_bound.select(bound, V::all(simd, N::ZERO)), is_bound)
+    }
+
+    /// The triangles are neither thin, nor small for where they are.
+    #[inline(always)]
+    fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let longest = self.squares[0].larger(self.squares[1]).larger(self.squares[2]);
+        let height = V::all(simd, N::lit(HEIGHT) * N::EPSILON) * (size + V::all(simd, away));
+        self.area.simd_gt(V::all(simd, N::lit(TALL)) * longest * longest)
+            & self.area.simd_gt(height * height * longest)
+            & longest.simd_gt(clear)
+            & self.area.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
+            & self.area.simd_lt(V::all(simd, N::MAX * N::EPSILON))
+    }
+
+    /// Which side or corner the middle is beside, and by how much: what is not positive says nothing.
+    #[inline(always)]
+    fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let area = self.area.sqrt();
+        let root = [self.squares[0].sqrt(), self.squares[1].sqrt(), self.squares[2].sqrt()];
+        let past = [self.along[0] / root[0], self.along[1] / root[1], self.along[2] / root[2]];
+        let left = [root[0] - past[0], root[1] - past[1], root[2] - past[2]];
+        // How far outside of the sides: by the share of the corner across.
+        let outside = [
+            -self.shares[2] / (area * root[0]),
+            -self.shares[0] / (area * root[1]),
+            -self.shares[1] / (area * root[2]),
+        ];
+        let (mut kind, mut room) = (V::all(simd, N::ZERO), V::all(simd, -N::INFINITY));
+        for (at, number) in [0.0, 1.0, 2.0].into_iter().enumerate() {
+            let before = (at + 2) % 3;
+            let aside = outside[at].larger(outside[before]);
+            let of_side = outside[at].smaller(past[at]).smaller(left[at]);
+            let of_corner = aside.smaller(-past[at]).smaller(-left[before]);
+            for (new, number) in [(of_side, number), (of_corner, number + CORNER)] {
+                let is_more = new.simd_gt(room);
+                kind = is_more.select(V::all(simd, N::lit(number)), kind);
+                room = is_more.select(new, room);
+            }
+        }
+        (kind, room)
+    }
+}
+
+/// A triangle that is not thin is nearer than the side or corner that one is seen by, and has it too.
+#[inline(always)]
+fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    question: &BallQuestion<'_, N>,
+    places: &[NearestFeatures<N>],
+    own: &NearestFeatures<N>,
+    lane: usize,
+) -> bool {
+    let (kind, least) = (own.kinds[lane], own.least[lane]);
+    let is_corner = kind >= N::lit(CORNER);
+    let number = if is_corner { kind - N::lit(CORNER) } else { kind };
+    let at = if number == N::ZERO { 0 } else { 1 + usize::from(number > N::ONE) };
+    let corners = question.tiles[own.block].corners(lane);
+    let (from, to) = (corners[at], corners[(at + 1) % 3]);
+    for other in places {
+        let tiles = &question.tiles[other.block];
+        let is_nearer = V::load(simd, &other.most).simd_lt(V::all(simd, least));
+        let hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
+        let hides = if is_corner { hides } else { hides & has_corner::<S, N, V>(simd, tiles, &to) };
+        if hides.any_true() {
+            return true;
+        }
+    }
+    false
+}
+
+/// Which triangles have a corner at a point.
+#[inline(always)]
+fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    tiles: &Tiles<N, 3>,
+    point: &Point<N, 3>,
+) -> V::Mask {
+    let point: [V; 3] = spread(simd, &point.coords);
+    let is_at = |corner: usize| {
+        let rows: [V; 3] = load(simd, &tiles.corners[corner]);
+        rows[0].simd_eq(point[0]) & rows[1].simd_eq(point[1]) & rows[2].simd_eq(point[2])
+    };
+    is_at(0) | is_at(1) | is_at(2)
+}
+
+/// The point of a side nearest to the origin, given its start, the way to its end and the share of that.
+#[inline(always)]
+fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    start: &[V; 3],
+    side: &[V; 3],
+    share: V,
+) -> [V; 3] {
+    let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+    // Of a side without length there is its start.
+    let share = share.simd_gt(zero).select(share.smaller(one), zero);
+    by_axis(
+        #[inline(always)]
+        |axis| start[axis] + side[axis] * share,
+    )
+}
+
+#[inline(always)]
+fn shorter<S: Simd, V: Wide<S>>(first: &[V; 3], second: &[V; 3]) -> [V; 3] {
+    either(dot(second, second).simd_lt(dot(first, first)), second, first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::separation::hulls::tests::Random;
+
+    /// Two rows of triangles with common corners, around a ball at the origin, or nearly so.
+    fn strip<N: Real>(random: &mut Random) -> Vec<Tiles<N, 3>> {
+        let mut points: Vec<Point<N, 3>> = Vec::new();
+        for at in 0..12_u32 {
+            let [x, z] = [at / 2, at % 2].map(|n| N::lit(f64::from(n) - 2.0));
+            let place = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
+            points.push(Point::from(place + random.vector::<N>() * N::lit(0.3)));
+        }
+        let mut tiles = vec![Tiles::blank(), Tiles::blank()];
+        for at in 0..16 {
+            let first = at.min(9);
+            let corners = [points[first], points[first + 1], points[first + 2]];
+            tiles[at / LANES].put(at % LANES, &corners);
+        }
+        tiles
+    }
+
+    fn compare<N: Real>(seed: u64) {
+        let (random, mut hidden) = (&mut Random(seed), 0);
+        for _ in 0..300 {
+            let tiles = strip::<N>(random);
+            let center = random.vector::<N>() * N::HALF;
+            let (radius, limit) = (N::ONE, N::lit(0.1));
+            let reach = Vector::<N, 3>::repeat(N::lit(1.2));
+            let within = Aabb::around(Point::from(center), reach);
+            let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
+            let expected = near_triangles(&question, true);
+            for level in Level::available() {
+                let found = at(level, &question, true);
+                assert_eq!(found.near, expected.near, "{level:?}");
+                assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
+                assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
+            }
+            let shown = near_triangles(&question, false);
+            for ((_, [near, without]), (_, [same, with])) in shown.near.iter().zip(&expected.near) {
+                assert_eq!((near, *without), (same, 0), "without seams all are shown");
+                hidden += with.count_ones();
+            }
+        }
+        assert!(hidden > 300, "{hidden} are hidden");
+    }
+
+    #[test]
+    fn what_a_ball_sees_does_not_depend_on_vectors() {
+        compare::<f32>(21);
+        compare::<f64>(22);
+    }
+}

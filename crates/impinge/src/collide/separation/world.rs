@@ -1,0 +1,162 @@
+//! The separation of two solids in the world, in the order in which they are given.
+
+use crate::collide::pair::{Ordered, Placed};
+use crate::collide::parts::{Between, Wanted, nearest_between};
+use crate::convex::Separation;
+use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
+use crate::query::far::Apart;
+use crate::shape::{Geometry, Shape};
+
+/// The separation of two placed solids in the world frame, `None` beyond `limit`.
+///
+/// Also `None` if a pose is not finite. Computed in the canonical order and in the frame of that
+/// order's first solid, then taken to the world: swapping the arguments swaps the points and turns the
+/// normal round, bit for bit. Of composites that overlap it is that of their deepest parts.
+pub(crate) fn in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    of_ordered(&Ordered::new(placed1, placed2), limit)
+}
+
+/// [`in_world`] of two whose canonical order is known.
+#[inline]
+pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let found = in_first(ordered, limit, Wanted::Deepest)?;
+    Some(placed(&found, ordered.first, ordered.swapped))
+}
+
+/// [`in_world`], but of composites that overlap the separation of any two parts that do.
+pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let ordered = Ordered::new(placed1, placed2);
+    let found = in_first(&ordered, limit, Wanted::Touching)?;
+    Some(placed(&found, ordered.first, ordered.swapped))
+}
+
+/// The distance in [`touching_in_world`], a number that is the same in every frame; of two convex solids
+/// that certainly overlap zero, without asking how deep.
+pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
+    placed1: &Placed<'_, N, D>,
+    placed2: &Placed<'_, N, D>,
+    limit: N,
+) -> Option<N> {
+    let ordered = Ordered::new(placed1, placed2);
+    if ordered.has_composite() {
+        return of_composites(&ordered, limit, Wanted::Touching).map(|found| found.distance);
+    }
+    let pair = ordered.pair();
+    if !pair.pose12.is_finite() {
+        return None;
+    }
+    (N::tables().distance)(&pair, limit)
+}
+
+/// The separation in the frame of the first; `None` also if a pose is not finite.
+#[inline]
+fn in_first<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+    wanted: Wanted,
+) -> Option<Separation<N, D>> {
+    if ordered.has_composite() {
+        return of_composites(ordered, limit, wanted);
+    }
+    let pair = ordered.pair();
+    if pair.pose12.is_finite() { super::separation(&pair, limit) } else { None }
+}
+
+/// [`in_first`], where one is a composite.
+fn of_composites<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+    wanted: Wanted,
+) -> Option<Separation<N, D>> {
+    let between = Between::of_ordered(ordered);
+    if !between.pair.pose12.is_finite() {
+        return None;
+    }
+    nearest_between(&between, limit, wanted, None).map(|found| found.separation)
+}
+
+/// A separation in the frame of one solid, in that of the world.
+#[inline]
+pub(crate) fn placed<N: Real, const D: usize>(
+    found: &Separation<N, D>,
+    first: &Placed<'_, N, D>,
+    swapped: bool,
+) -> Separation<N, D> {
+    let found = if first.shape.turns() {
+        let Placed { pose, .. } = first;
+        let (normal, point1) = (pose.vector(&found.normal), pose.point(&found.point1));
+        Separation { normal, point1, point2: pose.point(&found.point2), ..*found }
+    } else {
+        let at = &first.pose.translation;
+        Separation { point1: found.point1 + at, point2: found.point2 + at, ..*found }
+    };
+    if swapped {
+        let Separation { normal, point1, point2, .. } = found;
+        Separation { normal: -normal, point1: point2, point2: point1, ..found }
+    } else {
+        found
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
+    /// A shape where the user's isometry puts it.
+    #[inline]
+    pub(crate) fn new<R: AbstractRotation<N, D>>(
+        isometry: &Isometry<N, R, D>,
+        shape: &'a dyn Shape<N, D>,
+    ) -> Self {
+        Self::at(isometry, shape.geometry())
+    }
+
+    #[inline]
+    fn at<R: AbstractRotation<N, D>>(
+        isometry: &Isometry<N, R, D>,
+        shape: Geometry<'a, N, D>,
+    ) -> Self {
+        let pose =
+            if shape.turns() { Pose::from_isometry(isometry) } else { Pose::unturned(isometry) };
+        Self { pose, shape }
+    }
+
+    /// A solid where an isometry of the scalar's own type puts it.
+    #[inline]
+    pub(crate) fn of_isometry(isometry: &N::Isometry, shape: Geometry<'a, N, D>) -> Self {
+        Self { pose: shape.pose_at(isometry), shape }
+    }
+
+    /// A solid at a pose, which may have a rotation that is none of the solid's.
+    pub(crate) fn of_pose(pose: &Pose<N, D>, shape: Geometry<'a, N, D>) -> Self {
+        Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
+    }
+
+    /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than
+    /// `limit`.
+    #[inline]
+    pub(crate) fn within<R: AbstractRotation<N, D>>(
+        isometry1: &Isometry<N, R, D>,
+        shape1: &'a dyn Shape<N, D>,
+        isometry2: &Isometry<N, R, D>,
+        shape2: &'a dyn Shape<N, D>,
+        limit: N,
+    ) -> Option<[Self; 2]> {
+        let shapes = [shape1.geometry(), shape2.geometry()];
+        let between = isometry2.translation.vector - isometry1.translation.vector;
+        let apart = Apart { shapes, between };
+        let known = apart.is_known_beyond(limit);
+        if known.unwrap_or_else(|| (N::tables().are_beyond)(&apart, limit)) {
+            return None;
+        }
+        Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])
+    }
+}

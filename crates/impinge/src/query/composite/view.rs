@@ -1,0 +1,116 @@
+//! The contacts of composites as users see them.
+
+use crate::collide::CompositeContacts;
+use crate::collide::Pair;
+use crate::collide::mesh::{Patch, PatchPoint};
+use crate::math::{Pose, Space, Vector};
+use crate::query::kinematic::{ContactKinematic, Sides};
+use crate::query::manifold::{TrackedContact, placed};
+use crate::query::{ContactId, ContactManifold, ManifoldView, Placement};
+use crate::shape::{Geometry, Kind, Part, PartSolid};
+
+/// Normals that differ by no more than so many rounding units are the same.
+const ROUNDING: f64 = 64.0;
+
+impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
+    /// One of the manifolds, read in place; `None` behind the last.
+    #[inline]
+    pub(crate) fn view<'a>(
+        &'a self,
+        patch: usize,
+        placement: Placement<'a, N, D>,
+    ) -> Option<ManifoldView<'a, N, D>> {
+        Some(ManifoldView::of_patch(self.patches().get(patch)?, placement))
+    }
+
+    /// One manifold for each patch; `pair` is that of the last update. They are written over the
+    /// memory of old ones.
+    pub(crate) fn manifolds(
+        &self,
+        pair: &Pair<'_, N, D>,
+        placement: &Placement<'_, N, D>,
+        mut old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        old.resize_with(self.patches().len(), ContactManifold::default);
+        for (manifold, patch) in old.iter_mut().zip(self.patches()) {
+            let tracked = patch.points.iter().map(|point| tracked(pair, patch, point, placement));
+            manifold.refill(tracked);
+        }
+        old
+    }
+}
+
+/// One contact in the world.
+fn tracked<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    patch: &Patch<N, D>,
+    point: &PatchPoint<N, D>,
+    placement: &Placement<'_, N, D>,
+) -> TrackedContact<N, D> {
+    let normal = placement.pose1.vector(&patch.normal);
+    let contact = placed(&patch.normal, &point.raw, placement.pose1, normal);
+    let kinematic = kinematic(pair, patch, point);
+    let id = ContactId { pair: placement.pair, number: point.raw.id };
+    let [part1, part2] = point.parts;
+    let tracked = TrackedContact { contact, kinematic, id, part1, part2 };
+    if placement.is_swapped { tracked.flipped() } else { tracked }
+}
+
+/// How a contact moves: as one of its two parts, seen from the frames of the shapes.
+fn kinematic<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    patch: &Patch<N, D>,
+    point: &PatchPoint<N, D>,
+) -> ContactKinematic<N, D> {
+    let [part1, part2] = point.parts;
+    let (part1, part2) = (part_of(pair.first, part1), part_of(pair.second, part2));
+    let pose = |part: &Option<Part<'_, N, D>>| part.map_or_else(Pose::identity, |part| part.pose);
+    let (pose1, pose2) = (pose(&part1), pose(&part2));
+    let first = part1.as_ref().map_or(pair.first, |part| part.solid.geometry().0);
+    let second = part2.as_ref().map_or(pair.second, |part| part.solid.geometry().0);
+    let pose12 = pose1.inverse().compose(&pair.pose12.compose(&pose2));
+    let mut raw = point.raw;
+    raw.point1 = pose1.inverse_point(&raw.point1);
+    let parts = Pair { first, second, pose12 };
+    let normal = pose1.inverse_vector(&patch.normal);
+    let kinematic = Sides::new(&parts, &normal).kinematic(&raw);
+    let kinematic = match turning(pair, patch, point) {
+        Some(is_second) => kinematic.turning_with(is_second),
+        None => kinematic,
+    };
+    kinematic.seen_from([&pose1, &pose2], [Geometry(pair.first), Geometry(pair.second)])
+}
+
+/// Whether the normal is that of the second surface's face, or of the first's; `None` if of neither.
+fn turning<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    patch: &Patch<N, D>,
+    point: &PatchPoint<N, D>,
+) -> Option<bool> {
+    let outward1 = patch.normal;
+    let outward2 = -pair.pose12.inverse_vector(&patch.normal);
+    let [part1, part2] = point.parts;
+    if is_face_normal(pair.second, part2, &outward2) {
+        return Some(true);
+    }
+    is_face_normal(pair.first, part1, &outward1).then_some(false)
+}
+
+/// A surface has the normal, up to rounding, on a face. A line in 3D has no face.
+fn is_face_normal<N: Space<D>, const D: usize>(
+    kind: Kind<'_, N, D>,
+    part: u32,
+    outward: &Vector<N, D>,
+) -> bool {
+    let Some(composite) = Geometry(kind).as_composite() else { return false };
+    let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
+    let is_in_space = (N::tables().tangents)(outward)[1] != Vector::<N, D>::zeros();
+    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
+    let room = N::lit(ROUNDING) * N::EPSILON;
+    face.is_some_and(|face| !is_line && (face - outward).norm() <= room)
+}
+
+/// The part of a shape that a number names; `None` of a shape that is its own part.
+fn part_of<N: Space<D>, const D: usize>(kind: Kind<'_, N, D>, part: u32) -> Option<Part<'_, N, D>> {
+    Geometry(kind).as_composite().map(|composite| composite.part(part))
+}
