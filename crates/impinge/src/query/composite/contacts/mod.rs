@@ -153,7 +153,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut notes = Notes::default();
-        let findings = query.findings(&nearby, &mut notes);
+        let findings = query.findings(request.prediction, &nearby, &mut notes);
         self.conclude(request, merge, reference, center, &findings, &notes);
     }
 
@@ -264,8 +264,14 @@ const MANY_PARTS: usize = 32;
 const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// What some pairs of parts say; which of it holds is settled.
-    fn findings(&self, nearby: &Nearby<N>, notes: &mut Notes<N, D>) -> Findings<N, D> {
+    /// What some pairs of parts say; which of it holds is settled. Contacts within the `prediction` are asked for,
+    /// of parts perhaps more.
+    fn findings(
+        &self,
+        prediction: N,
+        nearby: &Nearby<N>,
+        notes: &mut Notes<N, D>,
+    ) -> Findings<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut findings, mut slot) = (Findings::new(), None);
         if nearby.parts.len() > MANY_PARTS {
@@ -280,7 +286,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             let placed = scene.pair_in(&mut slot, parts);
             findings.extend(facts::finding(&scene, placed, parts, self, gap, notes));
         };
-        if !scene.each_gap(nearby, self.request.prediction, &mut find) {
+        if !scene.each_gap(nearby, prediction, self.request.prediction, &mut find) {
             (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
         self.settle(&scene, &mut findings, notes);
@@ -419,7 +425,7 @@ fn deepest_in_general<N: Space<D>, const D: usize>(
     let query = Query { between, around: None, reference: &reference, request };
     let nearby = candidates::nearby(between, false, request.prediction, None);
     let mut notes = Notes::default();
-    let findings = query.findings(&nearby, &mut notes);
+    let findings = query.findings(request.prediction, &nearby, &mut notes);
     let kept = findings.iter().filter(|finding| finding.standing != Standing::Left);
     deepest_of(kept.flat_map(|Finding { piece, .. }| {
         notes.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
