@@ -119,7 +119,7 @@ type WitnessFn<N, const D: usize> =
 type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type GapsFn<N, const D: usize> =
-    fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, GapVisitor<'_, N, D>) -> bool;
+    fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, N, GapVisitor<'_, N, D>) -> bool;
 type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =

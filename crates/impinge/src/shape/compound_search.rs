@@ -3,6 +3,7 @@
 use super::compound::boxed;
 use super::{CompositeShape, Compound, PartSearch, Shape};
 use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::outward::slack_of;
 use crate::math::{Pose, Real, Space, Vector, max, min};
 
 impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
@@ -114,7 +115,8 @@ fn largest<'a, N: Real>(numbers: impl Iterator<Item = &'a N>) -> N {
     finite.fold(N::ZERO, |largest, x| max(largest, x.abs()))
 }
 
-/// By how much boxes grow whose coordinates are up to `size`.
+/// By how much boxes grow whose coordinates are up to `size`: those of points that are turned into a frame, and back,
+/// by the search and by the pair algorithm.
 fn rounding<N: Real>(size: N) -> N {
-    N::lit(32.0) * N::EPSILON * size
+    N::lit(4.0) * slack_of(size)
 }

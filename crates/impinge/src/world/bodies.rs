@@ -4,6 +4,7 @@ use super::error::finite_pose;
 use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
+use crate::math::outward::slack_of;
 use crate::math::{Pose, Real, Space, max};
 use crate::memory::Look;
 use crate::narrow_phase::{
@@ -221,7 +222,7 @@ pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aab
             reach = if face < N::INFINITY { max(face, reach) } else { reach };
         }
     }
-    aabb.loosened(limit + N::lit(8.0) * N::EPSILON * reach)
+    aabb.loosened(limit + slack_of(reach))
 }
 
 impl<N: Space<D>, const D: usize> ChangeList<N, D> {

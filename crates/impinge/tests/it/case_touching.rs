@@ -26,7 +26,7 @@ fn point<N: Real, const D: usize>(at: [f64; D]) -> Point<N, D> {
     Point::from(at.map(N::lit))
 }
 
-/// Whether a surface and a solid touch, by the query and by the manifold, in both orders.
+/// Whether a surface and a solid touch, by the query and by the manifold, in both orders. What touches is not deep.
 fn touch<N: Space<D>, R, const D: usize>(
     pose: &Isometry<N, R, D>,
     surface: &dyn Shape<N, D>,
@@ -34,7 +34,7 @@ fn touch<N: Space<D>, R, const D: usize>(
     angle: f64,
 ) -> [bool; 4]
 where
-    R: AbstractRotation<N, D> + Copy,
+    R: AbstractRotation<N, D> + Copy + std::fmt::Debug,
     Isometry<N, R, D>: Into<N::Isometry>,
 {
     let prediction = ContactPrediction::new(N::ZERO, N::lit(angle), N::lit(angle));
@@ -43,7 +43,10 @@ where
         let mut generator = PairManifoldGenerator::<N, D>::default();
         let (dispatcher, mut ids) = (DefaultContactDispatcher::<D>::new(), IdAllocator::new());
         generator.update(&dispatcher, &placed, first, &placed, second, &prediction, &mut ids);
-        [contact(pose, first, pose, second, N::ZERO).is_some(), generator.num_contacts() > 0]
+        let found = contact(pose, first, pose, second, N::ZERO);
+        let depth = found.map_or(N::ZERO, |found| found.depth);
+        assert!(depth <= N::lit(2048.0) * N::EPSILON, "{depth} deep at {pose:?}");
+        [found.is_some(), generator.num_contacts() > 0]
     };
     let [query1, manifold1] = ask(surface, solid);
     let [query2, manifold2] = ask(solid, surface);
@@ -74,11 +77,11 @@ where
     count
 }
 
-/// Meshes at the face x = 1: with a side in it, a corner in it, a ridge in it, and the first with triangles
-/// without size at a corner.
-fn meshes<N: Space<3>>() -> Vec<Box<dyn Shape<N, 3>>> {
+/// Meshes at a face across the x axis: with a side in it, a corner in it, a ridge in it, and the first with
+/// triangles without size at a corner.
+fn meshes<N: Space<3>>(face: f64) -> Vec<Box<dyn Shape<N, 3>>> {
     let mesh = |points: &[[f64; 3]], triangles: &[[u32; 3]]| -> Box<dyn Shape<N, 3>> {
-        let points = points.iter().map(|&at| point(at)).collect();
+        let points = points.iter().map(|&[x, y, z]| point([x - 1.0 + face, y, z])).collect();
         Box::new(TriMesh::new(points, triangles.to_vec()))
     };
     let side = [[1.0, 0.6875, 0.0], [1.0, 6.0625, -0.8125], [1.25, 7.125, 0.0]];
@@ -88,6 +91,7 @@ fn meshes<N: Space<3>>() -> Vec<Box<dyn Shape<N, 3>>> {
         mesh(&side, &[[0, 1, 2]]),
         mesh(&side, &[[0, 1, 2], [0, 0, 0], [0, 0, 0]]),
         mesh(&corner, &[[0, 1, 2]]),
+        mesh(&corner, &[[0, 1, 2], [0, 0, 0]]),
         mesh(&ridge, &[[0, 1, 2], [1, 0, 3]]),
     ]
 }
@@ -104,13 +108,19 @@ fn in_space<N: Space<3, Isometry = Isometry3<N>>>() {
         Box::new(Capsule::new(N::lit(8.0), N::ONE)),
         Box::new(Ball::new(N::ONE)),
     ];
+    // Without thickness both faces are where the mesh is.
+    let flat: Vec<Box<dyn Shape<N, 3>>> = vec![
+        Box::new(Cuboid::new(vector([0.0, 9.0, 3.0]))),
+        Box::new(Cuboid::new(vector([0.0, 5.1875, 0.0]))),
+    ];
     let (mut state, mut count) = (7, 0);
     for _ in 0..200 {
         let mut next = || N::lit(noise(&mut state));
         let (axis, at) = ([next(), next(), next()], [next(), next(), next()]);
         let turn = UnitQuaternion::from_scaled_axis(Vector::<N, 3>::from(axis) * N::lit(3.0));
         let pose = Isometry3::from_parts(Translation::from(Vector::<N, 3>::from(at)), turn);
-        count += touching(&pose, &meshes(), &solids);
+        count += touching(&pose, &meshes(1.0), &solids);
+        count += touching(&pose, &meshes(0.0), &flat);
     }
     assert!(count > 200, "{count} touch");
 }

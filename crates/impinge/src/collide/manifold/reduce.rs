@@ -340,11 +340,13 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     }
 }
 
+/// Of points in a row but for rounding both chains may have one that is not an end: the ends are between it and itself.
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
     let (way, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
     let (length, along) = (way.norm(), way.dot(&arm));
     let room = tolerance * length;
-    cross2(&way, &arm).abs() <= room && along >= -room && along <= length * length + room
+    let is_in_row = cross2(&way, &arm).abs() <= room && length > N::ZERO;
+    is_in_row && along >= -room && along <= length * length + room
 }
 
 /// Leaves at most so many corners of a hull: those of the previous manifold, a deepest one if there is one, and

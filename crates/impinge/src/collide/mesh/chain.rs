@@ -328,7 +328,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
     fn along(&self, normal: &Vector<N, 2>, points: &mut Points<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;
-        let least = if distance > N::ZERO { distance } else { -N::INFINITY };
+        let least = if distance > -self.tolerance { distance } else { -N::INFINITY };
         let along = Along { normal: inward, least, tolerance: self.tolerance };
         self.pair().along(&along, |point| points.push(self.chain.placed(point, &inward)))?;
         Some(self.chain.outward(&inward))

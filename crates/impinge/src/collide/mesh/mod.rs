@@ -160,7 +160,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
-        let contacts = query.part_contacts(&nearby, &mut arena);
+        let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
         self.conclude(request, reference, center, &contacts, &arena);
     }
 
@@ -262,8 +262,14 @@ const MANY_PARTS: usize = 32;
 const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// What some pairs of parts say; which of it holds is settled.
-    fn part_contacts(&self, nearby: &Nearby<N>, arena: &mut Arena<N, D>) -> PartContacts<N, D> {
+    /// What some pairs of parts say; which of it holds is settled. Contacts within the `prediction` are asked for,
+    /// of parts perhaps more.
+    fn part_contacts(
+        &self,
+        prediction: N,
+        nearby: &Nearby<N>,
+        arena: &mut Arena<N, D>,
+    ) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
         let (mut contacts, mut slot) = (PartContacts::new(), None);
         if nearby.parts.len() > MANY_PARTS {
@@ -278,7 +284,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             let placed = scene.pair_in(&mut slot, parts);
             contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, arena));
         };
-        if !scene.each_gap(nearby, self.request.prediction, &mut find) {
+        if !scene.each_gap(nearby, prediction, self.request.prediction, &mut find) {
             (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
         self.settle(&scene, &mut contacts, arena);
@@ -418,7 +424,7 @@ fn deepest_in_general<N: Space<D>, const D: usize>(
     let query = Query { between, around: None, reference: &reference, request };
     let nearby = gather::nearby(between, false, request.prediction, None);
     let mut arena = Arena::default();
-    let contacts = query.part_contacts(&nearby, &mut arena);
+    let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
     let kept = contacts.iter().filter(|contact| contact.status != PartStatus::Left);
     deepest_of(kept.flat_map(|PartContact { piece, .. }| {
         arena.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))

@@ -242,7 +242,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         Settled::Forced(normal, status) => {
-            let least = if distance > N::ZERO { distance } else { -N::INFINITY };
+            // What touches but for rounding does not reach below the face.
+            let least = if distance > -tolerance { distance } else { -N::INFINITY };
             let along = Along { normal: placed.inward(&normal), least, tolerance };
             build_along(&pair, &along, request, raw);
             status

@@ -162,10 +162,12 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Calls with what is known of how near a convex solid and each of some parts of a surface are that are kept
-    /// side by side; answers false if there is no algorithm for many of them.
+    /// side by side, none beyond a limit; answers false if there is no algorithm for many of them. What is as far as
+    /// the `prediction` but for rounding is not known.
     pub(super) fn each_gap(
         &self,
         nearby: &Nearby<N>,
+        prediction: N,
         limit: N,
         visit: GapVisitor<'_, N, D>,
     ) -> bool {
@@ -178,7 +180,8 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         }
         let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
         let parts = TiledParts { tiles, near, origin };
-        (N::tables().gaps)(&parts, self.between.pair.first, &usual.lying.pose12, limit, visit)
+        let (first, pose12) = (self.between.pair.first, &usual.lying.pose12);
+        (N::tables().gaps)(&parts, first, pose12, prediction, limit, visit)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is

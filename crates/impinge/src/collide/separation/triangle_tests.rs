@@ -224,7 +224,7 @@ fn check_together<N: Real>(
     let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
     let (mut touching, mut plain) = (0, vec![false; count]);
     let mut is_met = vec![false; count];
-    let is_known = gaps3(&parts, solid, pose12, limit, &mut |at, gap| {
+    let is_known = gaps3(&parts, solid, pose12, limit, limit, &mut |at, gap| {
         is_met[at] = true;
         if let Some(gap) = gap {
             plain[at] = true;

@@ -3,8 +3,8 @@
 //! Of most triangles a surface asks no more than which of its sides or corners is touched, and contacts along
 //! its face are made anew. Where a side and an edge cross well inside both, or one corner alone is nearest to
 //! a face and over its inside, that is plain, and it is certain that the direction gives the distance. All other
-//! triangles are left to the separation of the pair, and so are those whose distance differs from the limit by
-//! rounding alone, so that a query and a manifold agree on touching.
+//! triangles are left to the separation of the pair, and so are those whose distance differs from the prediction by
+//! rounding alone: the separation decides whether a pair is within it, for queries and manifolds alike.
 
 mod axes;
 mod ball;
@@ -35,18 +35,19 @@ fn noise<N: Real>() -> N {
 
 /// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
 /// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
-/// that are not treated here.
+/// that are not treated here. The limit is the `prediction` and what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledParts<'_, N, 3>,
     solid: Kind<'_, N, 3>,
     pose12: &Pose<N, 3>,
+    prediction: N,
     limit: N,
     visit: GapVisitor<'_, N, 3>,
 ) -> bool {
     let features = LocalFeatures::of(solid);
     let solid = Polyhedral::of(solid, features.as_ref()).filter(|solid| solid.faces() > 3);
     let Some(solid) = &solid else { return false };
-    TriangleQuery { parts, solid, pose12, limit }.each(visit);
+    TriangleQuery { parts, solid, pose12, prediction, limit }.each(visit);
     true
 }
 
@@ -55,6 +56,7 @@ pub(crate) fn gaps2<N: Real>(
     _: &TiledParts<'_, N, 2>,
     _: Kind<'_, N, 2>,
     _: &Pose<N, 2>,
+    _: N,
     _: N,
     _: GapVisitor<'_, N, 2>,
 ) -> bool {
@@ -66,6 +68,7 @@ struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledParts<'a, N, 3>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
+    prediction: N,
     limit: N,
 }
 
@@ -98,7 +101,7 @@ impl<N: Real> TriangleQuery<'_, N> {
             solid: self.solid,
         };
         let (gap, scale) = (axes.gaps[lane], axes.scale[lane]);
-        let is_clear = gap * scale <= self.limit - axes::slack(scale);
+        let is_clear = (gap * scale - self.prediction).abs() > axes::slack(scale);
         if axes.known >> lane & 1 == 0 || !is_clear {
             return None;
         }
