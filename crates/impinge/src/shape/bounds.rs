@@ -1,12 +1,12 @@
 //! Boxes and spheres around shapes placed somewhere.
 
-use super::polytope::LANES;
-use super::segment::length_of;
-use super::{Polytope, Shape, SupportMap};
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::lanes::{highest_lane, load, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector, Wide, max};
+use crate::shape::polytope::LANES;
+use crate::shape::solids::segment::length_of;
+use crate::shape::{Polytope, Shape, SupportMap};
 
 /// The box around a shape placed at `pose`, in the frame that the pose leads to; as small as is
 /// cheap. Unbounded for a half-space, but for the axis that its normal lies along exactly.

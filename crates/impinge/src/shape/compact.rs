@@ -1,8 +1,8 @@
 //! The numbers of a ball or a box without the way to the shape: what lies behind a handle lies elsewhere
 //! in memory.
 
-use super::{Ball, Cuboid, Geometry, Kind, ShapeHandle};
 use crate::math::{Real, Vector};
+use crate::shape::{Ball, Cuboid, Geometry, Kind, ShapeHandle};
 
 /// A copy of the numbers of a ball or a box, of which worlds have most; of any other shape only that it
 /// is one.

@@ -3,10 +3,10 @@
 
 use core::fmt;
 
-use super::{
+use crate::math::{Real, Space};
+use crate::shape::{
     Compound, ConvexHull, ConvexPolygon, HeightField, Polyline, Polytope, Tetrahedron, TriMesh,
 };
-use crate::math::{Real, Space};
 
 /// The vertices, and the faces in 3D; in 2D the sides follow from the vertices.
 fn polytope<N: Real, const D: usize>(

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use super::ShapeKind;
 use crate::math::{Real, Vector};
+use crate::shape::ShapeKind;
 
 /// Why a constructor refused its numbers. Values are given as `f64`, exactly.
 ///

@@ -1,9 +1,9 @@
 //! The face of a 3D solid with few corners, in lists of fixed size.
 
-use super::cuboid::Part;
-use super::tilt::Tilt;
-use super::{Cuboid, FeatureId};
 use crate::math::{Point, Real, Vector};
+use crate::shape::solids::cuboid::Part;
+use crate::shape::tilt::Tilt;
+use crate::shape::{Cuboid, FeatureId};
 
 /// So many corners a face may have here: as many as there are lanes.
 const MAX: usize = 8;

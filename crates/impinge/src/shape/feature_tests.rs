@@ -1,10 +1,10 @@
 //! Checks that hold for the features of every solid, run over every solid, scalar and dimension.
 
-use super::{
+use crate::math::{Point, Real, Vector, cross, max, perp, unit};
+use crate::shape::{
     Capsule, Cone, ConvexPolyhedron, Cuboid, Cylinder, Feature, FeatureId, Segment, SupportMap,
     Triangle,
 };
-use crate::math::{Point, Real, Vector, cross, max, perp, unit};
 
 /// A small generator of numbers in [-1, 1) (Marsaglia, "Xorshift RNGs", 2003).
 pub(super) struct Numbers(u64);

@@ -2,12 +2,12 @@
 
 use core::fmt;
 
-use super::rounded::RoundedSolid;
-use super::{
+use crate::math::{Point, Pose, Real, Space, max};
+use crate::shape::solids::rounded::RoundedSolid;
+use crate::shape::{
     Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
     SupportMap, TaperedCapsule, Triangle,
 };
-use crate::math::{Point, Pose, Real, Space, max};
 
 /// The kinds of solid that the pair table knows, in the order in which pairs are named.
 ///

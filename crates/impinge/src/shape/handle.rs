@@ -3,8 +3,8 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{ScaleError, Shape};
 use crate::math::{Real, Vector};
+use crate::shape::{ScaleError, Shape};
 
 /// A counted reference to an immutable shape; cloning it is cheap and shares the shape.
 ///

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use super::{MeshError, ShapeError};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
+use crate::shape::{MeshError, ShapeError};
 
 /// Why a shape was not scaled.
 ///

@@ -1,7 +1,7 @@
 //! The side or vertex of a solid of the plane that faces a direction.
 
-use super::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 use crate::math::{Point, Real, Vector};
+use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 
 /// What [`SupportMap::core_feature`] says of a solid of the plane, in no more room than that takes.
 #[derive(Clone, Copy, Debug, PartialEq)]

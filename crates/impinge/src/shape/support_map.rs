@@ -1,8 +1,8 @@
 //! What a convex solid offers to the algorithms.
 
-use super::segment::length_of;
-use super::{Feature, FeatureId};
 use crate::math::{Matrix, Point, Real, Vector, max, unit};
+use crate::shape::solids::segment::length_of;
+use crate::shape::{Feature, FeatureId};
 
 /// Where the support point of a curved part lies, and how it moves.
 ///

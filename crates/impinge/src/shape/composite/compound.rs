@@ -1,0 +1,353 @@
+//! Compounds: shapes side by side, as one.
+
+use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
+use crate::math::{Matrix, Point, Pose, Real, Space, Vector, max, max_component, min};
+use crate::partitioning::BoxTree;
+use crate::shape::composite::compound_search::search_box;
+use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
+use crate::shape::solids::segment::length_of;
+use crate::shape::{
+    CompositeShape, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid, ScaleError, Shape,
+    ShapeError, ShapeHandle, Surface,
+};
+
+/// The union of shapes, its children, each placed in the compound's frame.
+///
+/// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. Its parts
+/// are theirs, numbered in a row: first those of child 0, then those of child 1, … A child that is
+/// no composite is one part. The path to a part is the index of the child, then the child's own path.
+///
+/// A child knows the seams of its own surface; children know nothing of each other. A search looks at
+/// the tree over the boxes of the children, then searches each composite among those it finds: parts
+/// of a child are found by their boxes in the frame of the child.
+///
+/// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
+///
+/// ```
+/// use impinge::dim3::na::{Isometry3, Vector3};
+/// use impinge::dim3::shape::{Ball, Compound, Cuboid, ShapeHandle};
+///
+/// // A hammer, and a rack of two.
+/// let handle = ShapeHandle::new(Cuboid::new(Vector3::new(0.5_f32, 0.1, 0.1)));
+/// let head = ShapeHandle::new(Ball::new(0.25));
+/// let hammer = ShapeHandle::new(Compound::new(vec![
+///     (Isometry3::identity(), handle),
+///     (Isometry3::translation(0.5, 0.0, 0.0), head),
+/// ]));
+/// let rack = ShapeHandle::new(Compound::new(vec![
+///     (Isometry3::identity(), hammer.clone()),
+///     (Isometry3::translation(0.0, 0.0, 2.0), hammer),
+/// ]));
+/// assert_eq!(rack.local_aabb().maxs().z, 2.25);
+/// // Part 3 is the second solid of the second child.
+/// assert_eq!(rack.path_to_part(3).as_slice(), [1, 1]);
+/// ```
+#[derive(Clone)]
+pub struct Compound<N: Space<D>, const D: usize> {
+    children: Vec<(N::Isometry, ShapeHandle<N, D>)>,
+    pub(in crate::shape) poses: Vec<Pose<N, D>>,
+    /// The number of the first part of each child, and at last that of all parts.
+    pub(in crate::shape) firsts: Vec<u32>,
+    /// Around the boxes of the children.
+    aabb: Aabb<N, D>,
+    /// Over these boxes, grown by what rounding may make of the children.
+    pub(in crate::shape) tree: BoxTree<N, D>,
+    sphere: BoundingSphere<N, D>,
+    /// A child has a surface that knows its seams.
+    has_surface: bool,
+}
+
+/// Up to this many children the box of a placed compound is made of the boxes of its children.
+const FEW_CHILDREN: usize = 32;
+
+impl<N: Space<D>, const D: usize> Compound<N, D> {
+    /// The compound of some shapes, each with its position.
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Self {
+        or_panic(Self::try_new(children))
+    }
+
+    /// The compound of some shapes, each with its position.
+    ///
+    /// # Errors
+    /// If there is no shape, a position is not finite, or the parts are more than 32 bits can number.
+    pub fn try_new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Result<Self, ShapeError> {
+        if children.is_empty() {
+            return Err(ShapeError::NoChildren);
+        }
+        let poses: Vec<_> = children.iter().map(|(position, _)| N::pose(position)).collect();
+        if let Some(index) = poses.iter().position(|pose| !pose.is_finite()) {
+            return Err(ShapeError::ChildPoseNotFinite { index });
+        }
+        let firsts = first_parts(&children)?;
+        let placed = || children.iter().zip(&poses).map(|((_, shape), pose)| (&**shape, pose));
+        let boxes = placed().map(|(shape, pose)| boxed(shape, pose));
+        let aabb = boxes.reduce(|all, own| all.merged(&own)).unwrap_or_else(Aabb::unbounded);
+        let searched: Vec<_> = placed().map(|(shape, pose)| search_box(shape, pose)).collect();
+        let tree = BoxTree::from_boxes(&searched);
+        let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
+        let sphere = sphere_around(&aabb, &children, &poses);
+        Ok(Self { children, poses, firsts, aabb, tree, sphere, has_surface })
+    }
+
+    /// The shapes and their positions in the frame of the compound.
+    #[must_use]
+    pub fn children(&self) -> &[(N::Isometry, ShapeHandle<N, D>)] {
+        &self.children
+    }
+
+    /// How many children there are: one at least.
+    #[must_use]
+    pub const fn num_children(&self) -> usize {
+        self.children.len()
+    }
+
+    /// The compound scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
+    ///
+    /// Each child is scaled where it stands. With factors of one magnitude that asks nothing of its
+    /// position; otherwise its rotation must take axes to axes, or turn around an axis across which
+    /// the factors are of one magnitude: else it would be sheared.
+    ///
+    /// # Errors
+    /// If a factor is zero or not finite, a child would be sheared or cannot be scaled so, or numbers
+    /// leave their range.
+    pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let mut children = Vec::with_capacity(self.children.len());
+        for (index, ((_, shape), pose)) in self.children.iter().zip(&self.poses).enumerate() {
+            let refused = |_| ScaleError::Child { index };
+            let (pose, factors) = scaled_pose(pose, scale).ok_or(ScaleError::Child { index })?;
+            let shape = shape.scaled(&factors).map_err(refused)?;
+            children.push((N::isometry(&pose), shape));
+        }
+        Ok(Self::try_new(children)?)
+    }
+
+    /// The child that a part belongs to, and which of the child's parts it is.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn child_of_part(&self, part: u32) -> (usize, u32) {
+        assert!(part < self.num_parts(), "there is no part {part}: they are {}", self.num_parts());
+        // A child may be without parts: the last one that starts here is meant.
+        let child = self.firsts.partition_point(|&first| first <= part) - 1;
+        (child, part - self.firsts[child])
+    }
+
+    /// The child of this index as a composite, if it is one.
+    pub(in crate::shape) fn composite(&self, child: usize) -> Option<&dyn CompositeShape<N, D>> {
+        self.children[child].1.geometry().as_composite()
+    }
+
+    /// The surface of the child that a part belongs to, how the child lies, and which of its parts it
+    /// is.
+    fn surface_at(&self, part: u32) -> Option<(&dyn Surface<N, D>, &Pose<N, D>, u32)> {
+        let (child, own) = self.child_of_part(part);
+        Some((self.composite(child)?.surface()?, &self.poses[child], own))
+    }
+}
+
+/// Where a child of a scaled compound lies, and its own scale; `None` if it would be sheared.
+///
+/// With the signs M and the magnitudes P of the factors, rotation R:
+/// `M P R = (M R M) (M (Rᵀ P R))`, a rotation after a scale if `Rᵀ P R` is diagonal.
+fn scaled_pose<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
+    scale: Scale<'_, N, D>,
+) -> Option<(Pose<N, D>, Vector<N, D>)> {
+    let signs = scale.signs();
+    let mut rotation = pose.rotation;
+    for (row, column) in (0..D).flat_map(|row| (0..D).map(move |column| (row, column))) {
+        rotation[(row, column)] *= signs[row] * signs[column];
+    }
+    let own = match scale.uniform() {
+        Ok(_) => scale.magnitudes(),
+        Err(_) => own_factors(&pose.rotation, &scale.magnitudes())?,
+    };
+    let translation = scale.vector(&pose.translation);
+    Some((Pose { rotation, translation }, own.component_mul(&signs)))
+}
+
+/// The diagonal of `Rᵀ P R`, if nothing is beside it but rounding.
+fn own_factors<N: Real, const D: usize>(
+    rotation: &Matrix<N, D>,
+    magnitudes: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let turned = rotation.transpose() * Matrix::<N, D>::from_diagonal(magnitudes) * rotation;
+    let noise = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
+    let is_beside = |at: (usize, usize)| at.0 != at.1 && turned[at].abs() > noise;
+    let mut all = (0..D).flat_map(|row| (0..D).map(move |column| (row, column)));
+    (!all.any(is_beside)).then(|| turned.diagonal())
+}
+
+/// See [`Compound::firsts`].
+fn first_parts<N: Space<D>, const D: usize>(
+    children: &[(N::Isometry, ShapeHandle<N, D>)],
+) -> Result<Vec<u32>, ShapeError> {
+    let parts_of = |shape: &ShapeHandle<N, D>| {
+        shape.geometry().as_composite().map_or(1, |composite| u64::from(composite.num_parts()))
+    };
+    let needed = children.iter().map(|(_, shape)| parts_of(shape)).sum();
+    let mut firsts = vec![0];
+    let mut count = 0_u64;
+    for (_, shape) in children {
+        count += parts_of(shape);
+        firsts.push(u32::try_from(count).map_err(|_| ShapeError::TooManyParts { needed })?);
+    }
+    Ok(firsts)
+}
+
+/// The box of a shape placed at `pose`; that of everything where arithmetic fails.
+pub(in crate::shape) fn boxed<N: Space<D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    pose: &Pose<N, D>,
+) -> Aabb<N, D> {
+    let aabb = shape.aabb(pose);
+    Aabb::try_new(*aabb.mins(), *aabb.maxs()).unwrap_or_else(|_| Aabb::unbounded())
+}
+
+/// The sphere around the middle of a box that holds the spheres of the children; no larger than the box
+/// asks for.
+fn sphere_around<N: Space<D>, const D: usize>(
+    aabb: &Aabb<N, D>,
+    children: &[(N::Isometry, ShapeHandle<N, D>)],
+    poses: &[Pose<N, D>],
+) -> BoundingSphere<N, D> {
+    if !aabb.is_bounded() {
+        return BoundingSphere::unbounded();
+    }
+    let around_box = BoundingSphere::around_box(aabb);
+    let center = *around_box.center();
+    let reach = children.iter().zip(poses).map(|((_, shape), pose)| {
+        shape.local_bounding_sphere().transformed_by(pose).farthest_from(&center)
+    });
+    let radius = min(reach.fold(N::ZERO, max), around_box.radius());
+    BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
+}
+
+fn surface_of<N: Space<D>, const D: usize>(
+    shape: &ShapeHandle<N, D>,
+) -> Option<&dyn Surface<N, D>> {
+    shape.geometry().as_composite()?.surface()
+}
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
+    fn num_parts(&self) -> u32 {
+        self.firsts[self.children.len()]
+    }
+
+    fn part(&self, part: u32) -> Part<'_, N, D> {
+        let (child, own) = self.child_of_part(part);
+        let pose = self.poses[child];
+        match self.composite(child) {
+            Some(composite) => {
+                let inner = composite.part(own);
+                Part { pose: pose.compose(&inner.pose), solid: inner.solid }
+            }
+            None => Part { pose, solid: PartSolid::Shape(&*self.children[child].1) },
+        }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        self
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        self.has_surface.then_some(self as &dyn Surface<N, D>)
+    }
+
+    /// Those of the innermost composite, with the number of its first part in the upper half.
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        let (child, own) = self.child_of_part(part);
+        if let Some(composite) = self.composite(child) {
+            let first = u64::from(self.firsts[child]) << 32;
+            composite.each_corner(own, &mut |corner| visit(first.wrapping_add(corner)));
+        }
+    }
+
+    fn extend_path(&self, part: u32, path: &mut PartPath) {
+        let (child, own) = self.child_of_part(part);
+        path.push(u32::try_from(child).expect("a child has a part, and 32 bits number the parts"));
+        if let Some(composite) = self.composite(child) {
+            composite.extend_path(own, path);
+        }
+    }
+}
+
+/// A part of a child without a surface stands alone: it admits every normal.
+impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
+        self.surface_at(part).is_none_or(|(surface, pose, own)| {
+            surface.admits(own, feature, &pose.inverse_vector(normal))
+        })
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        let Some((surface, pose, own)) = self.surface_at(part) else { return [true, false] };
+        let [first, second] = normals.map(|normal| pose.inverse_vector(normal));
+        surface.admits_in_turn(own, feature, [&first, &second])
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let (surface, pose, own) = self.surface_at(part)?;
+        let snapped = surface.snapped(own, &pose.inverse_vector(normal))?;
+        Some(pose.vector(&snapped))
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        self.surface_at(part)
+            .is_none_or(|(surface, pose, own)| surface.faces(own, &pose.inverse_point(center)))
+    }
+}
+
+impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry::composite(self)
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.aabb
+    }
+
+    /// Of many children the box is that of the box of all, turned, and so is that of a composite child.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        if self.children.len() > FEW_CHILDREN {
+            return self.local_aabb().transformed_by(pose);
+        }
+        let placed = self.children.iter().zip(&self.poses);
+        // A child is placed twice, which rounds twice: its place by the first pose is turned by the second.
+        let turn = Pose { translation: Vector::<N, D>::zeros(), ..*pose };
+        let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
+            // One level down is enough: compounds may be nested, and share what they are made of.
+            Some(_) => shape.local_aabb().transformed_by(&turn.compose(own)),
+            None => boxed(&**shape, &turn.compose(own)),
+        });
+        let turned = boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded);
+        let arms = self.poses.iter().map(|own| length_of(&own.translation)).fold(N::ZERO, max);
+        let (low, high) = (turned.mins().coords, turned.maxs().coords);
+        let finite = |x: N| if x.is_finite_number() { x.abs() } else { N::ZERO };
+        let extent = low.zip_map(&high, |low, high| max(finite(low), finite(high)));
+        // A child reaches from its own origin to that of the compound, and as far as the box.
+        Aabb::of_turned(low, high, N::TWO * arms + length_of(&extent), pose)
+    }
+
+    /// Around the middle of the box; no larger than the box asks for.
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        self.sphere
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}

@@ -1,0 +1,345 @@
+//! Which normals a height field has at a face, an edge or a vertex: found from the heights around.
+
+use smallvec::SmallVec;
+
+use super::HeightField;
+use super::sheet::GridPoint;
+use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
+use crate::shape::composite::tri_mesh::{inward_of, normal_of};
+use crate::shape::surface::bend::Bend;
+use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
+use crate::shape::surface::sidedness::Joining;
+use crate::shape::{FeatureId, Sidedness, Surface};
+
+impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
+        let own = Face::of(self, self.corners(part));
+        self.face_admits(&own, &mut Beside::unknown(), feature, normal)
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        let (own, mut beside) = (Face::of(self, self.corners(part)), Beside::unknown());
+        let is_first = self.face_admits(&own, &mut beside, feature, first);
+        [is_first, !is_first && self.face_admits(&own, &mut beside, feature, second)]
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        self.snapped_to(&self.front_of(&self.corners(part)), normal)
+    }
+
+    /// Points of the grid are at positions of their own unless the field has no extent.
+    fn has_plain_seams(&self) -> bool {
+        !self.keeps_internal_edges && self.grid.has_extent()
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
+        let is_behind = || {
+            let corners = self.corners(part);
+            let [row, column] = corners[0];
+            self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO
+        };
+        !(self.is_one_sided && is_behind())
+    }
+}
+
+/// A triangle of a field.
+struct Face<N: Real> {
+    corners: [GridPoint; 3],
+    points: [Point<N, 3>; 3],
+    /// The unit normal on the front; zero without area.
+    front: Vector<N, 3>,
+}
+
+impl<N: Real> Face<N> {
+    fn of(field: &HeightField<N, 3>, corners: [GridPoint; 3]) -> Self {
+        let points = field.points_of(&corners);
+        Self { corners, points, front: normal_of(&points) }
+    }
+
+    /// The corner that is none of two, which are the ends of a side.
+    fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
+        let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
+        Some(self.points[at])
+    }
+}
+
+/// What is known of what lies beside one feature of a triangle.
+struct Beside<N: Real> {
+    fold: Option<Fold<N>>,
+    star: Option<Star<N>>,
+}
+
+impl<N: Real> Beside<N> {
+    const fn unknown() -> Self {
+        Self { fold: None, star: None }
+    }
+}
+
+/// A side of a triangle.
+struct Fold<N: Real> {
+    ends: [GridPoint; 2],
+    /// The triangle across, and how the two lie, if that is plain.
+    other: Option<Face<N>>,
+    bend: Option<Bend<N>>,
+}
+
+impl<N: Real> Fold<N> {
+    fn at(field: &HeightField<N, 3>, own: &Face<N>, side: usize) -> Self {
+        let ends = [own.corners[side % 3], own.corners[(side + 1) % 3]];
+        let other = field.across(&own.corners, ends).map(|corners| Face::of(field, corners));
+        let bend = other
+            .as_ref()
+            .and_then(|other| Bend::new([&own.points, &other.points], [own.front, other.front]));
+        Self { ends, other, bend }
+    }
+}
+
+impl<N: Real> HeightField<N, 3> {
+    fn points_of(&self, corners: &[GridPoint; 3]) -> [Point<N, 3>; 3] {
+        let point = |[row, column]: GridPoint| self.grid.point(row, column);
+        [point(corners[0]), point(corners[1]), point(corners[2])]
+    }
+
+    /// The unit normal on the front of a triangle; zero without area.
+    fn front_of(&self, corners: &[GridPoint; 3]) -> Vector<N, 3> {
+        normal_of(&self.points_of(corners))
+    }
+
+    fn snapped_to(&self, front: &Vector<N, 3>, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        let own = if is_front { *front } else { -front };
+        (*front != Vector::<N, 3>::zeros()).then_some(own)
+    }
+
+    /// The triangles of some cells, given by their rows and columns plus one, without the holes.
+    fn in_cells(
+        &self,
+        cells: impl Iterator<Item = GridPoint>,
+    ) -> impl Iterator<Item = [GridPoint; 3]> {
+        let [rows, columns] = self.pyramid.cells();
+        let cells = cells.filter_map(move |[row, column]| {
+            let cell = (row.checked_sub(1)?, column.checked_sub(1)?);
+            Some(cell).filter(|&(row, column)| row < rows && column < columns)
+        });
+        let parts = cells.flat_map(|(row, column)| [(row, column, 0), (row, column, 1)]);
+        let rest = parts.filter(|&(row, column, k)| !self.is_hole_in(row, column, k));
+        rest.map(|(row, column, k)| self.corners_in(row, column, k))
+    }
+
+    /// The corners of the triangles around a point of the grid: eight at most.
+    fn around_point(&self, at: GridPoint) -> impl Iterator<Item = [GridPoint; 3]> + '_ {
+        let [row, column] = at;
+        // One cell before and one after, of those that there are.
+        let cells = [[row, column], [row, column + 1], [row + 1, column], [row + 1, column + 1]];
+        self.in_cells(cells.into_iter()).filter(move |corners| corners.contains(&at))
+    }
+
+    /// The triangle on the other side of a side.
+    fn across(&self, own: &[GridPoint; 3], [a, b]: [GridPoint; 2]) -> Option<[GridPoint; 3]> {
+        let (row, column) = (a[0].min(b[0]), a[1].min(b[1]));
+        // That of a side along a row or column lies in the cell before or after, that of a diagonal in
+        // the cell itself.
+        let before = [row + usize::from(a[0] != b[0]), column + usize::from(a[1] != b[1])];
+        let after = [row + 1, column + 1];
+        let [first, second, third] = own;
+        let least = |at: usize| first[at].min(second[at]).min(third[at]) + 1;
+        let beyond = if before == [least(0), least(1)] { after } else { before };
+        self.in_cells([beyond].into_iter())
+            .find(|other| other.contains(&a) && other.contains(&b) && other != own)
+    }
+
+    /// Whether a triangle has a normal at a feature; what lies beside it is looked up once.
+    fn face_admits(
+        &self,
+        own: &Face<N>,
+        beside: &mut Beside<N>,
+        feature: FeatureId,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        if self.keeps_internal_edges {
+            return !self.is_one_sided || own.front.dot(normal) >= -slack::<N>();
+        }
+        let snapped = self.snapped_to(&own.front, normal);
+        snapped.is_some_and(|snapped| max_component(&(snapped - normal)) <= slack())
+            || match feature {
+                FeatureId::Face(_) => snapped.is_none(),
+                FeatureId::Edge(side) => {
+                    let fold =
+                        beside.fold.get_or_insert_with(|| Fold::at(self, own, side as usize));
+                    self.edge_admits(own, fold, side as usize, normal)
+                }
+                FeatureId::Vertex(corner) => {
+                    self.vertex_admits(own, &mut beside.star, corner as usize, normal)
+                }
+            }
+    }
+
+    fn edge_admits(
+        &self,
+        own: &Face<N>,
+        fold: &Fold<N>,
+        side: usize,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let Fold { ends, other, bend } = fold;
+        if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
+            return answer;
+        }
+        let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
+        let mut seam = Seam::of_faces(own.front, normal);
+        for face in [Some(own), other.as_ref()].into_iter().flatten() {
+            let inward = face.beyond(ends).and_then(|tip| inward_of(&[start, end, tip]));
+            if let Some(inward) = inward {
+                seam.add_face(inward.dot(normal), &face.front);
+            }
+        }
+        is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
+    }
+
+    fn vertex_admits(
+        &self,
+        own: &Face<N>,
+        star: &mut Option<Star<N>>,
+        corner: usize,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let point = own.points[corner % 3];
+        let leads_up = |other: &Point<N, 3>| leads_up_clearly(&(other - point), normal);
+        // Most are refused by a side of the triangle that is asked.
+        if own.points.iter().any(leads_up) {
+            return false;
+        }
+        let star = star.get_or_insert_with(|| self.star_of(own.corners[corner % 3]));
+        if star.iter().any(|(points, _)| points.iter().any(leads_up)) {
+            return false;
+        }
+        let mut seam = Seam::of_faces(own.front, normal);
+        for (points, at) in star {
+            seam.add_face(rise_from(points, *at, normal), &normal_of(points));
+        }
+        seam.admits(self.is_one_sided)
+    }
+
+    /// The triangles around a point of the grid.
+    fn star_of(&self, at: GridPoint) -> Star<N> {
+        let mut star = Star::new();
+        for corners in self.around_point(at) {
+            let own = corners.iter().position(|corner| *corner == at).unwrap_or(0);
+            star.push((self.points_of(&corners), own));
+        }
+        star
+    }
+}
+
+/// The corners of the triangles around a point, and which of them it is.
+type Star<N> = SmallVec<[([Point<N, 3>; 3], usize); 8]>;
+
+/// How much the steeper of the two sides of a triangle that leave a corner rises along a unit vector.
+fn rise_from<N: Real>(points: &[Point<N, 3>; 3], at: usize, normal: &Vector<N, 3>) -> N {
+    let others = (0..3).filter(|other| *other != at).map(|other| points[other]);
+    let rises = others.map(|other| unit_or(&(other - points[at]), -normal).dot(normal));
+    rises.fold(-N::ONE, max)
+}
+
+impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
+        if self.keeps_internal_edges {
+            return self.height_over(part, normal) >= -slack::<N>();
+        }
+        let own = self.along(part).map(|along| along.dot(normal).abs() <= slack());
+        let is_own = own.is_none_or(|own| own) && self.height_over(part, normal) >= N::ZERO;
+        match feature {
+            FeatureId::Vertex(end) if own != Some(true) => {
+                self.point_admits(part, part as usize + end as usize, normal)
+            }
+            _ => is_own,
+        }
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        let front = self.front(part)?;
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        Some(if is_front { front } else { -front })
+    }
+
+    fn sidedness(&self) -> Option<Sidedness> {
+        let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
+        let (is_left, follows_front) = (!self.is_mirrored(), true);
+        let joining = Joining::InRow;
+        Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        self.height_over(part, &(center - self.point(part as usize))) >= N::ZERO
+    }
+}
+
+impl<N: Real> HeightField<N, 2> {
+    /// Unit, along a segment; `None` without length.
+    fn along(&self, part: u32) -> Option<Vector<N, 2>> {
+        let index = part as usize;
+        unit(&(self.point(index + 1) - self.point(index))).map(|(along, _)| along)
+    }
+
+    /// The unit normal on the front of a segment; `None` without length.
+    fn front(&self, part: u32) -> Option<Vector<N, 2>> {
+        let left = perp(&self.along(part)?);
+        Some(if self.is_mirrored() { -left } else { left })
+    }
+
+    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    fn height_over(&self, part: u32, vector: &Vector<N, 2>) -> N {
+        let front = self.front(part).filter(|_| self.is_one_sided);
+        front.map_or(N::ZERO, |front| front.dot(vector))
+    }
+
+    /// No segment that leaves the point rises along the normal, and they are not straight.
+    fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
+        let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
+        let before = index.checked_sub(1).map(|cell| (cell, -N::ONE));
+        for (cell, sign) in before.into_iter().chain([(index, N::ONE)]) {
+            let is_there = cell < self.num_cells() && !self.marks.is_hole(cell, 0);
+            let part = u32::try_from(cell).expect("32 bits number the segments");
+            let Some(along) = is_there.then(|| self.along(part)).flatten() else { continue };
+            seam.add_segment(&(along * sign), self.height_over(part, normal));
+        }
+        seam.admits(self.is_one_sided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_normals_in_turn_are_as_each_alone() {
+        let noise = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
+        let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
+        let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
+        let mut counts = [0; 3];
+        for (field, part) in [field.clone(), field.one_sided()]
+            .iter()
+            .flat_map(|field| (0..50_u32).map(move |part| (field, part)))
+        {
+            let front = field.front_of(&field.corners(part));
+            for at in 0..60_u32 {
+                let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
+                let far = (front + aside).normalize();
+                let near = (front + aside * 0.03).normalize();
+                let feature = [FeatureId::Edge(at / 3 % 3), FeatureId::Vertex(at % 3)];
+                let feature = feature[at as usize % 2];
+                let [first, second] = [far, near].map(|n| field.admits(part, feature, &n));
+                let both = field.admits_in_turn(part, feature, [&far, &near]);
+                assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
+                counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+    }
+}

@@ -1,0 +1,105 @@
+//! Where the parts of a surface meet: at equal positions, whatever the indices.
+
+use core::array;
+
+use crate::math::{Point, Real};
+
+/// The points at which parts meet.
+///
+/// Vertices at one position are one joint, named by the first of them: pieces that each bring
+/// vertices of their own, as exporters write them, hang together like pieces that share theirs.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::shape) struct Joints {
+    /// By vertex: its joint.
+    of_vertex: Vec<u32>,
+    /// By joint: where its parts start in the list; and the end of the last.
+    starts: Vec<u32>,
+    /// The parts of each joint, ascending, each once.
+    parts: Vec<u32>,
+}
+
+impl Joints {
+    /// The joints of parts with `K` vertices each, which must exist.
+    pub(in crate::shape) fn new<N: Real, const D: usize, const K: usize>(
+        vertices: &[Point<N, D>],
+        parts: &[[u32; K]],
+    ) -> Self {
+        let of_vertex = welded(vertices);
+        let mut starts = vec![0; vertices.len() + 1];
+        let each = |visit: &mut dyn FnMut(u32, u32)| {
+            for (part, corners) in (0..).zip(parts) {
+                let joints = corners.map(|vertex| of_vertex[vertex as usize]);
+                let is_new = |&at: &usize| !joints[..at].contains(&joints[at]);
+                (0..K).filter(is_new).for_each(|at| visit(joints[at], part));
+            }
+        };
+        each(&mut |joint, _| starts[joint as usize + 1] += 1);
+        for at in 1..starts.len() {
+            starts[at] += starts[at - 1];
+        }
+        let total = starts.last().copied().unwrap_or(0);
+        let (mut next, mut listed) = (starts.clone(), vec![0; total as usize]);
+        each(&mut |joint, part| {
+            listed[next[joint as usize] as usize] = part;
+            next[joint as usize] += 1;
+        });
+        Self { of_vertex, starts, parts: listed }
+    }
+
+    /// The number of vertices.
+    pub(in crate::shape) const fn vertices(&self) -> usize {
+        self.of_vertex.len()
+    }
+
+    /// The joint of a vertex.
+    #[inline]
+    pub(in crate::shape) fn of(&self, vertex: u32) -> u32 {
+        self.of_vertex[vertex as usize]
+    }
+
+    /// The parts that meet at a joint, ascending.
+    #[inline]
+    pub(in crate::shape) fn parts(&self, joint: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|next| self.starts[joint as usize + next] as usize);
+        &self.parts[start..end]
+    }
+
+    /// The vertices of each joint still lie at one position.
+    pub(in crate::shape) fn are_together<N: Real, const D: usize>(
+        &self,
+        vertices: &[Point<N, D>],
+    ) -> bool {
+        self.of_vertex.iter().zip(vertices).all(|(&joint, at)| vertices[joint as usize] == *at)
+    }
+}
+
+/// By vertex: the first one at the same position. Zeros of both signs are one position.
+fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
+    let key = |vertex: u32| -> [u64; D] {
+        array::from_fn(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())
+    };
+    let mut first: Vec<u32> = (0..).take(vertices.len()).collect();
+    let mut order = first.clone();
+    order.sort_unstable_by_key(|&vertex| (key(vertex), vertex));
+    for pair in order.windows(2) {
+        if key(pair[0]) == key(pair[1]) {
+            first[pair[1] as usize] = first[pair[0] as usize];
+        }
+    }
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_positions_are_one_joint() {
+        let vertices = [0.0_f32, 1.0, 1.0, -0.0, 2.0, 1.0].map(|x| Point::<f32, 2>::new(x, 0.0));
+        let joints = Joints::new(&vertices, &[[0, 1], [2, 4], [5, 3], [5, 1]]);
+        assert_eq!((0..6).map(|v| joints.of(v)).collect::<Vec<_>>(), [0, 1, 1, 0, 4, 1], "first");
+        assert_eq!(joints.parts(0), [0, 2], "zeros of both signs are equal");
+        assert_eq!(joints.parts(1), [0, 1, 2, 3], "the last part only once");
+        assert_eq!((joints.parts(4), joints.parts(5)), ([1].as_slice(), [].as_slice()), "others");
+    }
+}

@@ -1,0 +1,153 @@
+//! Why vertices and indices make no mesh and no polyline.
+
+use core::fmt;
+
+use crate::math::{Point, Real, Vector};
+
+/// Why a [`TriMesh`](super::TriMesh) or a [`Polyline`](super::Polyline) refused its input. Parts are
+/// its triangles or segments.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{MeshError, Polyline};
+///
+/// let refused = Polyline::<f32>::try_open(vec![Point::origin()]).expect_err("one vertex");
+/// assert_eq!(refused, MeshError::TooFewVertices { given: 1 });
+/// assert_eq!(refused.to_string(), "a line through vertices needs two of them, 1 is given");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is no part.
+    Empty,
+    /// A line from vertex to vertex has fewer vertices than a segment.
+    TooFewVertices {
+        /// How many were given.
+        given: usize,
+    },
+    /// A coordinate of a vertex is NaN or infinite.
+    VertexNotFinite {
+        /// The index of the vertex.
+        vertex: usize,
+    },
+    /// A part names a vertex that there is not.
+    NoSuchVertex {
+        /// The index of the part.
+        part: usize,
+        /// The index it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// There are more vertices or parts than 32 bits can number.
+    TooMany {
+        /// How many were given.
+        given: usize,
+    },
+    /// A mesh keeps its number of vertices when they move.
+    WrongCount {
+        /// How many were given.
+        given: usize,
+        /// How many it has.
+        needed: usize,
+    },
+    /// A scale is zero, infinite or NaN: nothing with a surface would be left.
+    BadScale {
+        /// The axis: 0 for x.
+        axis: usize,
+        /// The scale along it.
+        value: f64,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => {
+                write!(f, "no part is given: a mesh needs a triangle, a polyline a segment")
+            }
+            Self::TooFewVertices { given } => {
+                write!(f, "a line through vertices needs two of them, {given} is given")
+            }
+            Self::VertexNotFinite { vertex } => write!(f, "vertex {vertex} is not finite"),
+            Self::NoSuchVertex { part, vertex, vertices } => {
+                write!(f, "part {part} names vertex {vertex}, but there are {vertices} vertices")
+            }
+            Self::TooMany { given } => {
+                write!(f, "{given} vertices or parts are more than 32 bits can number")
+            }
+            Self::WrongCount { given, needed } => {
+                write!(f, "{given} vertices were given for {needed}")
+            }
+            Self::BadScale { axis, value } => write!(f, "the scale along axis {axis} is {value}"),
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+/// The most vertices and the most parts: the corners of all parts are numbered with 32 bits, and a
+/// few numbers are kept for other things.
+const MAX: usize = (u32::MAX / 3 - 2) as usize;
+
+/// Vertices are finite and few enough.
+pub(in crate::shape) fn check_vertices<N: Real, const D: usize>(
+    vertices: &[Point<N, D>],
+) -> Result<(), MeshError> {
+    let is_finite = |point: &Point<N, D>| point.iter().all(|x| x.is_finite_number());
+    match vertices.iter().position(|point| !is_finite(point)) {
+        Some(vertex) => Err(MeshError::VertexNotFinite { vertex }),
+        None if vertices.len() > MAX => Err(MeshError::TooMany { given: vertices.len() }),
+        None => Ok(()),
+    }
+}
+
+/// There are parts, few enough, and they name vertices that exist.
+pub(in crate::shape) fn check_parts<const K: usize>(
+    parts: &[[u32; K]],
+    vertices: usize,
+) -> Result<(), MeshError> {
+    if parts.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    if parts.len() > MAX {
+        return Err(MeshError::TooMany { given: parts.len() });
+    }
+    for (part, corners) in parts.iter().enumerate() {
+        if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Err(MeshError::NoSuchVertex { part, vertex, vertices });
+        }
+    }
+    Ok(())
+}
+
+/// Moved vertices are as many as before, and usable.
+pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
+    vertices: &[Point<N, D>],
+    needed: usize,
+) -> Result<(), MeshError> {
+    if vertices.len() != needed {
+        return Err(MeshError::WrongCount { given: vertices.len(), needed });
+    }
+    check_vertices(vertices)
+}
+
+/// A scale along each axis: finite, and not zero.
+pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
+    scale: &Vector<N, D>,
+) -> Result<(), MeshError> {
+    let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
+    match scale.iter().position(is_bad) {
+        Some(axis) => Err(MeshError::BadScale { axis, value: scale[axis].as_f64() }),
+        None => Ok(()),
+    }
+}
+
+/// The mesh, or a panic with the error's text.
+#[track_caller]
+pub(in crate::shape) fn or_panic<S>(result: Result<S, MeshError>) -> S {
+    match result {
+        Ok(mesh) => mesh,
+        Err(error) => panic!("{error}"),
+    }
+}

@@ -1,0 +1,40 @@
+//! The tree over boxes as the search of a composite.
+
+use crate::bounding_volume::Aabb;
+use crate::math::{Space, Vector};
+use crate::partitioning::{BoxTree, Sweep};
+use crate::shape::PartSearch;
+
+impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
+    fn bounds(&self) -> Aabb<N, D> {
+        Self::bounds(self).copied().unwrap_or_else(Aabb::unbounded)
+    }
+
+    fn as_tree(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32)) {
+        self.visit_overlapping(aabb, |index| visit(number(index)));
+    }
+
+    fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
+        (N::tables().partitioning.nearest_first)(self, aabb, limit, visit);
+    }
+
+    fn cast(
+        &self,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) {
+        let sweep = Sweep { aabb: *aabb, velocity: *velocity };
+        (N::tables().partitioning.near_first)(self, &sweep, limit, visit);
+    }
+}
+
+/// A tree numbers its boxes with 32 bits.
+fn number(index: usize) -> u32 {
+    u32::try_from(index).expect("a tree has fewer than 2^32 boxes")
+}

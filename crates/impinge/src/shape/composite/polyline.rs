@@ -1,0 +1,311 @@
+//! Polylines: chains and nets of segments.
+
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real, Space, Vector};
+use crate::partitioning::{BoxTree, BoxTreeError};
+use crate::shape::Segment;
+use crate::shape::composite::joints::Joints;
+use crate::shape::composite::mesh_error::{
+    MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
+};
+use crate::shape::composite::polyline_parts;
+
+/// Segments that share ends: an open or closed line, or several of them, or a net.
+///
+/// Parts are the segments, in the order given, each with the vertices 0 and 1 and the edge 0 of
+/// [`Segment`]; all is in the frame of the line. Segments belong together by the positions of their
+/// ends, not by the indices.
+///
+/// **Sides.** A line has no inside, but for `encloses` and `signed_distance` of one in 2D. In 2D it has two sides, or one if asked by `one_sided`:
+/// then what is solid lies on its left, as for an outline that runs counter-clockwise, and nothing
+/// touches it from there.
+///
+/// **Seams.** Contacts see the line as one (see [`Surface`](super::Surface)): at a joint only those
+/// normals count that the whole line has there, so that nothing catches on the joints of a floor.
+/// Segments that bend by less than 0.57 degrees (a sine of 0.01) count as straight.
+/// [`Self::with_internal_edges_kept`] switches this off.
+///
+/// **Bad segments.** A segment without length is kept, so that parts keep their numbers: it acts as
+/// a point, and its neighbours join through it.
+///
+/// Making a line costs O(n log n), a search O(log n + what it finds).
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{CompositeShape, Polyline};
+///
+/// let corners = [[0.0_f32, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+/// let room = Polyline::closed(corners.map(Point::from).to_vec());
+/// assert_eq!(room.num_parts(), 4);
+/// assert_eq!(room.segments()[3], [3, 0]);
+/// assert!(room.are_adjacent(0, 3) && !room.are_adjacent(0, 2));
+/// ```
+#[derive(Clone)]
+pub struct Polyline<N: Real, const D: usize> {
+    pub(in crate::shape) vertices: Vec<Point<N, D>>,
+    pub(in crate::shape) segments: Vec<[u32; 2]>,
+    pub(in crate::shape) joints: Joints,
+    pub(in crate::shape) tree: BoxTree<N, D>,
+    /// As many segments start as end at each joint, and ends that belong together lie together.
+    is_cycle: bool,
+    /// The vertices are no longer those that the joints were made of.
+    pub(in crate::shape) is_moved: bool,
+    /// The normal on the front of a segment from its direction, of a line with one side: known in
+    /// the plane only.
+    pub(in crate::shape) front: Option<Front<N, D>>,
+    pub(in crate::shape) keeps_internal_edges: bool,
+}
+
+/// From the direction of a segment to the normal on its front.
+pub(in crate::shape) type Front<N, const D: usize> = fn(&Vector<N, D>) -> Vector<N, D>;
+
+impl<N: Space<D>, const D: usize> Polyline<N, D> {
+    /// The line from each vertex to the next.
+    ///
+    /// # Panics
+    /// Where [`Self::try_open`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn open(vertices: Vec<Point<N, D>>) -> Self {
+        or_panic(Self::try_open(vertices))
+    }
+
+    /// The line from each vertex to the next.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, there are fewer than two vertices, or more than 32 bits can
+    /// number.
+    pub fn try_open(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
+        let segments = chain(vertices.len())?;
+        Self::try_new(vertices, segments)
+    }
+
+    /// The line from each vertex to the next, and from the last back to the first.
+    ///
+    /// # Panics
+    /// Where [`Self::try_closed`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn closed(vertices: Vec<Point<N, D>>) -> Self {
+        or_panic(Self::try_closed(vertices))
+    }
+
+    /// The line from each vertex to the next, and from the last back to the first.
+    ///
+    /// # Errors
+    /// As [`Self::try_open`].
+    pub fn try_closed(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
+        let mut segments = chain(vertices.len())?;
+        if let Some(&[_, last]) = segments.last() {
+            segments.push([last, 0]);
+        }
+        Self::try_new(vertices, segments)
+    }
+
+    /// The union of segments given by two vertices each, in any order.
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Self {
+        or_panic(Self::try_new(vertices, segments))
+    }
+
+    /// The union of segments given by two vertices each, in any order.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, a segment names a vertex that there is not, there is no
+    /// segment, or 32 bits cannot number the ends.
+    pub fn try_new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Result<Self, MeshError> {
+        check_vertices(&vertices)?;
+        check_parts(&segments, vertices.len())?;
+        let joints = Joints::new(&vertices, &segments);
+        let tree = BoxTree::try_from_boxes(&boxes_of(&vertices, &segments)).map_err(refused)?;
+        let is_cycle = is_cycle(vertices.len(), &segments, &joints);
+        let (is_moved, front, keeps_internal_edges) = (false, None, false);
+        Ok(Self {
+            vertices,
+            segments,
+            joints,
+            tree,
+            is_cycle,
+            is_moved,
+            front,
+            keeps_internal_edges,
+        })
+    }
+
+    /// The line scaled along the axes of its frame, about its origin. Where that mirrors it, each
+    /// segment runs the other way, so that what is solid stays so.
+    ///
+    /// # Errors
+    /// If a scale is zero or not finite, or a coordinate becomes infinite.
+    pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
+        check_scale(scale)?;
+        let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
+        let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
+        let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
+        let turned = |&[a, b]: &[u32; 2]| if is_mirrored { [b, a] } else { [a, b] };
+        let made = Self::try_new(vertices, self.segments.iter().map(turned).collect())?;
+        Ok(Self { front: self.front, keeps_internal_edges: self.keeps_internal_edges, ..made })
+    }
+
+    /// Moves the vertices; see [`Self::try_set_vertices`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_set_vertices`] returns an error.
+    #[track_caller]
+    pub fn set_vertices(&mut self, vertices: &[Point<N, D>]) {
+        or_panic(self.try_set_vertices(vertices));
+    }
+
+    /// Moves the vertices, for a line that deforms: all of them, in the order of
+    /// [`Self::vertices`].
+    ///
+    /// Segments that hung together still do, even if their ends lie apart now. The tree is refitted,
+    /// not built anew: O(n). On an error nothing has changed.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or the number of vertices differs.
+    pub fn try_set_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
+        check_moved(vertices, self.vertices.len())?;
+        self.tree.try_refit(&boxes_of(vertices, &self.segments)).map_err(refused)?;
+        self.vertices.copy_from_slice(vertices);
+        self.is_moved = true;
+        let is_whole = self.joints.are_together(vertices);
+        self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
+        Ok(())
+    }
+}
+
+impl<N: Real, const D: usize> Polyline<N, D> {
+    /// The vertices, as given; some may belong to no segment.
+    #[must_use]
+    pub fn vertices(&self) -> &[Point<N, D>] {
+        &self.vertices
+    }
+
+    /// The two vertices of each segment.
+    #[must_use]
+    pub fn segments(&self) -> &[[u32; 2]] {
+        &self.segments
+    }
+
+    /// The number of segments.
+    #[must_use]
+    pub const fn num_segments(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// One segment.
+    ///
+    /// # Panics
+    /// If there is no such segment.
+    #[must_use]
+    pub fn segment(&self, index: u32) -> Segment<N, D> {
+        let [a, b] = self.ends(index);
+        Segment::new(a, b)
+    }
+
+    /// The segments that end where end 0 or 1 of a segment is, itself among them, ascending.
+    ///
+    /// # Panics
+    /// If there is no such segment or end.
+    #[must_use]
+    pub fn joined(&self, segment: u32, end: u32) -> &[u32] {
+        self.joints.parts(self.joints.of(self.segments[segment as usize][end as usize]))
+    }
+
+    /// No segment ends where no other one does. O(n).
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        let joint = |&vertex: &u32| self.joints.parts(self.joints.of(vertex));
+        self.segments.iter().flatten().all(|vertex| joint(vertex).len() > 1)
+    }
+
+    /// The tree over the boxes of the segments.
+    #[must_use]
+    pub const fn tree(&self) -> &BoxTree<N, D> {
+        &self.tree
+    }
+
+    /// Nothing touches the line from its left.
+    #[must_use]
+    pub const fn is_one_sided(&self) -> bool {
+        self.front.is_some()
+    }
+
+    /// Contacts treat each segment on its own; see [`Self::with_internal_edges_kept`].
+    #[must_use]
+    pub const fn keeps_internal_edges(&self) -> bool {
+        self.keeps_internal_edges
+    }
+
+    /// Makes contacts treat each segment on its own, with both its ends, as if it had no neighbours.
+    #[must_use]
+    pub const fn with_internal_edges_kept(mut self) -> Self {
+        self.keeps_internal_edges = true;
+        self
+    }
+
+    pub(in crate::shape) fn ends(&self, segment: u32) -> [Point<N, D>; 2] {
+        self.segments[segment as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+}
+
+impl<N: Real> Polyline<N, 2> {
+    /// The line is the outline of an area, or of several: at each joint as many segments end as start,
+    /// as in every [closed](Self::closed) one. O(1).
+    ///
+    /// Vertices that [`Self::set_vertices`] moves apart, though they were at one position, open the line.
+    /// What lies inside say [`Self::encloses`] and [`Self::signed_distance`].
+    #[must_use]
+    pub const fn is_outline(&self) -> bool {
+        self.is_cycle
+    }
+
+    /// Lets nothing touch the line from its left: what is solid lies there, as for an outline that
+    /// runs counter-clockwise.
+    #[must_use]
+    pub const fn one_sided(mut self) -> Self {
+        self.front = Some(polyline_parts::right_of);
+        self
+    }
+}
+
+/// As many segments end as start at each joint.
+fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
+    let mut surplus = vec![0_i64; vertices];
+    for &[from, to] in segments {
+        surplus[joints.of(from) as usize] += 1;
+        surplus[joints.of(to) as usize] -= 1;
+    }
+    surplus.iter().all(|&starts| starts == 0)
+}
+
+/// From each vertex to the next, of which there must be one; too many vertices are found later.
+fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
+    if vertices < 2 {
+        return Err(MeshError::TooFewVertices { given: vertices });
+    }
+    Ok((1..).take(vertices - 1).map(|next| [next - 1, next]).collect())
+}
+
+fn boxes_of<N: Real, const D: usize>(
+    vertices: &[Point<N, D>],
+    segments: &[[u32; 2]],
+) -> Vec<Aabb<N, D>> {
+    let ends = |ends: &[u32; 2]| ends.map(|end| vertices[end as usize]);
+    let one = |part: &[u32; 2]| Aabb::from_points(&ends(part)).unwrap_or_else(Aabb::unbounded);
+    segments.iter().map(one).collect()
+}
+
+/// What the tree says of boxes around finite points, of which only the number can be wrong.
+pub(in crate::shape) fn refused(error: BoxTreeError) -> MeshError {
+    match error {
+        BoxTreeError::BadBox { index, .. } => MeshError::VertexNotFinite { vertex: index },
+        BoxTreeError::WrongCount { given, needed } => MeshError::WrongCount { given, needed },
+        BoxTreeError::TooMany { given } => MeshError::TooMany { given },
+    }
+}

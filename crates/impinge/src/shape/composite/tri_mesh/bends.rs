@@ -1,0 +1,121 @@
+//! How the sides of a mesh's triangles are bent, found when first asked for.
+
+use core::sync::atomic::{AtomicU16, Ordering};
+
+use crate::shape::surface::bend::Shape;
+
+/// Bits for each side.
+const BITS: usize = 4;
+/// Stored for a side that nobody asked about, and for one of which nothing is plain.
+const UNKNOWN: u16 = 0;
+const UNCLEAR: u16 = 4;
+/// Beyond the sides: that the triangle is known to be plain, or not.
+const PLAIN: u16 = 1 << 12;
+const NOT_PLAIN: u16 = 1 << 13;
+
+/// For each triangle and side what [`Shape`] it has, and which triangles are plain to see as such.
+///
+/// What is kept is a function of the mesh: it does not matter who asks first, nor that of two who write at
+/// one time only one is heard.
+#[derive(Debug)]
+pub(super) struct Bends {
+    sides: Vec<AtomicU16>,
+}
+
+impl Bends {
+    /// Of so many triangles, nothing is known.
+    pub(super) fn new(triangles: usize) -> Self {
+        let mut sides = Vec::new();
+        sides.resize_with(triangles, AtomicU16::default);
+        Self { sides }
+    }
+
+    /// Forgets what is known.
+    pub(super) fn clear(&mut self) {
+        for side in &mut self.sides {
+            *side.get_mut() = UNKNOWN;
+        }
+    }
+
+    /// What is kept of a side, or else found now; `None` where it is not plain.
+    pub(super) fn at(
+        &self,
+        triangle: u32,
+        side: usize,
+        find: impl FnOnce() -> Option<Shape>,
+    ) -> Option<Shape> {
+        let kept = &self.sides[triangle as usize];
+        let (all, shift) = (kept.load(Ordering::Relaxed), side * BITS);
+        match all >> shift & 7 {
+            UNKNOWN => {
+                let found = find();
+                kept.store(all | code(found) << shift, Ordering::Relaxed);
+                found
+            }
+            1 => Some(Shape::Flat),
+            2 => Some(Shape::Ridge),
+            3 => Some(Shape::Hollow),
+            _ => None,
+        }
+    }
+
+    /// How much is kept of a triangle.
+    pub(super) fn kept_of(&self, triangle: u32) -> u16 {
+        self.sides[triangle as usize].load(Ordering::Relaxed)
+    }
+
+    /// What is kept of the triangle, or else found now.
+    pub(super) fn is_plain(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
+        let kept = &self.sides[triangle as usize];
+        let all = kept.load(Ordering::Relaxed);
+        if all & (PLAIN | NOT_PLAIN) == 0 {
+            let is_plain = find();
+            kept.store(all | if is_plain { PLAIN } else { NOT_PLAIN }, Ordering::Relaxed);
+            return is_plain;
+        }
+        all & PLAIN != 0
+    }
+}
+
+impl Clone for Bends {
+    fn clone(&self) -> Self {
+        let copied = |side: &AtomicU16| AtomicU16::new(side.load(Ordering::Relaxed));
+        Self { sides: self.sides.iter().map(copied).collect() }
+    }
+}
+
+const fn code(found: Option<Shape>) -> u16 {
+    match found {
+        Some(Shape::Flat) => 1,
+        Some(Shape::Ridge) => 2,
+        Some(Shape::Hollow) => 3,
+        None => UNCLEAR,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_side_is_found_once() {
+        let mut bends = Bends::new(2);
+        let all = [Some(Shape::Flat), Some(Shape::Ridge), Some(Shape::Hollow), None];
+        for (at, shape) in all.into_iter().cycle().take(6).enumerate() {
+            let (triangle, side) = (u32::from(at > 2), at % 3);
+            assert_eq!(bends.at(triangle, side, || shape), shape, "as found");
+        }
+        let copy = bends.clone();
+        for (at, shape) in all.into_iter().cycle().take(6).enumerate() {
+            let (triangle, side) = (u32::from(at > 2), at % 3);
+            for kept in [&bends, &copy] {
+                let again = kept.at(triangle, side, || panic!("asked twice"));
+                assert_eq!(again, shape, "as kept");
+            }
+        }
+        assert!(bends.is_plain(1, || true) && bends.is_plain(1, || panic!("asked twice")), "kept");
+        assert!(!bends.is_plain(0, || false) && !bends.is_plain(0, || true), "kept");
+        bends.clear();
+        assert_eq!(bends.at(0, 0, || None), None, "found anew");
+    }
+}

@@ -1,0 +1,159 @@
+//! Making meshes, and making other ones of them.
+
+use super::bends::Bends;
+use super::topology::Topology;
+use super::{TriMesh, table};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real, Space, Vector};
+use crate::partitioning::BoxTree;
+use crate::shape::composite::mesh_error::{
+    MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
+};
+use crate::shape::composite::polyline::refused;
+
+impl<N: Space<D>, const D: usize> TriMesh<N, D> {
+    /// The mesh of triangles given by three vertices each.
+    ///
+    /// # Panics
+    /// Where [`Self::try_new`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn new(vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
+        or_panic(Self::try_new(vertices, triangles))
+    }
+
+    /// The mesh of triangles given by three vertices each. Vertices may coincide or belong to no
+    /// triangle, and triangles may have no area.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, a triangle names a vertex that there is not, there is no
+    /// triangle, or 32 bits cannot number the corners.
+    pub fn try_new(
+        vertices: Vec<Point<N, D>>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        check_vertices(&vertices)?;
+        check_parts(&triangles, vertices.len())?;
+        let topology = Topology::new(&vertices, &triangles);
+        let boxes = boxes_of(&vertices, &triangles);
+        let tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
+        let normals = normals_of(&vertices, &triangles);
+        Ok(Self {
+            is_cycle: topology.is_cycle,
+            bends: Bends::new(triangles.len()),
+            packed: (table::<N, D>().packed)(&tree, &vertices, &triangles),
+            vertices,
+            triangles,
+            topology,
+            normals,
+            tree,
+            is_one_sided: false,
+            keeps_internal_edges: false,
+        })
+    }
+
+    /// The same mesh with each position once among its vertices: those that repeat an earlier one are
+    /// dropped, and the triangles renumbered. What the mesh does is unchanged.
+    #[must_use]
+    pub fn with_vertices_merged(self) -> Self {
+        let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
+        let mut next = 0..;
+        for (vertex, point) in (0..).zip(&self.vertices) {
+            let first = self.topology.joints.of(vertex);
+            if first == vertex {
+                number.extend(next.next());
+                kept.push(*point);
+            } else {
+                number.push(number[first as usize]);
+            }
+        }
+        let renumbered = |vertex: u32| number[vertex as usize];
+        let triangles = self.triangles.iter().map(|corners| corners.map(renumbered)).collect();
+        self.with(kept, triangles)
+    }
+
+    /// The same mesh with the other side of each triangle in front: the second and third corner
+    /// exchange places, and so do the first and last side.
+    #[must_use]
+    pub fn flipped(self) -> Self {
+        let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let vertices = self.vertices.clone();
+        self.with(vertices, triangles)
+    }
+
+    /// The mesh scaled along the axes of its frame, about its origin. Where that mirrors it, the
+    /// triangles are flipped as by [`Self::flipped`], so that the front stays in front.
+    ///
+    /// # Errors
+    /// If a scale is zero or not finite, or a coordinate becomes infinite.
+    pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, MeshError> {
+        check_scale(scale)?;
+        let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
+        let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
+        check_vertices(&vertices)?;
+        let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
+        let turned = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+        let triangles = self.triangles.iter().map(turned).collect();
+        Ok(self.with(vertices, triangles))
+    }
+
+    /// A mesh of vertices and triangles that are known to be good, with the options of this one.
+    fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
+        let made = Self::new(vertices, triangles);
+        let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
+        Self { is_one_sided, keeps_internal_edges, ..made }
+    }
+
+    /// Moves the vertices; see [`Self::try_set_vertices`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_set_vertices`] returns an error.
+    #[track_caller]
+    pub fn set_vertices(&mut self, vertices: &[Point<N, D>]) {
+        or_panic(self.try_set_vertices(vertices));
+    }
+
+    /// Moves the vertices, for a mesh that deforms: all of them, in the order of
+    /// [`Self::vertices`].
+    ///
+    /// The triangles that hung together still do, even if their corners lie apart now. The tree is
+    /// refitted, not built anew: O(n), a fifth to a tenth of making the mesh; its order is renewed
+    /// over several calls once it has worn. On an error nothing has changed.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or the number of vertices differs.
+    pub fn try_set_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
+        check_moved(vertices, self.vertices.len())?;
+        let boxes = boxes_of(vertices, &self.triangles);
+        self.tree.try_refit(&boxes).map_err(refused)?;
+        self.vertices.copy_from_slice(vertices);
+        self.normals = normals_of(vertices, &self.triangles);
+        self.bends.clear();
+        self.topology.is_moved = true;
+        self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
+        self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
+        Ok(())
+    }
+}
+
+fn boxes_of<N: Space<D>, const D: usize>(
+    vertices: &[Point<N, D>],
+    triangles: &[[u32; 3]],
+) -> Vec<Aabb<N, D>> {
+    let one = |corners: &[u32; 3]| box_of_corners(&corners.map(|vertex| vertices[vertex as usize]));
+    triangles.iter().map(one).collect()
+}
+
+/// The box of a triangle, as the tree has it.
+pub(super) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
+    Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
+}
+
+fn normals_of<N: Space<D>, const D: usize>(
+    vertices: &[Point<N, D>],
+    triangles: &[[u32; 3]],
+) -> Vec<Vector<N, D>> {
+    let Some(normal) = table::<N, D>().normal else { return Vec::new() };
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices[vertex as usize]);
+    triangles.iter().map(|triangle| normal(&corners(triangle))).collect()
+}

@@ -1,0 +1,163 @@
+//! A mesh as a shape: a union of triangles that know their neighbours.
+
+use core::hint::black_box;
+
+use super::rays::RayBounds;
+use super::{TriMesh, table};
+use crate::bounding_volume::{Aabb, BoundingSphere, Ray};
+use crate::math::{Point, Pose, Real, Space, Vector, max};
+use crate::partitioning::BoxTree;
+use crate::shape::solids::segment::length_of;
+use crate::shape::{
+    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
+    ShapeHandle, Surface,
+};
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
+    fn num_parts(&self) -> u32 {
+        u32::try_from(self.triangles.len()).expect("32 bits number the triangles")
+    }
+
+    fn part(&self, part: u32) -> Part<'_, N, D> {
+        Part { pose: Pose::identity(), solid: PartSolid::Triangle(self.triangle(part)) }
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        &self.tree
+    }
+
+    fn parts_along(
+        &self,
+        ray: &Ray<N, D>,
+        around: &Aabb<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
+    ) {
+        (table().parts_along)(self, &RayBounds { ray, around, limit }, visit);
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        let corners = &self.triangles[part as usize];
+        corners.iter().for_each(|&vertex| visit(self.topology.joints.of(vertex).into()));
+    }
+}
+
+impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
+        (table().admits)(self, part, feature, normal)
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        (table().admits_in_turn)(self, part, feature, normals)
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
+        (table().snapped)(self, part, normal)
+    }
+
+    fn expect(&self, part: u32) {
+        let beyond = self.topology.all_across(part);
+        let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
+        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
+        // Where there is no triangle across a side there is none of such a number.
+        black_box(beyond.map(normal));
+    }
+
+    fn has_plain_seams(&self) -> bool {
+        !(self.keeps_internal_edges || self.topology.is_moved)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        // Triangles without area have the normal zero, and touch from everywhere.
+        let is_behind = || {
+            let corner = self.vertices[self.triangles[part as usize][0] as usize];
+            self.normals[part as usize].dot(&(center - corner)) < N::ZERO
+        };
+        !(self.is_one_sided && is_behind())
+    }
+}
+
+impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Composite(self))
+    }
+
+    /// The smallest, in O(1).
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
+    }
+
+    /// The smallest, up to rounding. O(log n) for a mesh that bulges, up to O(n) for one whose parts
+    /// reach almost equally far.
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        aabb_at(pose, &self.triangles, &self.vertices, &self.tree)
+    }
+
+    /// The sphere around the middle of the box, through the farthest vertex: O(n).
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        Ok(ShapeHandle::new(self.try_scaled(scale)?))
+    }
+}
+
+/// So many corners are placed one by one to find the box around them.
+const MAX_PLACED: usize = 192;
+
+/// The box around the vertices of parts placed at `pose`: of each where they are few, else of those
+/// that the tree finds to reach farthest.
+pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
+    pose: &Pose<N, D>,
+    parts: &[[u32; K]],
+    vertices: &[Point<N, D>],
+    tree: &BoxTree<N, D>,
+) -> Aabb<N, D> {
+    let Some(bounds) = tree.bounds() else { return Aabb::unbounded() };
+    let size = BoundingSphere::around_box(bounds).farthest_from(&Point::origin());
+    let corner = |&vertex: &u32| vertices[vertex as usize].coords;
+    if parts.len() * K <= MAX_PLACED {
+        let turned = Aabb::around_all(
+            parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
+        );
+        // A pose that is not finite gives no box; then everything is in it.
+        return turned.map_or_else(Aabb::unbounded, |turned| {
+            Aabb::of_turned(turned.mins().coords, turned.maxs().coords, size, pose)
+        });
+    }
+    let reach = |direction: Vector<N, D>| {
+        tree.reach_along(direction, |part| {
+            let along = parts[part as usize].iter().map(|vertex| corner(vertex).dot(&direction));
+            along.fold(-N::INFINITY, max)
+        })
+    };
+    let (mut low, mut high) = (Vector::<N, D>::zeros(), Vector::<N, D>::zeros());
+    for axis in 0..D {
+        let direction = pose.rotation.row(axis).transpose();
+        (low[axis], high[axis]) = (-reach(-direction), reach(direction));
+    }
+    Aabb::of_turned(low, high, size, pose)
+}
+
+/// The sphere around the middle of a box that reaches the farthest of some vertices; a little
+/// larger, by the rounding of the distance.
+pub(in crate::shape) fn sphere_around<'a, N: Real, const D: usize>(
+    aabb: &Aabb<N, D>,
+    used: impl Iterator<Item = &'a u32>,
+    vertices: &[Point<N, D>],
+) -> BoundingSphere<N, D> {
+    let center = aabb.center();
+    let distances = used.map(|&vertex| length_of(&(vertices[vertex as usize] - center)));
+    let radius = distances.fold(N::ZERO, max) * (N::ONE + N::lit(4.0) * N::EPSILON);
+    BoundingSphere::try_new(center, radius).unwrap_or(BoundingSphere::unbounded())
+}

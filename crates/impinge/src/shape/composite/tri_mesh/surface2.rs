@@ -1,0 +1,82 @@
+//! Filled triangles in 2D: which normals their union has at a side or a vertex.
+
+use super::TriMesh;
+use crate::math::{Real, Vector, cross2, max_component};
+use crate::shape::FeatureId;
+use crate::shape::surface::seam::{is_flat, slack};
+
+impl<N: Real> TriMesh<N, 2> {
+    pub(super) fn admits_in_plane(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, 2>,
+    ) -> bool {
+        if self.keeps_internal_edges {
+            return true;
+        }
+        match feature {
+            FeatureId::Face(side) | FeatureId::Edge(side) => {
+                self.side_admits(part, side as usize, normal)
+            }
+            FeatureId::Vertex(corner) => {
+                let corner = corner as usize;
+                self.side_admits(part, corner, normal)
+                    || self.side_admits(part, (corner + 2) % 3, normal)
+                    || self.corner_admits(part, corner, normal)
+            }
+        }
+    }
+
+    /// The normal on the side that the whole shape has as its border and that is nearest to the
+    /// one given, if within a right angle; `None` inside.
+    pub(super) fn snapped_in_plane(
+        &self,
+        part: u32,
+        normal: &Vector<N, 2>,
+    ) -> Option<Vector<N, 2>> {
+        let open = (0..3).filter_map(|side| self.open_normal(part, side));
+        let facing = open.filter(|own| own.dot(normal) > N::ZERO);
+        facing.reduce(|best, own| if own.dot(normal) > best.dot(normal) { own } else { best })
+    }
+
+    /// The outward normal of a side, if no triangle lies on its other side.
+    fn open_normal(&self, part: u32, side: usize) -> Option<Vector<N, 2>> {
+        let outward = -self.inward(part, side)?;
+        self.is_open_along(part, side, &outward).then_some(outward)
+    }
+
+    /// No other triangle at a side lies on the side of it that a direction points to.
+    fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
+        let mut is_open = true;
+        self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
+        is_open
+    }
+
+    fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
+        match self.open_normal(part, side) {
+            Some(own) => max_component(&(own - normal)) <= slack(),
+            // Without area it is a segment, which has both sides.
+            None => self.inward(part, side).is_none() && self.is_open_along(part, side, normal),
+        }
+    }
+
+    /// No side that leaves the corner rises along the normal, and the two highest do not form a
+    /// straight border.
+    fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
+        let joint = self.joint_ends(part, corner)[0];
+        // The highest side on the left of the normal and on its right; straight down is both.
+        let (mut is_highest, mut highest) = (true, [-normal; 2]);
+        for &triangle in self.topology.joints.parts(joint) {
+            for along in self.leaving(triangle, joint) {
+                is_highest &= along.dot(normal) <= slack();
+                let best = &mut highest[usize::from(cross2(normal, &along) < N::ZERO)];
+                *best = if along.dot(normal) > best.dot(normal) { along } else { *best };
+            }
+        }
+        self.each_beyond_joint(joint, |_, inward| is_highest &= inward.dot(normal) <= slack());
+        let [left, right] = highest;
+        let is_straight = left.dot(&right) < N::ZERO && is_flat(cross2(&left, &right));
+        is_highest && !is_straight
+    }
+}

@@ -1,0 +1,235 @@
+//! Surfaces in 3D: which normals a mesh has at a face, an edge or a vertex.
+
+use super::TriMesh;
+use super::around::noise;
+use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
+use crate::shape::FeatureId;
+use crate::shape::solids::segment::length_of;
+use crate::shape::surface::bend::{Bend, Shape};
+use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
+
+/// The unit normal on the side that sees the corners counter-clockwise; zero without area.
+pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
+    let [a, b, c] = corners;
+    let lengths = [length_of(&(b - a)), length_of(&(c - b)), length_of(&(a - c))];
+    let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
+    let longest = longer(longer(0, 1), 2);
+    // The two shorter sides lose least when multiplied.
+    let tip = corners[(longest + 2) % 3];
+    let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
+    let scale = lengths[longest].power_of_two_below();
+    let found = unit(&cross(&(sides[0] / scale), &(sides[1] / scale)));
+    let height = |area: N| area * scale / (lengths[longest] / scale);
+    let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
+    found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)
+}
+
+impl<N: Real> TriMesh<N, 3> {
+    pub(super) fn admits_in_space(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        if self.keeps_internal_edges {
+            return !self.is_one_sided || self.cosine(part, normal) >= -slack::<N>();
+        }
+        self.is_own_normal(part, normal)
+            || match feature {
+                FeatureId::Face(_) => self.normal(part).is_none(),
+                FeatureId::Edge(side) => self.edge_admits(part, side as usize, normal),
+                FeatureId::Vertex(corner) => self.vertex_admits(part, corner as usize, normal),
+            }
+    }
+
+    /// As two calls of [`Self::admits_in_space`], of which the second is about what the first did not admit;
+    /// what is around is looked at once.
+    pub(super) fn admits_in_turn_in_space(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        let is_free = |normal: &Vector<N, 3>| self.is_own_normal(part, normal);
+        match feature {
+            FeatureId::Edge(side) if !(self.keeps_internal_edges || is_free(normals[0])) => {
+                let bend = self.bend_at(part, side as usize);
+                let admits = |normal: &Vector<N, 3>| {
+                    self.bent_edge_admits(bend.as_ref(), part, side as usize, normal)
+                };
+                let is_first = admits(normals[0]);
+                [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
+            }
+            FeatureId::Vertex(corner) if !(self.keeps_internal_edges || is_free(normals[0])) => {
+                let (corner, joint) = (corner as usize, self.joint_at(part, corner as usize));
+                let rises = self.rises_around(part, corner, normals);
+                let admits = |at: usize| !rises[at] && self.corner_admits(part, joint, normals[at]);
+                let is_first = admits(0);
+                [is_first, !is_first && (is_free(normals[1]) || admits(1))]
+            }
+            _ => {
+                let is_first = self.admits_in_space(part, feature, normals[0]);
+                [is_first, !is_first && self.admits_in_space(part, feature, normals[1])]
+            }
+        }
+    }
+
+    pub(super) fn snapped_in_space(
+        &self,
+        part: u32,
+        normal: &Vector<N, 3>,
+    ) -> Option<Vector<N, 3>> {
+        let own = self.normal(part)?;
+        let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
+        Some(if is_front { own } else { -own })
+    }
+
+    fn cosine(&self, triangle: u32, normal: &Vector<N, 3>) -> N {
+        self.normals[triangle as usize].dot(normal)
+    }
+
+    /// The normal of the triangle, on a side that it has.
+    fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
+        self.snapped_in_space(part, normal)
+            .is_some_and(|own| max_component(&(own - normal)) <= slack())
+    }
+
+    fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
+        self.bent_edge_admits(self.bend_at(part, side).as_ref(), part, side, normal)
+    }
+
+    /// How a side is bent, where that is plain.
+    fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
+        let other = self.topology.single_across(part, side)?;
+        let fronts = [part, other].map(|face| self.normals[face as usize]);
+        let find = || Shape::new([&self.corners(part), &self.corners(other)], &fronts);
+        Some(Bend::of(self.bends.at(part, side, find)?, fronts))
+    }
+
+    /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
+    /// are not flat there.
+    fn bent_edge_admits(
+        &self,
+        bend: Option<&Bend<N>>,
+        part: u32,
+        side: usize,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
+            return answer;
+        }
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        let mut add = |triangle: u32, inward: Vector<N, 3>| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+        };
+        if let Some(inward) = self.inward(part, side) {
+            add(part, inward);
+        }
+        self.each_beyond(part, side, add);
+        let corners = self.corners(part);
+        let edge = corners[(side + 1) % 3] - corners[side];
+        is_across(&edge, normal) && seam.admits(self.is_one_sided)
+    }
+
+    /// How much the steeper of the two sides of a triangle that leave a joint rises along a unit vector.
+    fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
+        let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
+        let mut highest = -N::ONE;
+        for turn in [1, 2] {
+            if let Some((along, _)) = unit(&(corners[(at + turn) % 3] - corners[at])) {
+                highest = max(highest, along.dot(normal));
+            }
+        }
+        highest
+    }
+
+    fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
+        let joint = self.joint_at(part, corner);
+        // Most are refused by a side of the triangle that is asked.
+        let rises = |triangle: u32, at: usize| {
+            let corners = self.corners(triangle);
+            corners.iter().any(|other| leads_up_clearly(&(other - corners[at]), normal))
+        };
+        let mut around = self.topology.joints.parts(joint).iter();
+        if rises(part, corner) || around.any(|&other| rises(other, self.corner_at(other, joint))) {
+            return false;
+        }
+        self.corner_admits(part, joint, normal)
+    }
+
+    /// Whether a side that leaves a corner clearly rises along each of two normals.
+    fn rises_around(&self, part: u32, corner: usize, normals: [&Vector<N, 3>; 2]) -> [bool; 2] {
+        let joint = self.joint_at(part, corner);
+        let mut rises = [false; 2];
+        let mut look = |triangle: u32, at: usize| {
+            let corners = self.corners(triangle);
+            for turn in [1, 2] {
+                let way = corners[(at + turn) % 3] - corners[at];
+                rises[0] |= leads_up_clearly(&way, normals[0]);
+                rises[1] |= leads_up_clearly(&way, normals[1]);
+            }
+            rises == [true; 2]
+        };
+        if !look(part, corner) {
+            let mut around = self.topology.joints.parts(joint).iter();
+            around.any(|&other| look(other, self.corner_at(other, joint)));
+        }
+        rises
+    }
+
+    /// No side that leaves the joint of a corner rises along the normal, and the faces are not flat there.
+    fn corner_admits(&self, part: u32, joint: u32, normal: &Vector<N, 3>) -> bool {
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        for &triangle in self.topology.joints.parts(joint) {
+            let rise = self.rise_from(triangle, joint, normal);
+            seam.add_face(rise, &self.normals[triangle as usize]);
+        }
+        self.each_beyond_joint(joint, |triangle, inward| {
+            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+        });
+        seam.admits(self.is_one_sided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+    use crate::shape::Surface;
+
+    /// A rough sheet of triangles.
+    fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {
+        let place = |at: u32| {
+            let [x, z] = [at % 6, at / 6].map(f64::from);
+            Point::<f64, 3>::new(x, 0.4 * noise.next(), z)
+        };
+        let vertices = (0..36).map(place).collect();
+        let cells = (0..30).filter(|at| at % 6 < 5);
+        let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
+        TriMesh::new(vertices, triangles.collect())
+    }
+
+    #[test]
+    fn two_normals_in_turn_are_as_each_alone() {
+        let (mut noise, mut counts) = (Noise(5), [0; 3]);
+        let (rough, other) = (sheet(&mut noise), sheet(&mut noise).one_sided());
+        let kept = sheet(&mut noise).one_sided().with_internal_edges_kept();
+        for mesh in [rough, other, kept] {
+            for (part, at) in (0..50_u32).flat_map(|part| (0..90_u32).map(move |at| (part, at))) {
+                let front = mesh.normal(part).expect("an area");
+                let aside: Vector<f64, 3> = noise.vector(0.6);
+                let share = [0.0, 1.0, 1.0][at as usize % 3];
+                let far = (front + aside * share).normalize();
+                let near = (front + aside * 0.03).normalize();
+                let number = at / 3 % 3;
+                let all = [FeatureId::Edge(number), FeatureId::Vertex(number), FeatureId::Face(0)];
+                let feature = all[at as usize / 9 % 3];
+                let [first, second] = [far, near].map(|n| mesh.admits(part, feature, &n));
+                let both = mesh.admits_in_turn(part, feature, [&far, &near]);
+                assert_eq!(both, [first, !first && second], "part {part}, {feature:?}");
+                counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+    }
+}

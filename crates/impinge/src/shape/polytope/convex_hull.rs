@@ -1,0 +1,96 @@
+//! Convex polyhedra, in 3D.
+
+use core::ops::Deref;
+
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::error::or_panic;
+use crate::shape::scale::Scale;
+use crate::shape::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
+
+/// The convex hull of some points, with a volume.
+///
+/// Vertices are in the order in which the points were given; faces are polygons, counter-clockwise
+/// seen from outside. Everything that can be asked of a [`Polytope`] can be asked of it.
+///
+/// ```
+/// use impinge::dim3::math::Point;
+/// use impinge::dim3::shape::ConvexHull;
+///
+/// let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.1, 0.1, 0.1]];
+/// let hull = ConvexHull::from_points(&points.map(Point::<f32>::from));
+/// assert_eq!((hull.vertices().len(), hull.faces().len()), (4, 4), "one point lies inside");
+/// ```
+#[derive(Clone, PartialEq)]
+pub struct ConvexHull<N: Real> {
+    polytope: Polytope<N, 3>,
+}
+
+impl<N: Real> ConvexHull<N> {
+    /// The convex hull of points in any order; see [`Self::try_from_points`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_from_points`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn from_points(points: &[Point<N, 3>]) -> Self {
+        or_panic(Self::try_from_points(points))
+    }
+
+    /// The solid with these corners and faces, given by outward unit normals and loops of three
+    /// corners at least; `None` unless the faces close its surface.
+    pub(crate) fn from_closed_faces(
+        corners: Vec<Point<N, 3>>,
+        normals: &[Vector<N, 3>],
+        faces: &[Vec<usize>],
+    ) -> Option<Self> {
+        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, normals, faces)? })
+    }
+
+    /// The solid as vertices, edges, faces and what touches what.
+    #[must_use]
+    pub const fn polytope(&self) -> &Polytope<N, 3> {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Deref for ConvexHull<N> {
+    type Target = Polytope<N, 3>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.polytope
+    }
+}
+
+impl<N: Real> Shape<N, 3> for ConvexHull<N> {
+    fn geometry(&self) -> Geometry<'_, N, 3> {
+        Geometry(Kind::Polytope(&self.polytope))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, 3> {
+        self.polytope.aabb_at(&Pose::identity())
+    }
+
+    fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
+        self.polytope.aabb_at(pose)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, 3> {
+        self.polytope.bounding_sphere()
+    }
+
+    fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        let corners = scale.corners(self.polytope.vertices())?;
+        let normals = self.polytope.faces().iter().map(|face| scale.normal(&face.normal));
+        let ring = |face| self.polytope.face_vertices(face).iter().map(|&vertex| vertex as usize);
+        let mut faces: Vec<Vec<_>> =
+            self.polytope.faces().iter().map(|f| ring(f).collect()).collect();
+        if scale.is_mirror() {
+            faces.iter_mut().for_each(|face| face.reverse());
+        }
+        let normals = normals.collect::<Result<Vec<_>, _>>()?;
+        let scaled = Self::from_closed_faces(corners, &normals, &faces);
+        Ok(ShapeHandle::new(scaled.expect("its faces are those of a closed solid")))
+    }
+}

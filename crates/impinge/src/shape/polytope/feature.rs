@@ -1,0 +1,312 @@
+//! The features of polytopes, in any dimension.
+
+use crate::math::{Point, Real, Vector, unit, unit_or};
+use crate::shape::polytope::count32;
+use crate::shape::tilt::Tilt;
+use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
+
+/// What faces a direction: the indices of a face, a side or a vertex.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Face(u32),
+    Side(u32),
+    Vertex(usize),
+}
+
+/// Two vertices with their names.
+type Ends<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
+
+impl<N: Real, const D: usize> Polytope<N, D> {
+    /// The rule of [`SupportMap::core_feature`], with any limit.
+    fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
+        let vertex = self.support_vertex(direction);
+        let Some((side, slope)) = self.flattest_side(vertex, direction) else {
+            return Part::Vertex(vertex);
+        };
+        let face = self.most_aligned(self.side(side).faces.into_iter(), direction);
+        if tilt.admits_face(&self.faces[face as usize].normal, direction) {
+            Part::Face(face)
+        } else if tilt.admits(slope * slope) {
+            Part::Side(side)
+        } else {
+            Part::Vertex(vertex)
+        }
+    }
+
+    /// The face, side or vertex that a point of the surface lies on, up to `noise`, of those that face
+    /// the unit vector `direction`.
+    pub(crate) fn part_at(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+        noise: N,
+    ) -> FeatureId {
+        match self.part_toward(direction, Tilt::usual()) {
+            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+            Part::Side(side) => {
+                self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
+            }
+            Part::Face(index) => {
+                let face = &self.faces[index as usize];
+                let end = self.end_at(self.face_vertices(face), point, noise);
+                let side = || {
+                    let mut sides = self.face_sides(face).iter();
+                    sides.find(|&&side| self.is_on_side(side, point, noise)).copied()
+                };
+                end.or_else(|| side().map(Self::side_id)).unwrap_or(FeatureId::Face(index))
+            }
+        }
+    }
+
+    /// The first of some vertices that a point coincides with.
+    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+        let near = N::lit(4.0) * noise * noise;
+        let is_near =
+            |&&vertex: &&u32| (point - self.vertices[vertex as usize]).norm_squared() <= near;
+        vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
+    }
+
+    /// Whether a point lies on the line of a side.
+    fn is_on_side(&self, side: u32, point: &Point<N, D>, noise: N) -> bool {
+        let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
+        let (along, arm) = (b - a, point - a);
+        let aside = arm - along * (along.dot(&arm) / along.norm_squared());
+        aside.norm_squared() <= noise * noise
+    }
+
+    /// The side at a vertex that leans least along a direction, and the sine by which it does.
+    fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
+        let mut best: Option<(u32, N)> = None;
+        for (side, along) in self.fan_along(vertex) {
+            let slope = along.map_or(N::ONE, |along| along.dot(direction).abs());
+            if best.is_none_or(|(_, least)| slope < least) {
+                best = Some((side, slope));
+            }
+        }
+        best
+    }
+
+    /// The first of equals; face 0 of none.
+    fn most_aligned(&self, faces: impl Iterator<Item = u32>, direction: &Vector<N, D>) -> u32 {
+        let along = |face: u32| self.faces[face as usize].normal.dot(direction);
+        faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
+    }
+
+    fn fill(&self, part: Part, out: &mut Feature<N, D>) {
+        match part {
+            Part::Face(face) => self.fill_face(face, out),
+            Part::Side(side) => out.set_segment(Self::side_id(side), self.ends(side)),
+            Part::Vertex(vertex) => {
+                out.set_point(FeatureId::Vertex(count32(vertex)), self.vertices[vertex]);
+            }
+        }
+    }
+
+    fn named(part: Part) -> FeatureId {
+        match part {
+            Part::Face(face) => FeatureId::Face(face),
+            Part::Side(side) => Self::side_id(side),
+            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+        }
+    }
+
+    fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
+        let face = &self.faces[index as usize];
+        out.clear();
+        out.id = FeatureId::Face(index);
+        for &vertex in self.face_vertices(face) {
+            out.push(FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
+        }
+        let sides = self.face_sides(face);
+        // A side of the plane is one segment, not a loop of two.
+        let count = if sides.len() == 2 { 1 } else { sides.len() };
+        for &side in &sides[..count] {
+            out.side_ids.push(Self::side_id(side));
+        }
+        out.normal = Some(face.normal);
+    }
+
+    /// What [`Self::fill`] says of a part of no more than two vertices.
+    fn ends_of(&self, part: Part) -> Option<(FeatureId, Ends<N, D>)> {
+        match part {
+            Part::Side(side) => Some((Self::side_id(side), self.ends(side))),
+            Part::Face(face) => {
+                let [from, to] = *self.face_vertices(&self.faces[face as usize]) else {
+                    return None;
+                };
+                let named =
+                    |vertex: u32| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
+                Some((FeatureId::Face(face), [named(from), named(to)]))
+            }
+            Part::Vertex(_) => None,
+        }
+    }
+
+    fn ends(&self, side: u32) -> Ends<N, D> {
+        let ends = self.side(side).vertices;
+        ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
+    }
+
+    /// The unit vector along the sum of the normals of some faces, all of which meet at one place.
+    fn mean_normal(&self, faces: impl Iterator<Item = u32>) -> Vector<N, D> {
+        let normals = faces.map(|face| self.faces[face as usize].normal);
+        let first = self.faces[0].normal;
+        let sum = normals.fold(Vector::<N, D>::zeros(), |sum, normal| sum + normal);
+        unit_or(&sum, first)
+    }
+
+    #[track_caller]
+    fn place(id: FeatureId, dimension: usize, count: usize) -> u32 {
+        let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
+        let is_there = (index as usize) < count && id == FeatureId::flat::<D>(dimension, index);
+        assert!(is_there, "the solid has no {} named {id:?}", FeatureId::word::<D>(dimension));
+        index
+    }
+
+    #[track_caller]
+    fn side_place(&self, id: FeatureId) -> u32 {
+        let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
+        Self::place(id, 1, count)
+    }
+}
+
+impl<N: Real> Polytope<N, 2> {
+    /// See [`Shown::of`].
+    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Shown<N> {
+        if let ([vertices], [planes]) = (self.blocks(), self.planes())
+            && self.faces.len() == self.vertices.len()
+        {
+            return self.shown_of_few(vertices, &planes.normals, direction);
+        }
+        let part = self.part_toward(direction, Tilt::usual());
+        if let Some((id, ends)) = self.ends_of(part) {
+            return Shown::side(id, ends);
+        }
+        let vertex = if let Part::Vertex(vertex) = part { vertex } else { 0 };
+        Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
+    }
+
+    /// The same of up to eight vertices, by their rows and those of the sides' normals: the rule of
+    /// [`Self::part_toward`] without a look at what is kept of the sides.
+    fn shown_of_few(
+        &self,
+        [xs, ys]: &[[N; 8]; 2],
+        normals: &[[N; 8]; 2],
+        direction: &Vector<N, 2>,
+    ) -> Shown<N> {
+        let count = self.vertices.len().min(8);
+        let at = |vertex: usize| Point::<N, 2>::new(xs[vertex], ys[vertex]);
+        let height = |vertex: usize| xs[vertex] * direction.x + ys[vertex] * direction.y;
+        let (mut vertex, mut highest) = (0, height(0));
+        for next in 1..count {
+            let candidate = height(next);
+            if candidate > highest {
+                (vertex, highest) = (next, candidate);
+            }
+        }
+        let before = if vertex > 0 { vertex - 1 } else { count - 1 };
+        let after = if vertex + 1 < count { vertex + 1 } else { 0 };
+        let slope = |from: usize, to: usize| {
+            let along = unit(&(at(to) - at(from)));
+            along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
+        };
+        let (slope_before, slope_after) = (slope(before, vertex), slope(vertex, after));
+        // Of equal sides that of the lower number counts.
+        let is_after =
+            if vertex > 0 { slope_after < slope_before } else { slope_after <= slope_before };
+        let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
+        let slope = if is_after { slope_after } else { slope_before };
+        let normal = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
+        let (tilt, named) =
+            (Tilt::usual(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
+        if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
+            Shown::side(FeatureId::Face(count32(side)), [named(side), named(to)])
+        } else {
+            Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
+        }
+    }
+}
+
+impl<N: Real> Polytope<N, 3> {
+    /// The name of what [`SupportMap::core_feature`] answers.
+    #[inline]
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
+        Self::named(self.part_toward(direction, Tilt::usual()))
+    }
+
+    /// Makes a blank ring the face with a number; answers whether it has few corners.
+    pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
+        let face = &self.faces[index as usize];
+        let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
+        if !(3..=FaceRing::<N>::MAX).contains(&vertices.len()) {
+            return false;
+        }
+        (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);
+        for (&vertex, &side) in vertices.iter().zip(sides) {
+            let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
+            ring.push(&self.vertices[vertex as usize], names);
+        }
+        true
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        self.vertices[self.support_vertex(direction)]
+    }
+
+    fn center(&self) -> Point<N, D> {
+        self.center
+    }
+
+    fn reach(&self) -> N {
+        self.reach
+    }
+
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.fill(self.part_toward(direction, Tilt::usual()), out);
+    }
+}
+
+impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
+    fn vertex(&self, id: FeatureId) -> Point<N, D> {
+        self.vertices[Self::place(id, 0, self.vertices.len()) as usize]
+    }
+
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
+        self.ends(self.side_place(id))
+    }
+
+    fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
+        self.fill_face(Self::place(id, D - 1, self.faces.len()), out);
+    }
+
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
+        match id {
+            FeatureId::Face(_) => {
+                self.faces[Self::place(id, D - 1, self.faces.len()) as usize].normal
+            }
+            FeatureId::Edge(_) => {
+                self.mean_normal(self.side(self.side_place(id)).faces.into_iter())
+            }
+            FeatureId::Vertex(_) => {
+                // Each face at a vertex has two sides there, so each counts twice.
+                let fan = self.fan(Self::place(id, 0, self.vertices.len()) as usize);
+                self.mean_normal(fan.iter().flat_map(|&side| self.side(side).faces))
+            }
+        }
+    }
+
+    fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        let all = (0_u32..).take(self.faces.len());
+        self.fill_face(self.most_aligned(all, direction), out);
+    }
+
+    fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
+        self.fill(self.part_toward(direction, Tilt::of_angle(angle)), out);
+    }
+
+    fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
+        Self::named(self.part_toward(direction, Tilt::least()))
+    }
+}

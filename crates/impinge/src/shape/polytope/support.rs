@@ -1,0 +1,97 @@
+//! Support points of polytopes of more than a few vertices, and the faces that points lie highest above, by
+//! vectors.
+
+use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::shape::polytope::{LANES, Planes};
+
+/// The index of a vertex farthest along a direction: the first of equals.
+pub(in crate::shape) fn vertex<N: Real, const D: usize>(
+    level: Level,
+    blocks: &[[[N; LANES]; D]],
+    direction: &Vector<N, D>,
+) -> usize {
+    with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction))
+}
+
+/// The index of a plane that a point lies highest above: the first of equals.
+pub(in crate::shape) fn plane<N: Real, const D: usize>(
+    level: Level,
+    planes: &[Planes<N, D>],
+    point: &Point<N, D>,
+) -> usize {
+    with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point))
+}
+
+#[inline(always)]
+fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    blocks: &[[[N; LANES]; D]],
+    direction: &Vector<N, D>,
+) -> usize {
+    let along: [V; D] = spread(simd, direction);
+    highest(
+        simd,
+        blocks,
+        #[inline(always)]
+        |block| dot(&load::<_, _, V, D, LANES>(simd, block), &along),
+    )
+}
+
+#[inline(always)]
+fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    planes: &[Planes<N, D>],
+    point: &Point<N, D>,
+) -> usize {
+    let point: [V; D] = spread(simd, &point.coords);
+    highest(
+        simd,
+        planes,
+        #[inline(always)]
+        |planes| {
+            let normals = load::<_, _, V, D, LANES>(simd, &planes.normals);
+            dot(&normals, &point) - V::load(simd, &planes.offsets)
+        },
+    )
+}
+
+/// The place of the highest of the numbers that blocks have in their lanes: the first of equals.
+#[inline(always)]
+fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
+    simd: S,
+    blocks: &[B],
+    heights: impl Fn(&B) -> V,
+) -> usize {
+    let mut highest = heights(&blocks[0]);
+    // Numbers of blocks are few, so that they are exact as numbers of the type.
+    let (mut places, mut place) = (V::all(simd, N::ZERO), N::ZERO);
+    for block in &blocks[1..] {
+        place += N::ONE;
+        let heights = heights(block);
+        let is_higher = heights.simd_gt(highest);
+        places = is_higher.select(V::all(simd, place), places);
+        highest = is_higher.select(heights, highest);
+    }
+    let all = V::all(simd, highest_lane(highest));
+    let (mut ties, mut numbers) = (highest.simd_eq(all).to_bitmask(), [N::ZERO; LANES]);
+    places.store(&mut numbers);
+    let mut first = usize::MAX;
+    while ties != 0 {
+        let lane = ties.trailing_zeros() as usize;
+        ties &= ties - 1;
+        let index = block_number(numbers[lane]) * LANES + lane;
+        first = if index < first { index } else { first };
+    }
+    if first == usize::MAX { 0 } else { first }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "it was counted up from zero"
+)]
+fn block_number<N: Real>(number: N) -> usize {
+    number.as_f64() as usize
+}

@@ -1,0 +1,500 @@
+//! Boxes (rectangles in 2D).
+
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::error::{finite, or_panic, size};
+use crate::shape::scale::Scale;
+use crate::shape::solids::segment::length_of;
+use crate::shape::tilt::Tilt;
+use crate::shape::{
+    ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
+    ShapeHandle, Shown, SupportMap,
+};
+
+/// The points whose coordinate on each axis is within the half extent of zero.
+///
+/// Half extents may be zero: the box is then flat, a segment or a point.
+///
+/// Vertices: bit `i` of the number says that coordinate `i` is positive. Faces: `2 · axis` on the
+/// positive side of an axis, one more on the negative side. Edges (in 3D): `4 · axis` of the
+/// direction plus two bits, the signs on the next axis and the one after (x → y → z → x): 1 if the
+/// next coordinate is positive, 2 if the one after is.
+///
+/// Faces are given with their vertices counter-clockwise seen from outside (in 2D with the
+/// box on the left), so in 2D the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
+/// 1, 3, 2, 0. A face without width is given as the segment or the point that it is.
+///
+/// ```
+/// use impinge::dim2::{math::Vector, shape::Cuboid, shape::Shape};
+/// let brick = Cuboid::new(Vector::new(2.0_f32, 1.0));
+/// assert_eq!(brick.local_aabb().maxs().x, 2.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid<N: Real, const D: usize> {
+    half_extents: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Cuboid<N, D> {
+    /// The box of given half extents, each zero or more.
+    ///
+    /// # Panics
+    /// If a half extent is negative or not finite; [`Self::try_new`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn new(half_extents: Vector<N, D>) -> Self {
+        or_panic(Self::try_new(half_extents))
+    }
+
+    /// The box of given half extents, each zero or more.
+    ///
+    /// # Errors
+    /// If a half extent is negative or not finite.
+    pub fn try_new(half_extents: Vector<N, D>) -> Result<Self, ShapeError> {
+        finite("a half extent", &half_extents)?;
+        for &half_extent in half_extents.iter() {
+            size("a half extent", half_extent)?;
+        }
+        Ok(Self { half_extents })
+    }
+
+    /// A box of half extents that were those of a box before.
+    pub(in crate::shape) const fn reaching(half_extents: Vector<N, D>) -> Self {
+        Self { half_extents }
+    }
+
+    /// Half the size along each axis.
+    #[inline]
+    #[must_use]
+    pub const fn half_extents(&self) -> &Vector<N, D> {
+        &self.half_extents
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        let toward = |h: N, d: N| if d < N::ZERO { -h } else { h };
+        Point::from(self.half_extents.zip_map(direction, toward))
+    }
+
+    fn reach(&self) -> N {
+        length_of(&self.half_extents)
+    }
+
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.fill(Part::facing(direction, Tilt::usual()), out);
+    }
+}
+
+impl<N: Real, const D: usize> Cuboid<N, D> {
+    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a point
+    /// inside, or of a box that is hardly thicker than the noise.
+    pub(crate) fn part_at(&self, point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+        let mut free = 0;
+        for axis in 0..D {
+            let half = self.half_extents[axis];
+            if half <= N::lit(4.0) * noise {
+                return None;
+            }
+            free |= u32::from(point[axis].abs() < half - noise) << axis;
+        }
+        let part = Part::<D> { free, corner: signs(&point.coords) };
+        (free != Part::<D>::ALL).then(|| part.name())
+    }
+
+    /// The name of a part of the surface by `D` bits that say along which axes it ranges and `D` more
+    /// that say along which of the others it is on the positive side.
+    #[inline]
+    pub(crate) const fn part_named(bits: u8) -> FeatureId {
+        Part::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
+    }
+}
+
+/// A vertex, edge or face: the points of the box whose coordinates on the `free` axes range, while
+/// the others are those of `corner`. Both are sets of axes as bits, `corner` of those with the
+/// positive sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::shape) struct Part<const D: usize> {
+    free: u32,
+    corner: u32,
+}
+
+/// The part of a box that faces some direction: a point, a segment or a flat face with sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacingPart<N: Real, const D: usize> {
+    part: Part<D>,
+    /// The outward normal of a face.
+    pub(crate) normal: Option<Vector<N, D>>,
+}
+
+impl<N: Real, const D: usize> FacingPart<N, D> {
+    /// The direction of an edge of boxes in 3D.
+    pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
+        axis_vector((index / 4) as usize)
+    }
+
+    /// The direction of the side of the part that is most nearly perpendicular to a vector, the first
+    /// of equals; `None` of a point.
+    pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
+        let axes =
+            (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
+        let lean = |axis: usize| vector[axis].abs();
+        let level = axes.reduce(|best, axis| if lean(axis) < lean(best) { axis } else { best })?;
+        Some(axis_vector(level))
+    }
+}
+
+/// The unit vector along an axis.
+fn axis_vector<N: Real, const D: usize>(axis: usize) -> Vector<N, D> {
+    Vector::<N, D>::from_fn(|row, _| if row == axis { N::ONE } else { N::ZERO })
+}
+
+const fn has(set: u32, axis: usize) -> bool {
+    set >> axis & 1 == 1
+}
+
+impl<const D: usize> Part<D> {
+    const ALL: u32 = (1 << D) - 1;
+
+    /// The names of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three dimensions.
+    const NAMES: [FeatureId; 64] = {
+        let mut names = [FeatureId::Vertex(0); 64];
+        let mut bits = 0;
+        while bits < 1 << (2 * D) {
+            let free = bits & Self::ALL;
+            if free != Self::ALL {
+                names[bits as usize] = Self { free, corner: bits >> D }.name();
+            }
+            bits += 1;
+        }
+        names
+    };
+
+    /// The part that faces a unit vector: as many axes as the tilt admits are free, the weakest
+    /// first, which is the rule for the flattest edge and the most aligned face beside it.
+    pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
+        let (mut free, mut leans) = (0, N::ZERO);
+        for _ in 1..D {
+            let Some(axis) = weakest(direction, free) else { break };
+            leans += direction[axis] * direction[axis];
+            if !tilt.admits(leans) {
+                break;
+            }
+            free |= 1 << axis;
+        }
+        Self { free, corner: signs(direction) }
+    }
+
+    /// The face whose normal is most aligned with a direction.
+    fn face_facing<N: Real>(direction: &Vector<N, D>) -> Self {
+        let mut strongest = 0;
+        for axis in 1..D {
+            if direction[axis].abs() > direction[strongest].abs() {
+                strongest = axis;
+            }
+        }
+        Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
+    }
+
+    /// The first axis that is not free: that of a face.
+    const fn own_axis(self) -> usize {
+        (!self.free & Self::ALL).trailing_zeros() as usize
+    }
+
+    /// How many axes are free.
+    const fn dimension(self) -> usize {
+        let (mut axis, mut count) = (0, 0);
+        while axis < D {
+            count += has(self.free, axis) as usize;
+            axis += 1;
+        }
+        count
+    }
+
+    /// The number documented at [`Cuboid`].
+    pub(in crate::shape) const fn name(self) -> FeatureId {
+        let dimension = self.dimension();
+        let index = if dimension == 0 {
+            self.corner
+        } else if dimension + 1 == D {
+            let axis = (!self.free).trailing_zeros();
+            2 * axis + !has(self.corner, axis as usize) as u32
+        } else {
+            let axis = self.free.trailing_zeros();
+            let (next, last) = ((axis as usize + 1) % D, (axis as usize + 2) % D);
+            4 * axis + has(self.corner, next) as u32 + 2 * has(self.corner, last) as u32
+        };
+        FeatureId::flat::<D>(dimension, index)
+    }
+
+    /// The part of a name, if there is one.
+    fn named(id: FeatureId) -> Option<Self> {
+        let part = match id {
+            FeatureId::Vertex(corner) => Self { free: 0, corner },
+            FeatureId::Face(index) => {
+                let axis = 1_u32.checked_shl(index / 2)?;
+                Self { free: Self::ALL & !axis, corner: if index % 2 == 0 { axis } else { 0 } }
+            }
+            FeatureId::Edge(index) => {
+                let (axis, bits) = (index / 4, index % 4);
+                let corner = (0..2)
+                    .filter(|&bit| has(bits, bit))
+                    .fold(0, |set, bit| set | 1 << ((axis as usize + 1 + bit) % D));
+                Self { free: 1_u32.checked_shl(axis)?, corner }
+            }
+        };
+        (part.free <= Self::ALL && part.corner <= Self::ALL && part.name() == id).then_some(part)
+    }
+
+    /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
+    /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
+    /// counter-clockwise on the positive side if that order is an even permutation of the axes.
+    const fn ring(self) -> Ring {
+        let own = self.own_axis();
+        let is_face = self.dimension() + 1 == D;
+        let first = if is_face { own + 1 } else { 0 };
+        let mut ring = Ring::of_corner(self.corner & !self.free);
+        let mut at = first;
+        while at < first + D {
+            if has(self.free, at % D) {
+                ring = ring.reflected(1 << (at % D));
+            }
+            at += 1;
+        }
+        let is_odd = (D - 1) * own % 2 == 1;
+        if is_face && is_odd == has(self.corner, own) { ring.reversed() } else { ring }
+    }
+
+    /// The names of the sides of a ring. A point has no side, a segment one and a rectangle four.
+    const fn side_ids(ring: &Ring) -> [FeatureId; 4] {
+        let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
+        while at < ring.count {
+            let (from, to) = (ring.corners[at], ring.corners[(at + 1) % ring.count]);
+            ids[at] = Self { free: from ^ to, corner: from }.name();
+            at += 1;
+        }
+        ids
+    }
+
+    /// The rings of all faces, in the order of their names, and the names of their sides.
+    pub(in crate::shape) const FACES: [(Ring, [FeatureId; 4]); 6] = {
+        let (mut faces, mut index) = ([(Ring::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
+        while index < 2 * D {
+            let axis = 1 << (index / 2);
+            let corner = if index % 2 == 0 { axis } else { 0 };
+            let ring = Self { free: Self::ALL & !axis, corner }.ring();
+            faces[index] = (ring, Self::side_ids(&ring));
+            index += 1;
+        }
+        faces
+    };
+
+    /// The ends of all parts that are named as edges, in the order of their names.
+    const EDGES: [Option<[u32; 2]>; 12] = {
+        let (mut edges, mut axis) = ([None; 12], 0);
+        while axis < D {
+            let mut corner = 0;
+            while corner < 1 << D {
+                let part = Self { free: 1 << axis, corner };
+                if let FeatureId::Edge(index) = part.name() {
+                    let ring = part.ring();
+                    edges[index as usize] = Some([ring.corners[0], ring.corners[1]]);
+                }
+                corner += 1;
+            }
+            axis += 1;
+        }
+        edges
+    };
+
+    /// The outward unit vector in the middle of the normals of the faces around the part.
+    #[inline]
+    fn normal<N: Real>(self) -> Vector<N, D> {
+        let mut normal = Vector::<N, D>::zeros();
+        for axis in 0..D {
+            if !has(self.free, axis) {
+                normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
+            }
+        }
+        // That of a face has its length already.
+        if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
+    }
+}
+
+/// The corners of a part that is not the whole box, as sets of axes: four at most.
+#[derive(Clone, Copy)]
+pub(in crate::shape) struct Ring {
+    pub(in crate::shape) corners: [u32; 4],
+    count: usize,
+}
+
+impl Ring {
+    const fn of_corner(corner: u32) -> Self {
+        Self { corners: [corner; 4], count: 1 }
+    }
+
+    /// Appends the corners there are, moved to the positive side of an axis, the last one first.
+    const fn reflected(mut self, axis: u32) -> Self {
+        let mut back = 0;
+        while back < self.count {
+            self.corners[self.count + back] = self.corners[self.count - 1 - back] | axis;
+            back += 1;
+        }
+        self.count *= 2;
+        self
+    }
+
+    const fn reversed(self) -> Self {
+        let (mut reversed, mut at) = (self, 0);
+        while at < self.count {
+            reversed.corners[at] = self.corners[self.count - 1 - at];
+            at += 1;
+        }
+        reversed
+    }
+}
+
+/// The axes along which a direction does not point to the negative side.
+fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
+    (0..D).fold(0, |set, axis| if direction[axis] < N::ZERO { set } else { set | 1 << axis })
+}
+
+/// The axis, not yet taken, along which a direction has its least component.
+fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
+    let mut weakest = None;
+    for axis in 0..D {
+        let is_weaker = |best: usize| direction[axis].abs() < direction[best].abs();
+        if !has(taken, axis) && weakest.is_none_or(is_weaker) {
+            weakest = Some(axis);
+        }
+    }
+    weakest
+}
+
+impl<N: Real, const D: usize> Cuboid<N, D> {
+    #[inline]
+    pub(in crate::shape) fn corner(&self, corner: u32) -> Point<N, D> {
+        let mut point = Point::from(self.half_extents);
+        for axis in 0..D {
+            if !has(corner, axis) {
+                point[axis] = -point[axis];
+            }
+        }
+        point
+    }
+
+    /// What [`SupportMap::core_feature`] answers, without its corners; `None` where the box is flat
+    /// along an edge of it.
+    pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
+        let part = Part::<D>::facing(direction, Tilt::usual());
+        let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
+        if (0..D).any(is_flat) {
+            return None;
+        }
+        let is_face = part.dimension() + 1 == D;
+        Some(FacingPart { part, normal: is_face.then(|| part.normal()) })
+    }
+
+    fn fill(&self, part: Part<D>, out: &mut Feature<N, D>) {
+        out.clear();
+        out.id = part.name();
+        let (ring, side_ids) = match out.id {
+            FeatureId::Face(index) => Part::<D>::FACES[index as usize],
+            _ => (part.ring(), Part::<D>::side_ids(&part.ring())),
+        };
+        for &corner in &ring.corners[..ring.count] {
+            out.push(FeatureId::Vertex(corner), self.corner(corner));
+        }
+        for &id in &side_ids[..if ring.count > 2 { 4 } else { ring.count - 1 }] {
+            out.side_ids.push(id);
+        }
+        out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
+        // Only a box that is flat along a free axis has corners in one place.
+        if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
+            out.drop_repeated();
+        }
+    }
+
+    #[track_caller]
+    fn part(id: FeatureId, dimension: usize) -> Part<D> {
+        match Part::named(id) {
+            Some(part) if part.dimension() == dimension => part,
+            _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
+        }
+    }
+}
+
+impl<N: Real> Cuboid<N, 2> {
+    /// See [`Shown::of`]; `None` where the box is flat along the side.
+    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+        let part = Part::<2>::facing(direction, Tilt::usual());
+        let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
+        let FeatureId::Face(index) = part.name() else {
+            let (id, point) = named(part.corner);
+            return Some(Shown::vertex(id, point));
+        };
+        let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
+        let [from, to, ..] = Part::<2>::FACES[index as usize].0.corners;
+        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
+    }
+}
+
+impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
+    fn vertex(&self, id: FeatureId) -> Point<N, D> {
+        self.corner(Self::part(id, 0).corner)
+    }
+
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
+        let known = match id {
+            FeatureId::Edge(index) => Part::<D>::EDGES.get(index as usize).copied().flatten(),
+            FeatureId::Vertex(_) | FeatureId::Face(_) => None,
+        };
+        let ends = known.unwrap_or_else(|| {
+            let [from, to, ..] = Self::part(id, 1).ring().corners;
+            [from, to]
+        });
+        ends.map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+    }
+
+    fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
+        self.fill(Self::part(id, D - 1), out);
+    }
+
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
+        match Part::<D>::named(id) {
+            Some(part) => part.normal(),
+            None => panic!("a cuboid has no feature named {id:?}"),
+        }
+    }
+
+    fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.fill(Part::face_facing(direction), out);
+    }
+
+    fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
+        self.fill(Part::facing(direction, Tilt::of_angle(angle)), out);
+    }
+
+    fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
+        Part::facing(direction, Tilt::least()).name()
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Cuboid(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        Aabb::around(Point::origin(), self.half_extents)
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        Aabb::around_turned(pose, pose.turned_reach(&self.half_extents))
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let half_extents = self.half_extents.component_mul(&Scale::try_new(scale)?.magnitudes());
+        Ok(ShapeHandle::new(Self::try_new(half_extents)?))
+    }
+}

@@ -1,0 +1,114 @@
+//! Ellipsoids, and ellipses in 2D.
+
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit};
+use crate::shape::error::{finite, or_panic, size};
+use crate::shape::scale::Scale;
+use crate::shape::solids::segment::length_of;
+use crate::shape::{
+    CurvedSupport, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
+
+/// The points whose coordinates, divided by the half axes, are within the unit ball: an ellipse in
+/// the plane.
+///
+/// Centred at the local origin, with its axes along the coordinate axes. Half axes may be zero: of
+/// what has none left along some axis, the flat rest remains, a disk, a segment or a point. The whole
+/// surface is `Face(0)`, which meets everything in one point.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Ellipsoid;
+///
+/// let pebble = Ellipsoid::new(Vector::new(2.0_f64, 1.0, 3.0));
+/// let above = Point::new(0.0, 5.0, 0.0);
+/// assert_eq!(pebble.distance_to_point(&Isometry::identity(), &above, true), 4.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid<N: Real, const D: usize> {
+    half_axes: Vector<N, D>,
+}
+
+impl<N: Real, const D: usize> Ellipsoid<N, D> {
+    /// The ellipsoid that reaches this far to both sides along each axis.
+    ///
+    /// # Panics
+    /// If a half axis is negative or not finite; [`Self::try_new`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn new(half_axes: Vector<N, D>) -> Self {
+        or_panic(Self::try_new(half_axes))
+    }
+
+    /// The ellipsoid that reaches this far to both sides along each axis.
+    ///
+    /// # Errors
+    /// If a half axis is negative or not finite.
+    pub fn try_new(half_axes: Vector<N, D>) -> Result<Self, ShapeError> {
+        finite("a half axis", &half_axes)?;
+        half_axes.iter().try_for_each(|&half_axis| size("a half axis", half_axis).map(drop))?;
+        Ok(Self { half_axes })
+    }
+
+    /// How far it reaches to both sides along each axis.
+    #[inline]
+    #[must_use]
+    pub const fn half_axes(&self) -> &Vector<N, D> {
+        &self.half_axes
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        let along = |v: &Vector<N, D>| unit(v).map(|(along, _)| along);
+        // Both steps by unit vectors, so that no product leaves the range of the numbers.
+        let stretched = along(direction).map(|along| along.component_mul(&self.half_axes));
+        let on_sphere = stretched.and_then(|v| along(&v)).unwrap_or_else(Vector::<N, D>::zeros);
+        Point::from(on_sphere.component_mul(&self.half_axes))
+    }
+
+    fn curved_support(
+        &self,
+        _point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let (on_sphere, length) = unit(&direction.component_mul(&self.half_axes))?;
+        let point = on_sphere.component_mul(&self.half_axes);
+        let squares = Matrix::<N, D>::from_diagonal(&self.half_axes.component_mul(&self.half_axes));
+        Some(CurvedSupport {
+            point: Point::from(point),
+            bend: (squares - point * point.transpose()) / length,
+        })
+    }
+
+    fn reach(&self) -> N {
+        max_component(&self.half_axes)
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Ellipsoid(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        Aabb::around(Point::origin(), self.half_axes)
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        let reach = Vector::<N, D>::from_fn(|axis, _| {
+            length_of(&pose.rotation.row(axis).transpose().component_mul(&self.half_axes))
+        });
+        Aabb::around_turned(pose, reach)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        BoundingSphere::new(Point::origin(), self.reach())
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let half_axes = self.half_axes.component_mul(&Scale::try_new(scale)?.magnitudes());
+        Ok(ShapeHandle::new(Self::try_new(half_axes)?))
+    }
+}

@@ -1,0 +1,87 @@
+//! Half-spaces (half-planes in 2D).
+
+use crate::bounding_volume::{Aabb, BoundingSphere};
+use crate::math::{Pose, Real, Unit, Vector};
+use crate::shape::scale::Scale;
+use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeHandle};
+
+/// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
+///
+/// Its only feature is `Face(0)`.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Unit, Vector};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Plane;
+///
+/// let ground = Plane::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
+/// let above = Point::new(7.0, 2.0, -3.0);
+/// assert_eq!(ground.distance_to_point(&Isometry::identity(), &above, true), 2.0);
+/// assert!(ground.contains_point(&Isometry::identity(), &Point::new(0.0, -9.0, 0.0)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<N: Real, const D: usize> {
+    normal: Unit<Vector<N, D>>,
+}
+
+impl<N: Real, const D: usize> Plane<N, D> {
+    /// The half-space that `normal` points out of.
+    #[must_use]
+    pub const fn new(normal: Unit<Vector<N, D>>) -> Self {
+        Self { normal }
+    }
+
+    /// The unit vector out of the solid.
+    #[inline]
+    #[must_use]
+    pub const fn normal(&self) -> &Unit<Vector<N, D>> {
+        &self.normal
+    }
+}
+
+impl<N: Real, const D: usize> Plane<N, D> {
+    /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
+    /// `point`: bounded on one side if the normal lies along an axis and the point is a number, else unbounded. A
+    /// normal that rounding alone has brought to an axis must not be given.
+    fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
+        let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
+        for axis in 0..D {
+            let alone = (0..D).all(|other| other == axis || normal[other] == N::ZERO);
+            if alone && normal[axis] > N::ZERO {
+                maxs[axis] = point[axis];
+            } else if alone && normal[axis] < N::ZERO {
+                mins[axis] = point[axis];
+            }
+        }
+        Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Plane(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        Self::aabb_of(&self.normal, &Vector::<N, D>::zeros())
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        // The product with an axis is a column of the rotation, exactly.
+        let is_axis = self.normal.iter().filter(|&&x| x != N::ZERO).count() == 1;
+        if is_axis || pose.is_aligned() {
+            Self::aabb_of(&pose.vector(&self.normal), &pose.translation)
+        } else {
+            Aabb::unbounded()
+        }
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        BoundingSphere::unbounded()
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let normal = Scale::try_new(scale)?.normal(&self.normal)?;
+        Ok(ShapeHandle::new(Self::new(Unit::new_unchecked(normal))))
+    }
+}

@@ -1,0 +1,134 @@
+//! Disks across the y axis: the caps of cylinders and cones.
+
+use crate::math::{Matrix, Point, Real, Vector, unit};
+use crate::shape::solids::segment::length_of;
+use crate::shape::{CurvedSupport, Feature, FeatureId};
+
+/// How far a point lies along the y axis and from it.
+fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
+    let squares = (0..D).filter(|&axis| axis != 1).map(|axis| point[axis] * point[axis]);
+    (point[1], squares.fold(N::ZERO, |sum, square| sum + square).sqrt())
+}
+
+/// Where a point of the surface of a solid about the y axis lies, as [`axial`] has it; `None` for a solid
+/// of this half height and radius that is hardly thicker than the noise, on which a point would lie on
+/// several parts at once.
+pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
+    point: &Point<N, D>,
+    [half_height, radius]: [N; 2],
+    noise: N,
+) -> Option<(N, N)> {
+    let least = N::lit(4.0) * noise;
+    (half_height > least && radius > least).then(|| axial(point))
+}
+
+/// What a cylinder or a cone shows to a direction, if that is no cap.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum RoundPart<N: Real> {
+    /// A point of a rim, or the apex.
+    Point(FeatureId, Point<N, 3>),
+    /// The line of the side that faces the direction, and its ends.
+    Line(FeatureId, [(FeatureId, Point<N, 3>); 2]),
+}
+
+impl<N: Real> RoundPart<N> {
+    /// Gives it as a feature.
+    pub(in crate::shape) fn fill(self, out: &mut Feature<N, 3>) {
+        match self {
+            Self::Point(id, point) => out.set_point(id, point),
+            Self::Line(id, ends) => out.set_segment(id, ends),
+        }
+    }
+}
+
+/// The points within `radius` of the y axis at height `y`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::shape) struct Disk<N: Real> {
+    pub(in crate::shape) radius: N,
+    pub(in crate::shape) y: N,
+}
+
+/// The part of a direction across the y axis, as (x, z).
+pub(in crate::shape) fn radial_of<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
+    Vector::<N, 2>::new(direction.x, direction.z)
+}
+
+impl<N: Real> Disk<N> {
+    /// The point of the rim farthest along `direction`; the middle for a direction along the axis.
+    pub(in crate::shape) fn rim_toward(self, direction: &Vector<N, 3>) -> Point<N, 3> {
+        self.at(unit(&radial_of(direction)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| along))
+    }
+
+    /// The point of the rim farthest along the unit vector `direction`, and how it moves; `None` along
+    /// the axis or so near to it that the digits of the direction across it do not suffice.
+    pub(in crate::shape) fn curved_rim(
+        self,
+        direction: &Vector<N, 3>,
+    ) -> Option<CurvedSupport<N, 3>> {
+        let (radial, length) = unit(&radial_of(direction))?;
+        let resolved = length * length > N::EPSILON;
+        if !resolved {
+            return None;
+        }
+        // Along the rim, by the radius for each radian around the axis.
+        let around = Vector::<N, 3>::new(-radial.y, N::ZERO, radial.x);
+        let bend = around * around.transpose() * (self.radius / length);
+        Some(CurvedSupport { point: self.at(radial), bend })
+    }
+
+    /// How far the disk, moved to the origin, reaches along each outer axis when it is turned: by the columns that
+    /// span it, since from its axis alone that would lose half of all digits where it hardly leans.
+    pub(in crate::shape) fn reach(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
+        Vector::<N, 3>::from_fn(|axis, _| {
+            let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
+            length_of(&spans) * self.radius
+        })
+    }
+
+    fn at(self, radial: Vector<N, 2>) -> Point<N, 3> {
+        Point::<N, 3>::new(radial.x * self.radius, self.y, radial.y * self.radius)
+    }
+
+    /// Gives the disk as an inscribed octagon that faces the side of the axis on which `direction`
+    /// lies, with its first vertex towards `direction` (towards x where that is lost in rounding).
+    /// A disk of no radius is a point.
+    pub(in crate::shape) fn fill_polygon(
+        self,
+        face: FeatureId,
+        rim: FeatureId,
+        direction: &Vector<N, 3>,
+        out: &mut Feature<N, 3>,
+    ) {
+        if self.radius == N::ZERO {
+            return out.set_point(rim, self.at(Vector::<N, 2>::zeros()));
+        }
+        out.clear();
+        out.id = face;
+        // Seen from the positive side of y, with x to the right, z points down: clockwise in (x, z)
+        // is counter-clockwise there.
+        let turn = if direction.y < N::ZERO { N::ONE } else { -N::ONE };
+        let mut radial = first_sample(direction);
+        for _ in 0..8 {
+            out.push(rim, self.at(radial));
+            out.side_ids.push(rim);
+            radial = eighth_turn(&radial, turn);
+        }
+        out.normal = Some(Vector::<N, 3>::new(N::ZERO, -turn, N::ZERO));
+    }
+}
+
+/// The radial unit vector of a direction, or x where it is lost in rounding.
+fn first_sample<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
+    let fallback = Vector::<N, 2>::new(N::ONE, N::ZERO);
+    match unit(&radial_of(direction)) {
+        Some((along, length)) if length > N::lit(64.0) * N::EPSILON => along,
+        _ => fallback,
+    }
+}
+
+/// A vector of the plane turned by 45 degrees, counter-clockwise for `turn` 1, clockwise for −1.
+fn eighth_turn<N: Real>(v: &Vector<N, 2>, turn: N) -> Vector<N, 2> {
+    let cosine = N::lit(std::f64::consts::FRAC_1_SQRT_2);
+    let sine = cosine * turn;
+    Vector::<N, 2>::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y)
+}

@@ -1,0 +1,166 @@
+//! Any convex solid, inflated by a radius.
+
+use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
+use crate::math::{Point, Pose, Real, Vector};
+use crate::shape::error::{or_panic, size};
+use crate::shape::scale::Scale;
+use crate::shape::{
+    CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
+
+/// The points within `radius` of a convex shape: a box with rounded edges, say.
+///
+/// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. Its
+/// features are those of the shape: a point over `Edge(3)` of a box is on `Edge(3)` of the rounded
+/// box, which is a piece of a cylinder there. Every distance to it is that to the shape less the
+/// radius, also inside, and is as accurate.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Vector};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::{Cuboid, FeatureId, Rounded};
+///
+/// let die = Rounded::new(Cuboid::new(Vector::new(1.0_f64, 1.0, 1.0)), 0.5);
+/// let (beyond_edge, beyond_face) = (Point::new(4.0, 5.0, 0.0), Point::new(0.0, 2.0, 0.0));
+/// assert_eq!(die.distance_to_point(&Isometry::identity(), &beyond_edge, true), 4.5);
+/// assert_eq!(die.project_local_point(&beyond_face).0.point.y, 1.5);
+/// assert!(matches!(die.project_local_point(&beyond_edge).1, FeatureId::Edge(_)));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Rounded<N: Real, const D: usize> {
+    shape: ShapeHandle<N, D>,
+    radius: N,
+}
+
+impl<N: Real, const D: usize> Rounded<N, D> {
+    /// The points within `radius` of a convex shape.
+    ///
+    /// # Panics
+    /// If the radius is negative or not finite, or if the shape is not a bounded convex solid;
+    /// [`Self::try_new`] returns these.
+    #[must_use]
+    #[track_caller]
+    pub fn new<S: Shape<N, D>>(shape: S, radius: N) -> Self {
+        or_panic(Self::try_new(shape, radius))
+    }
+
+    /// The points within `radius` of a convex shape.
+    ///
+    /// # Errors
+    /// If the radius is negative or not finite, or if the shape is a half-space or a composite.
+    pub fn try_new<S: Shape<N, D>>(shape: S, radius: N) -> Result<Self, ShapeError> {
+        Self::try_from_handle(ShapeHandle::new(shape), radius)
+    }
+
+    /// The points within `radius` of a convex shape that is shared.
+    ///
+    /// # Errors
+    /// As [`Self::try_new`].
+    pub fn try_from_handle(shape: ShapeHandle<N, D>, radius: N) -> Result<Self, ShapeError> {
+        let radius = size("the radius", radius)?;
+        let kind = shape.geometry().kind();
+        match shape.geometry().as_support_map() {
+            Some(_) => Ok(Self { shape, radius }),
+            None => Err(ShapeError::NotRoundable { kind }),
+        }
+    }
+
+    /// The shape in the middle.
+    #[inline]
+    #[must_use]
+    pub const fn shape(&self) -> &ShapeHandle<N, D> {
+        &self.shape
+    }
+
+    /// How far the solid reaches beyond the shape.
+    #[inline]
+    #[must_use]
+    pub const fn radius(&self) -> N {
+        self.radius
+    }
+
+    fn map(&self) -> &dyn SupportMap<N, D> {
+        self.shape.geometry().as_support_map().expect("the constructor has checked it")
+    }
+}
+
+/// A rounded solid whatever is rounded.
+pub(crate) trait RoundedSolid<N: Real, const D: usize>: SupportMap<N, D> {
+    /// What is rounded.
+    fn inner(&self) -> Geometry<'_, N, D>;
+
+    /// By how much.
+    fn radius(&self) -> N;
+}
+
+impl<N: Real, const D: usize> RoundedSolid<N, D> for Rounded<N, D> {
+    fn inner(&self) -> Geometry<'_, N, D> {
+        self.shape.geometry()
+    }
+
+    fn radius(&self) -> N {
+        self.radius
+    }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Rounded<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        self.map().core_support(direction)
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        self.map().curved_support(point, direction)
+    }
+
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.map().round_face(direction)
+    }
+
+    fn round_side(&self) -> Option<(Vector<N, D>, N)> {
+        self.map().round_side()
+    }
+
+    fn rounding(&self) -> N {
+        self.map().rounding() + self.radius
+    }
+
+    fn center(&self) -> Point<N, D> {
+        self.map().center()
+    }
+
+    fn reach(&self) -> N {
+        self.map().reach()
+    }
+
+    fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        self.map().core_feature(direction, out);
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Rounded(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.shape.local_aabb().loosened(self.radius)
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        self.shape.aabb(pose).loosened(self.radius)
+    }
+
+    fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
+        self.shape.local_bounding_sphere().loosened(self.radius)
+    }
+
+    /// With factors of one magnitude.
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let radius = self.radius * Scale::try_new(scale)?.uniform()?;
+        Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))
+    }
+}

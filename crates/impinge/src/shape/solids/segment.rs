@@ -1,0 +1,149 @@
+//! Segments.
+
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Vector, centroid, max, min, unit};
+use crate::shape::error::{finite, or_panic};
+use crate::shape::scale::Scale;
+use crate::shape::{
+    Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
+};
+
+/// The points between `a` and `b`, which may coincide.
+///
+/// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in 2D too.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point};
+/// use impinge::dim3::query::PointQuery;
+/// use impinge::dim3::shape::Segment;
+///
+/// let segment = Segment::new(Point::new(0.0_f32, 0.0, 0.0), Point::new(4.0, 0.0, 0.0));
+/// let distance = segment.distance_to_point(&Isometry::identity(), &Point::new(1.0, 2.0, 0.0), true);
+/// assert_eq!(distance, 2.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<N: Real, const D: usize> {
+    a: Point<N, D>,
+    b: Point<N, D>,
+}
+
+impl<N: Real, const D: usize> Segment<N, D> {
+    /// The segment between two points.
+    ///
+    /// # Panics
+    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    #[must_use]
+    #[track_caller]
+    pub fn new(a: Point<N, D>, b: Point<N, D>) -> Self {
+        or_panic(Self::try_new(a, b))
+    }
+
+    /// The segment between two points.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn try_new(a: Point<N, D>, b: Point<N, D>) -> Result<Self, ShapeError> {
+        finite("a coordinate of the first end", &a.coords)?;
+        finite("a coordinate of the second end", &b.coords)?;
+        Ok(Self { a, b })
+    }
+
+    /// The segment between two points that are known to be finite.
+    #[inline]
+    pub(crate) const fn of_finite(a: Point<N, D>, b: Point<N, D>) -> Self {
+        Self { a, b }
+    }
+
+    /// The first end.
+    #[inline]
+    #[must_use]
+    pub const fn a(&self) -> &Point<N, D> {
+        &self.a
+    }
+
+    /// The second end.
+    #[inline]
+    #[must_use]
+    pub const fn b(&self) -> &Point<N, D> {
+        &self.b
+    }
+
+    /// Half of the length, halved before it is measured: the difference of large ends may overflow.
+    pub(in crate::shape) fn half_length(&self) -> N {
+        length_of(&(self.b.coords * N::HALF - self.a.coords * N::HALF))
+    }
+}
+
+/// The length of a vector, however short or long: its square need not be a number of the type.
+#[inline]
+pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
+    // As `unit` has it, without the direction.
+    let squared = v.norm_squared();
+    if squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt() {
+        return squared.sqrt();
+    }
+    unit(v).map_or(N::ZERO, |(_, length)| length)
+}
+
+/// The larger of the distances of two points from the origin.
+pub(in crate::shape) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
+    max(length_of(&a.coords), length_of(&b.coords))
+}
+
+/// The box around a few points of a solid placed at `pose`; rounded outwards, and that of everything where the
+/// numbers end.
+pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
+    pose: &Pose<N, D>,
+    points: [&Point<N, D>; K],
+) -> Aabb<N, D> {
+    let mut size = N::ZERO;
+    let mut low = Vector::<N, D>::repeat(N::INFINITY);
+    let mut high = -low;
+    for point in points {
+        let turned = pose.vector(&point.coords);
+        // No less than its distance from the origin, and without a root.
+        size = max(point.iter().fold(N::ZERO, |sum, x| sum + x.abs()), size);
+        for axis in 0..D {
+            (low[axis], high[axis]) = (min(turned[axis], low[axis]), max(turned[axis], high[axis]));
+        }
+    }
+    Aabb::of_turned(low, high, size, pose)
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Segment<N, D> {
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        if direction.dot(&(self.b - self.a)) > N::ZERO { self.b } else { self.a }
+    }
+
+    fn center(&self) -> Point<N, D> {
+        centroid(&[self.a, self.b])
+    }
+
+    fn reach(&self) -> N {
+        farther(&self.a, &self.b)
+    }
+
+    fn core_feature(&self, _: &Vector<N, D>, out: &mut Feature<N, D>) {
+        let ends = [(FeatureId::Vertex(0), self.a), (FeatureId::Vertex(1), self.b)];
+        out.set_segment(FeatureId::Edge(0), ends);
+    }
+}
+
+impl<N: Real, const D: usize> Shape<N, D> for Segment<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry(Kind::Segment(self))
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.aabb(&Pose::identity())
+    }
+
+    fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        box_at(pose, [&self.a, &self.b])
+    }
+
+    fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
+        let scale = Scale::try_new(scale)?;
+        Ok(ShapeHandle::new(Self::try_new(scale.point(&self.a), scale.point(&self.b))?))
+    }
+}

@@ -1,0 +1,471 @@
+//! The features of triangles, in any dimension: what faces a direction, and which way it runs.
+
+use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
+use crate::shape::solids::segment::length_of;
+use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
+use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
+
+/// The plane (in two dimensions: the space) that a triangle spans.
+struct Span<N: Real, const D: usize> {
+    /// The side that is longest.
+    longest: usize,
+    /// Unit, along the longest side from its first vertex to its second.
+    along: Vector<N, D>,
+    /// Unit, from the longest side to the opposite corner; `None` if the corners lie on a line.
+    rise: Option<Vector<N, D>>,
+}
+
+impl<N: Real, const D: usize> Span<N, D> {
+    /// `None` if the corners coincide.
+    fn of(corners: &[Point<N, D>; 3]) -> Option<Self> {
+        let side = |i: usize| corners[(i + 1) % 3] - corners[i];
+        let longer = |best: usize, i: usize| {
+            if length_of(&side(i)) > length_of(&side(best)) { i } else { best }
+        };
+        let longest = longer(longer(0, 1), 2);
+        let (along, length) = unit(&side(longest))?;
+        let to_opposite = corners[(longest + 2) % 3] - corners[longest];
+        // Below this height the difference of coordinates may be all rounding.
+        let noise = N::lit(16.0) * N::EPSILON * length;
+        let rise = unit(&without(&to_opposite, &along));
+        let rise = rise.filter(|&(_, height)| height > noise);
+        // The second pass makes it perpendicular to the last digit, however flat the triangle.
+        let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
+        Some(Self { longest, along, rise })
+    }
+
+    /// What of a direction lies in the plane, squared; `None` if the triangle is no polygon.
+    fn lean_squared(&self, direction: &Vector<N, D>) -> Option<N> {
+        let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
+        Some(along * along + rise * rise)
+    }
+
+    /// The unit normal of the plane on the side of a direction that does not lie in it.
+    fn normal_toward(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        let rise = self.rise?;
+        let rest = |v: &Vector<N, D>| without(&without(v, &self.along), &rise);
+        let (normal, _) = unit(&rest(direction))?;
+        Some(unit_or(&rest(&normal), normal))
+    }
+}
+
+/// The part of a vector perpendicular to a unit vector.
+fn without<N: Real, const D: usize>(v: &Vector<N, D>, along: &Vector<N, D>) -> Vector<N, D> {
+    v - along * along.dot(v)
+}
+
+/// The determinant of `D` columns is below zero: Gaussian elimination with row exchanges.
+fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
+    let mut is_negative = false;
+    for at in 0..D {
+        let pivot = (at..D).fold(at, |best, row| {
+            if columns[(row, at)].abs() > columns[(best, at)].abs() { row } else { best }
+        });
+        if columns[(pivot, at)] == N::ZERO {
+            return false;
+        }
+        columns.swap_rows(at, pivot);
+        is_negative ^= (pivot != at) ^ (columns[(at, at)] < N::ZERO);
+        for row in at + 1..D {
+            let factor = columns[(row, at)] / columns[(at, at)];
+            for column in at..D {
+                let above = columns[(at, column)];
+                columns[(row, column)] -= factor * above;
+            }
+        }
+    }
+    is_negative
+}
+
+impl<N: Real, const D: usize> Triangle<N, D> {
+    /// The order of the corners that runs counter-clockwise, seen from where `direction` points; in
+    /// the plane, from above.
+    fn ring(&self, direction: &Vector<N, D>) -> [usize; 3] {
+        let [a, b, c] = self.corners();
+        let mut columns = Matrix::<N, D>::zeros();
+        for (column, vector) in [b - a, c - a, *direction].iter().enumerate().take(D) {
+            columns.set_column(column, vector);
+        }
+        if is_left_handed(columns) { [0, 2, 1] } else { [0, 1, 2] }
+    }
+
+    fn point(&self, index: usize) -> (FeatureId, Point<N, D>) {
+        (vertex_id(index), self.corners()[index])
+    }
+
+    pub(in crate::shape) fn fill_toward(
+        &self,
+        direction: &Vector<N, D>,
+        tilt: Tilt<N>,
+        out: &mut Feature<N, D>,
+    ) {
+        let Some(span) = Span::of(self.corners()) else {
+            return out.set_point(vertex_id(0), self.corners()[0]);
+        };
+        if span.lean_squared(direction).is_some_and(|lean| tilt.admits(lean)) {
+            return self.fill_polygon(&span, direction, out);
+        }
+        let (side, slope) = self.flattest_side(&span, direction);
+        if tilt.admits(slope * slope) {
+            self.fill_side(side, direction, out);
+        } else {
+            let (id, point) = self.point(self.support_corner(direction));
+            out.set_point(id, point);
+        }
+    }
+
+    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where the
+    /// unit vector `direction` points; `None` of a triangle whose corners lie on a line, and for a
+    /// point inside one of the plane.
+    pub(crate) fn part_at(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+        noise: N,
+    ) -> Option<FeatureId> {
+        let corners = self.corners();
+        let to = |index: usize| point - corners[index];
+        if let Some(corner) =
+            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * noise * noise)
+        {
+            return Some(vertex_id(corner));
+        }
+        let is_on = |&side: &usize| {
+            let (along, arm) = (corners[(side + 1) % 3] - corners[side], to(side));
+            let aside = arm - along * (along.dot(&arm) / along.norm_squared());
+            aside.norm_squared() <= noise * noise
+        };
+        let mut touched = (0..3).filter(is_on);
+        match (touched.next(), touched.next()) {
+            (Some(side), None) => Some(side_id::<D>(side)),
+            (None, _) => {
+                let index = u32::from(self.ring(direction)[1] == 2);
+                // In the plane what lies inside bounds nothing.
+                Some(FeatureId::flat::<D>(2, index)).filter(|id| matches!(id, FeatureId::Face(_)))
+            }
+            _ => None,
+        }
+    }
+
+    fn support_corner(&self, direction: &Vector<N, D>) -> usize {
+        let support = self.core_support(direction);
+        (0..3).find(|&index| self.corners()[index] == support).unwrap_or(0)
+    }
+
+    /// The side at the support vertex that leans least, and the sine by which it does; of corners on
+    /// a line only the longest counts.
+    fn flattest_side(&self, span: &Span<N, D>, direction: &Vector<N, D>) -> (usize, N) {
+        if span.rise.is_none() {
+            return (span.longest, span.along.dot(direction).abs());
+        }
+        let support = self.support_corner(direction);
+        let slope = |side: usize| {
+            let along =
+                unit_or(&(self.corners()[(side + 1) % 3] - self.corners()[side]), span.along);
+            (side, along.dot(direction).abs())
+        };
+        let (out, back) = (slope(support), slope((support + 2) % 3));
+        if back.1 < out.1 { back } else { out }
+    }
+
+    /// The two-sided face: in 3D only.
+    fn fill_polygon(&self, span: &Span<N, D>, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        out.clear();
+        let ring = self.ring(direction);
+        out.id = FeatureId::Face(u32::from(ring[1] == 2));
+        for at in 0..3 {
+            let (id, point) = self.point(ring[at]);
+            out.push(id, point);
+            out.side_ids.push(side_id::<D>(side_between(ring[at], ring[(at + 1) % 3])));
+        }
+        out.normal = span.normal_toward(direction);
+    }
+
+    /// A side, the longest if the corners lie on a line.
+    fn fill_side(&self, side: usize, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+        out.set_segment(side_id::<D>(side), self.side_ends(side, direction));
+        let normal = self.side_normal(side).filter(|normal| normal.dot(direction) > N::ZERO);
+        let normal = normal.or_else(|| {
+            let (along, _) = unit(&(out.vertices[1] - out.vertices[0]))?;
+            unit(&without(direction, &along)).map(|(normal, _)| normal)
+        });
+        out.normal = normal.filter(|_| matches!(out.id, FeatureId::Face(_)));
+    }
+
+    /// Unit, in the triangle's plane, out of a side; `None` if the corners lie on a line.
+    fn side_normal(&self, side: usize) -> Option<Vector<N, D>> {
+        Span::of(self.corners())?.rise?;
+        let corners = self.corners();
+        let (along, _) = unit(&(corners[(side + 1) % 3] - corners[side]))?;
+        let (normal, _) = unit(&without(&(corners[side] - corners[(side + 2) % 3]), &along))?;
+        Some(unit_or(&without(&normal, &along), normal))
+    }
+
+    /// The normal on a vertex or a side. Where the corners lie on a line, a vertex has the direction
+    /// from the middle to it and a side has none of its own: any perpendicular of it.
+    fn thin_normal(&self, id: FeatureId) -> Vector<N, D> {
+        let outward = |index: usize| unit(&(self.corners()[index] - self.center()));
+        let normal = match id {
+            FeatureId::Vertex(index) => {
+                let index = index as usize;
+                let (out, back) = (self.side_normal(index), self.side_normal((index + 2) % 3));
+                let sum = out.zip(back).and_then(|(out, back)| unit(&(out + back)));
+                sum.or_else(|| outward(index)).map(|(normal, _)| normal)
+            }
+            FeatureId::Edge(side) | FeatureId::Face(side) => {
+                let along = Span::of(self.corners()).map(|span| span.along);
+                self.side_normal(side as usize)
+                    .or_else(|| along.map(|along| any_perpendicular(&along)))
+            }
+        };
+        normal.unwrap_or_else(|| axis(0))
+    }
+
+    /// The ends of a side in the order of the ring.
+    fn side_ends(&self, side: usize, direction: &Vector<N, D>) -> [(FeatureId, Point<N, D>); 2] {
+        let ring = self.ring(direction);
+        let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
+        ends.map(|index| self.point(index))
+    }
+
+    #[track_caller]
+    fn index(id: FeatureId, dimension: usize) -> usize {
+        let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
+        let fits = index < 3 && id == FeatureId::flat::<D>(dimension, index);
+        assert!(fits, "a triangle has no {} named {id:?}", FeatureId::word::<D>(dimension));
+        index as usize
+    }
+
+    fn ends(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
+        self.side_ends(Self::index(id, 1), &Vector::<N, D>::zeros())
+    }
+}
+
+impl<N: Real> Triangle<N, 2> {
+    /// See [`Shown::of`]; `None` where the corners coincide.
+    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+        let span = Span::of(self.corners())?;
+        let (side, slope) = self.flattest_side(&span, direction);
+        if Tilt::usual().admits(slope * slope) {
+            let ends = self.side_ends(side, direction);
+            return Some(Shown::side(side_id::<2>(side), ends));
+        }
+        let (id, point) = self.point(self.support_corner(direction));
+        Some(Shown::vertex(id, point))
+    }
+}
+
+fn axis<N: Real, const D: usize>(index: usize) -> Vector<N, D> {
+    let mut axis = Vector::<N, D>::zeros();
+    axis[index] = N::ONE;
+    axis
+}
+
+/// A unit vector perpendicular to a unit vector: the axis it leans on least, straightened.
+fn any_perpendicular<N: Real, const D: usize>(along: &Vector<N, D>) -> Vector<N, D> {
+    let weakest =
+        (1..D).fold(0, |best, at| if along[at].abs() < along[best].abs() { at } else { best });
+    unit_or(&without(&axis(weakest), along), axis(weakest))
+}
+
+/// A corner, 0 to 2, as a name.
+fn vertex_id(index: usize) -> FeatureId {
+    FeatureId::Vertex(u32::try_from(index).expect("there are three corners"))
+}
+
+fn side_id<const D: usize>(index: usize) -> FeatureId {
+    FeatureId::flat::<D>(1, u32::try_from(index).expect("there are three sides"))
+}
+
+/// The side between two corners next to each other, in either order.
+fn side_between(from: usize, to: usize) -> usize {
+    if (from + 1) % 3 == to { from } else { to }
+}
+
+/// A triangle of less height than the root of this part of its longest side is thin.
+const THIN_SQUARED: f64 = 1.0 / 1024.0;
+/// By this part of a number another one is clearly larger.
+const CLEAR: f64 = 1.0 / 1024.0;
+
+impl<N: Real> Triangle<N, 3> {
+    /// The name of what [`SupportMap::core_feature`] answers to a unit vector, by products alone; `None` of
+    /// triangles that are thin, and where rounding decides.
+    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
+        let [a, b, c] = self.corners();
+        let sides = [b - a, c - b, a - c];
+        let size = max(max_component(&sides[0]), max_component(&sides[1]));
+        // So that fourth powers are numbers.
+        let ways = sides.map(|side| side / size.power_of_two_below());
+        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
+        let longest = max(max(squared[0], squared[1]), squared[2]);
+        let across = cross(&ways[0], &ways[1]);
+        let (area, rise) = (across.norm_squared(), across.dot(direction));
+        // Written so that what is no number is thin.
+        let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
+        if !is_wide {
+            return None;
+        }
+        let limit = N::lit(FACING_SINE_SQUARED);
+        let is_less = |small: N, large: N| small < large * (N::ONE - N::lit(CLEAR));
+        let upright = (N::ONE - limit) * area;
+        if is_less(upright, rise * rise) {
+            return Some(FeatureId::Face(u32::from(rise < N::ZERO)));
+        }
+        if !is_less(rise * rise, upright) {
+            return None;
+        }
+        let climbs = ways.map(|way| way.dot(direction));
+        // The highest corner, by which of the sides climb.
+        let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
+        let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
+        let top = higher(higher(0, 1), 2);
+        let slope = |side: usize| climbs[side] * climbs[side] / squared[side];
+        let (out, back) = (slope(top), slope((top + 2) % 3));
+        let (side, least, other) =
+            if back < out { ((top + 2) % 3, back, out) } else { (top, out, back) };
+        if is_less(limit, least) {
+            return Some(vertex_id(top));
+        }
+        let is_side = is_less(least, limit) && is_less(least, other);
+        is_side.then(|| side_id::<3>(side))
+    }
+
+    /// Fills a blank ring with the face that a direction sees; of a triangle that is not thin.
+    pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
+        let [a, b, c] = self.corners();
+        let ways = [b - a, c - a];
+        // So that products are numbers.
+        let size = max(max_component(&ways[0]), max_component(&ways[1])).power_of_two_below();
+        let across = cross(&(ways[0] / size), &(ways[1] / size));
+        let is_below = across.dot(direction) < N::ZERO;
+        let normal = unit_or(&across, *direction);
+        face.normal = if is_below { -normal } else { normal };
+        face.id = FeatureId::Face(u32::from(is_below));
+        let ring = if is_below { [0, 2, 1] } else { [0, 1, 2] };
+        for at in 0..3 {
+            let (id, point) = self.point(ring[at]);
+            face.push(&point, [id, side_id::<3>(side_between(ring[at], ring[(at + 1) % 3]))]);
+        }
+    }
+}
+
+impl<N: Real> ConvexPolyhedron<N, 2> for Triangle<N, 2> {
+    fn vertex(&self, id: FeatureId) -> Point<N, 2> {
+        self.corners()[Self::index(id, 0)]
+    }
+
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, 2>); 2] {
+        self.ends(id)
+    }
+
+    fn face(&self, id: FeatureId, out: &mut Feature<N, 2>) {
+        let normal = self
+            .feature_normal(FeatureId::Face(u32::try_from(Self::index(id, 1)).expect("below 3")));
+        self.fill_side(Self::index(id, 1), &normal, out);
+    }
+
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, 2> {
+        Self::index(id, usize::from(!matches!(id, FeatureId::Vertex(_))));
+        self.thin_normal(id)
+    }
+
+    fn support_face_toward(&self, direction: &Vector<N, 2>, out: &mut Feature<N, 2>) {
+        let Some(span) = Span::of(self.corners()) else {
+            return out.set_point(vertex_id(0), self.corners()[0]);
+        };
+        let (side, _) = self.flattest_side(&span, direction);
+        self.fill_side(side, direction, out);
+    }
+
+    fn support_feature_toward(&self, direction: &Vector<N, 2>, angle: N, out: &mut Feature<N, 2>) {
+        self.fill_toward(direction, Tilt::of_angle(angle), out);
+    }
+
+    fn support_feature_id_toward(&self, direction: &Vector<N, 2>) -> FeatureId {
+        let mut feature = Feature::default();
+        self.fill_toward(direction, Tilt::least(), &mut feature);
+        feature.id
+    }
+}
+
+impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
+    fn vertex(&self, id: FeatureId) -> Point<N, 3> {
+        self.corners()[Self::index(id, 0)]
+    }
+
+    fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, 3>); 2] {
+        self.ends(id)
+    }
+
+    fn face(&self, id: FeatureId, out: &mut Feature<N, 3>) {
+        let normal = self.feature_normal(FeatureId::Face(u32::from(is_second_face(id))));
+        self.support_face_toward(&normal, out);
+    }
+
+    fn feature_normal(&self, id: FeatureId) -> Vector<N, 3> {
+        if !matches!(id, FeatureId::Face(_)) {
+            Self::index(id, usize::from(matches!(id, FeatureId::Edge(_))));
+            return self.thin_normal(id);
+        }
+        let is_second = is_second_face(id);
+        let span = Span::of(self.corners());
+        let along = span.as_ref().map_or_else(|| axis(0), |span| span.along);
+        let rise = span.and_then(|span| span.rise).unwrap_or_else(|| any_perpendicular(&along));
+        let across = cross(&along, &rise);
+        if is_second { -across } else { across }
+    }
+
+    fn support_face_toward(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
+        match Span::of(self.corners()) {
+            None => out.set_point(vertex_id(0), self.corners()[0]),
+            Some(span) if span.rise.is_none() => self.fill_side(span.longest, direction, out),
+            Some(span) => self.fill_polygon(&span, direction, out),
+        }
+    }
+
+    fn support_feature_toward(&self, direction: &Vector<N, 3>, angle: N, out: &mut Feature<N, 3>) {
+        self.fill_toward(direction, Tilt::of_angle(angle), out);
+    }
+
+    fn support_feature_id_toward(&self, direction: &Vector<N, 3>) -> FeatureId {
+        let mut feature = Feature::default();
+        self.fill_toward(direction, Tilt::least(), &mut feature);
+        feature.id
+    }
+}
+
+/// Whether it is the second of the two faces.
+#[track_caller]
+fn is_second_face(id: FeatureId) -> bool {
+    assert!(matches!(id, FeatureId::Face(0 | 1)), "a triangle has no face named {id:?}");
+    id == FeatureId::Face(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+
+    #[test]
+    fn what_a_triangle_shows_is_known_at_every_scale() {
+        let (mut noise, mut known) = (Noise(3), 0);
+        for _ in 0..2000 {
+            let corners = [(); 3].map(|()| Point::from(noise.vector::<f32>(1.0)));
+            let direction = noise.vector::<f32>(1.0).normalize();
+            let shown = |scale: f32| {
+                let [a, b, c] = corners.map(|corner| corner * scale);
+                Triangle::new(a, b, c).part_shown(&direction)
+            };
+            let part = shown(1.0);
+            assert_eq!([shown(2.0_f32.powi(-60)), shown(2.0_f32.powi(60))], [part; 2]);
+            known += usize::from(part.is_some());
+        }
+        assert!(known > 1500, "{known} are plain");
+        assert_eq!(
+            Triangle::new(Point::origin(), Point::origin(), Point::<f32, 3>::origin())
+                .part_shown(&Vector::<f32, 3>::y()),
+            None,
+            "it has no area"
+        );
+    }
+}

@@ -1,0 +1,190 @@
+//! Which normals a segment of a chain in 2D has: computed from its ends and those of the segments around it.
+
+use smallvec::SmallVec;
+
+use crate::math::{Point, Real, Vector, perp, unit};
+use crate::shape::composite::polyline_parts::across;
+use crate::shape::surface::seam::{Seam, slack};
+use crate::shape::{FeatureId, Surface};
+
+/// Which sides the segments of a chain have: what a [`Surface`] in 2D says so that contacts need not
+/// ask it about each segment. Chains of this library have one.
+///
+/// ```
+/// use impinge::dim2::math::Point;
+/// use impinge::dim2::shape::{CompositeShape, Polyline, Surface};
+///
+/// let line: Polyline<f32> = Polyline::open(vec![Point::origin(), Point::new(1.0, 0.0)]);
+/// assert!(line.surface().and_then(|surface| surface.sidedness()).is_some());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sidedness {
+    /// The front is on the left of a segment, seen from its first end to its second.
+    pub(in crate::shape) is_left: bool,
+    pub(in crate::shape) is_one_sided: bool,
+    /// Of two sides the one that a vector points to follows from the front, else from the vector itself.
+    pub(in crate::shape) follows_front: bool,
+    pub(in crate::shape) keeps_internal_edges: bool,
+    pub(in crate::shape) joining: Joining,
+}
+
+/// Which segments are joined where their ends are at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::shape) enum Joining {
+    /// All.
+    All,
+    /// Each with that of the next number alone, its second end with the first of that.
+    InRow,
+    /// Only the surface can tell.
+    Unknown,
+}
+
+/// Segments of a chain, among them all that touch a box.
+pub(crate) trait KnownSegments<N: Real>: Sync {
+    /// All segments through a point are among them.
+    fn are_all_at(&self, point: &Point<N, 2>) -> bool;
+
+    /// Visits those that end at a point, by their numbers, ascending, and ends.
+    fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2]));
+}
+
+impl Sidedness {
+    fn front<N: Real>(self, along: &Vector<N, 2>) -> Vector<N, 2> {
+        let left = perp(along);
+        if self.is_left { left } else { -left }
+    }
+
+    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    fn height_over<N: Real>(self, along: Option<&Vector<N, 2>>, vector: &Vector<N, 2>) -> N {
+        let along = along.filter(|_| self.is_one_sided);
+        along.map_or(N::ZERO, |along| self.front(along).dot(vector))
+    }
+
+    /// As [`Surface::snapped`].
+    fn snapped<N: Real>(self, along: &Vector<N, 2>, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        if !(self.is_one_sided || self.follows_front) {
+            return across(along, normal);
+        }
+        let front = self.front(along);
+        let is_front = self.is_one_sided || front.dot(normal) >= N::ZERO;
+        Some(if is_front { front } else { -front })
+    }
+}
+
+/// A segment of a chain, with what follows from its ends: the answers of its surface, without a look at that.
+pub(crate) struct KnownSegment<'a, N: Real> {
+    surface: &'a dyn Surface<N, 2>,
+    sidedness: Option<Sidedness>,
+    /// Those around it.
+    others: &'a dyn KnownSegments<N>,
+    ends: [Point<N, 2>; 2],
+    /// Unit, from the first end to the second; `None` without length.
+    along: Option<Vector<N, 2>>,
+}
+
+impl<'a, N: Real> KnownSegment<'a, N> {
+    /// A segment by its ends, as its surface has them.
+    pub(crate) fn new(
+        surface: &'a dyn Surface<N, 2>,
+        sidedness: Option<Sidedness>,
+        others: &'a dyn KnownSegments<N>,
+        ends: [Point<N, 2>; 2],
+    ) -> Self {
+        let along = unit(&(ends[1] - ends[0])).map(|(along, _)| along);
+        Self { surface, sidedness, others, ends, along }
+    }
+
+    /// The segments joined to this one at one of its ends; `None` if these are not known.
+    fn joined(&self, sidedness: Sidedness, part: u32, end: u32) -> Option<Joined<N>> {
+        let at = self.ends.get(end as usize)?;
+        if sidedness.joining == Joining::Unknown || !self.others.are_all_at(at) {
+            return None;
+        }
+        let mut joined = Joined::new();
+        self.others.each_ending_at(at, &mut |other, [a, b]| {
+            let starts_here = a == *at;
+            let is_joined = sidedness.joining == Joining::All
+                || other == if starts_here { part + end } else { (part + end).wrapping_sub(1) };
+            if let (true, Some((along, _))) = (is_joined, unit(&(b - a))) {
+                joined.push((along, starts_here));
+            }
+        });
+        Some(joined)
+    }
+
+    /// The rule of [`Seam`] for a normal at an end with these segments.
+    fn seam_admits(&self, sidedness: Sidedness, joined: &Joined<N>, normal: &Vector<N, 2>) -> bool {
+        let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
+        let mut seam = Seam::of_segments(own, normal);
+        for (along, starts_here) in joined {
+            let away = if *starts_here { *along } else { -along };
+            seam.add_segment(&away, sidedness.height_over(Some(along), normal));
+        }
+        seam.admits(sidedness.is_one_sided)
+    }
+
+    /// A normal is the segment's own, but for rounding; `None` if it has none.
+    fn is_own(&self, normal: &Vector<N, 2>) -> Option<bool> {
+        self.along.map(|along| along.dot(normal).abs() <= slack())
+    }
+}
+
+/// Segments at one point: unit vectors from their first ends to their second, and whether they start there.
+type Joined<N> = SmallVec<[(Vector<N, 2>, bool); 4]>;
+
+impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
+        let Some(sidedness) = self.sidedness else {
+            return self.surface.admits(part, feature, normal);
+        };
+        let height = sidedness.height_over(self.along.as_ref(), normal);
+        if sidedness.keeps_internal_edges {
+            return height >= -slack::<N>();
+        }
+        let own = self.is_own(normal);
+        match feature {
+            FeatureId::Vertex(end) if own != Some(true) => {
+                let known = self.joined(sidedness, part, end);
+                let known = known.map(|joined| self.seam_admits(sidedness, &joined, normal));
+                known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
+            }
+            _ => own.is_none_or(|own| own) && height >= N::ZERO,
+        }
+    }
+
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, 2>; 2],
+    ) -> [bool; 2] {
+        // Who asks about an end asks about normals that are not the segment's own.
+        if let (Some(sidedness), FeatureId::Vertex(end)) = (self.sidedness, feature)
+            && !sidedness.keeps_internal_edges
+            && self.is_own(first) != Some(true)
+            && self.is_own(second) != Some(true)
+            && let Some(joined) = self.joined(sidedness, part, end)
+        {
+            let is_first = self.seam_admits(sidedness, &joined, first);
+            return [is_first, !is_first && self.seam_admits(sidedness, &joined, second)];
+        }
+        let is_first = self.admits(part, feature, first);
+        [is_first, !is_first && self.admits(part, feature, second)]
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        match self.sidedness {
+            Some(sidedness) => sidedness.snapped(&self.along?, normal),
+            None => self.surface.snapped(part, normal),
+        }
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        match self.sidedness {
+            Some(sidedness) => {
+                sidedness.height_over(self.along.as_ref(), &(center - self.ends[0])) >= N::ZERO
+            }
+            None => self.surface.faces(part, center),
+        }
+    }
+}
