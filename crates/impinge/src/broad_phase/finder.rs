@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::BroadPhaseError;
 use super::events::Verdict;
-use super::sieve::{Kept, Sieve};
+use super::sieve::{KeptBounds, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::math::Real;
@@ -257,7 +257,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
         leavers.clear();
         leavers.resize(waiting.len(), 0);
-        let kept = Kept { homes: &self.homes, loose: &self.loose };
+        let kept = KeptBounds { homes: &self.homes, loose: &self.loose };
         let sieve = Sieve { first: 0, exact: &mut self.exact, waiting_at: &mut self.waiting_at };
         let count = sieve.run(&kept, waiting, 0, leavers);
         leavers.truncate(count);

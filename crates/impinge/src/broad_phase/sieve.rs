@@ -6,7 +6,7 @@ use crate::bvh::{Bounds, NONE};
 use crate::math::Real;
 
 /// What the answer depends on, by id.
-pub(super) struct Kept<'a, const D: usize> {
+pub(super) struct KeptBounds<'a, const D: usize> {
     pub(super) homes: &'a [Home],
     pub(super) loose: &'a [Bounds<D>],
 }
@@ -24,7 +24,7 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
     /// as wait may leave; returns how many do.
     pub(super) fn run(
         self,
-        kept: &Kept<'_, D>,
+        kept: &KeptBounds<'_, D>,
         waiting: &[Waiting<N, D>],
         first_at: u32,
         leavers: &mut [u32],
@@ -40,7 +40,7 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
     /// one over it if it stays.
     fn run_serial(
         self,
-        kept: &Kept<'_, D>,
+        kept: &KeptBounds<'_, D>,
         waiting: &[Waiting<N, D>],
         first_at: u32,
         leavers: &mut [u32],
@@ -65,7 +65,7 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
 #[cfg(feature = "parallel")]
 mod parallel {
     use super::super::finder::small;
-    use super::{Kept, NONE, Sieve, Waiting};
+    use super::{KeptBounds, NONE, Sieve, Waiting};
     use crate::math::Real;
 
     /// The most objects that one thread looks at.
@@ -84,7 +84,7 @@ mod parallel {
         /// For a list that can be cut.
         pub(super) fn run_parallel(
             self,
-            kept: &Kept<'_, D>,
+            kept: &KeptBounds<'_, D>,
             waiting: &[Waiting<N, D>],
             first_at: u32,
             leavers: &mut [u32],

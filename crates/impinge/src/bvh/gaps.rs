@@ -1,6 +1,6 @@
 //! A box at rest, made ready to be held against blocks: squares of distances in `f32`, never too large.
 
-use super::kernel::{Scalar, Wide, low_half};
+use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, Bounds, LANES};
 use crate::bounding_volume::Aabb;
 use crate::math::Real;
@@ -106,7 +106,7 @@ impl Scalar {
     }
 }
 
-impl<S: Simd> Wide<S> {
+impl<S: Simd> WideBlock<S> {
     /// All lanes at once: see [`Kernel::apart`](super::kernel::Kernel::apart).
     #[inline(always)]
     pub(super) fn apart_from_block<const D: usize>(

@@ -29,7 +29,7 @@ const ENDED: u32 = 1 << 31;
 
 /// The trees of a join: `first` with `second`, or one tree with itself.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sides<'a, const D: usize> {
+pub(super) struct JoinSides<'a, const D: usize> {
     pub(super) first: &'a Tree<D>,
     pub(super) second: &'a Tree<D>,
     pub(super) is_self: bool,
@@ -108,7 +108,7 @@ impl<const D: usize> Joiner<D> {
     /// always the same) order. Of those that ended, some of [`Tree::strayed`] objects may be
     /// missing. The tree must be refitted.
     pub fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
-        let sides = Sides { first: tree, second: tree, is_self: true };
+        let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
             self.ask_changed(sides);
         } else {
@@ -120,8 +120,8 @@ impl<const D: usize> Joiner<D> {
     /// Appends the pairs of an object of `first` with one of `second` that began or ended, like
     /// [`Self::self_join`].
     pub fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
-        let sides = Sides { first, second, is_self: false };
-        let flipped = Sides { first: second, second: first, is_self: false };
+        let sides = JoinSides { first, second, is_self: false };
+        let flipped = JoinSides { first: second, second: first, is_self: false };
         let all = first.live + second.live;
         let few = (first.changed + second.changed) * QUERIES_BELOW < all;
         match (first.changed, second.changed) {
@@ -135,13 +135,13 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    fn ask_and_report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
+    fn ask_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.ask_changed(sides);
         self.report(sides, changes);
     }
 
     /// The found pairs of slots as pairs of ids, by what became of them.
-    fn report(&mut self, sides: Sides<'_, D>, changes: &mut Changes) {
+    fn report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         let [first, second] = self.found.parts();
         for (&a, &b) in first.iter().zip(second) {
             let key = pack(sides.first.ids[(a & !ENDED) as usize], sides.second.ids[b as usize]);
@@ -156,7 +156,7 @@ impl<const D: usize> Joiner<D> {
 
     /// Asks the second tree about each changed box of the first; nothing in the second may have
     /// changed unless the two are one.
-    fn ask_changed(&mut self, sides: Sides<'_, D>) {
+    fn ask_changed(&mut self, sides: JoinSides<'_, D>) {
         let mut slots = core::mem::take(&mut self.slots);
         sides.first.list_changed_slots(&mut slots);
         if !slots.is_empty() && sides.second.live > 0 {
@@ -171,7 +171,7 @@ impl<const D: usize> Joiner<D> {
         self.slots = slots;
     }
 
-    fn join(&mut self, sides: Sides<'_, D>) {
+    fn join(&mut self, sides: JoinSides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
             return;
@@ -204,7 +204,7 @@ impl<const D: usize> Joiner<D> {
 
     /// The first tasks: all pairs of blocks at the highest layer that both trees have. One of the
     /// trees has a single block there.
-    fn seed(&mut self, sides: Sides<'_, D>, top: usize) {
+    fn seed(&mut self, sides: JoinSides<'_, D>, top: usize) {
         self.tasks.clear();
         for a in 0..sides.first.layers[top].blocks.len() {
             for b in 0..sides.second.layers[top].blocks.len() {
@@ -265,7 +265,7 @@ impl Chunks {
 #[inline(always)]
 fn expand<K: Kernel, const D: usize>(
     kernel: K,
-    sides: Sides<'_, D>,
+    sides: JoinSides<'_, D>,
     layer: usize,
     [first, second]: [&[u32]; 2],
     out: &mut TaskList,
@@ -299,7 +299,7 @@ fn expand<K: Kernel, const D: usize>(
 #[inline(always)]
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
-    sides: Sides<'_, D>,
+    sides: JoinSides<'_, D>,
     [first, second]: [&[u32]; 2],
     out: &mut TaskList,
     scratch: &mut Scratch<D>,
@@ -307,7 +307,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
     let (before_a, changed_b) = (sides.first.was(), &leaves_b.changed[..]);
-    let (reach_b, boxes) = (&leaves_b.reach[..], Boxes::of(sides));
+    let (reach_b, boxes) = (&leaves_b.reach[..], JoinBoxes::of(sides));
     let lanes = &mut scratch.tasks;
     lanes.clear();
     for (&a, &b) in first.iter().zip(second) {
@@ -334,7 +334,7 @@ fn join_leaves<K: Kernel, const D: usize>(
 
 /// The boxes of both sides, now and before.
 #[derive(Clone, Copy)]
-pub(super) struct Boxes<'a, const D: usize> {
+pub(super) struct JoinBoxes<'a, const D: usize> {
     now_a: &'a [Block<D>],
     before_a: &'a [Block<D>],
     now_b: &'a [Block<D>],
@@ -367,9 +367,9 @@ impl Overlaps {
     }
 }
 
-impl<'a, const D: usize> Boxes<'a, D> {
+impl<'a, const D: usize> JoinBoxes<'a, D> {
     #[inline(always)]
-    pub(super) fn of(sides: Sides<'a, D>) -> Self {
+    pub(super) fn of(sides: JoinSides<'a, D>) -> Self {
         let (first, second) = (sides.first, sides.second);
         let (now_a, before_a) = (&first.layers[0].blocks[..], first.was());
         let (now_b, before_b) = (&second.layers[0].blocks[..], second.was());

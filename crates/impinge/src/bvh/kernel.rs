@@ -1,6 +1,6 @@
 //! The three operations on blocks that everything else is built of, scalar and in vectors.
 //!
-//! [`Scalar`] defines what they compute; [`Wide`] computes the same bits with whatever vectors the
+//! [`Scalar`] defines what they compute; [`WideBlock`] computes the same bits with whatever vectors the
 //! machine has. Only comparisons, minima and maxima are used, so equality is exact. Callers choose
 //! once per batch with `with_kernel!`, which compiles its body for every instruction set.
 
@@ -70,13 +70,13 @@ macro_rules! with_kernel {
             #[cfg(target_arch = "x86_64")]
             $crate::bvh::kernel::Choice::Avx512(simd) => {
                 fearless_simd::Simd::vectorize(simd, #[inline(always)] || {
-                    let $kernel = $crate::bvh::kernel::Wide(simd);
+                    let $kernel = $crate::bvh::kernel::WideBlock(simd);
                     $body
                 })
             }
             $crate::bvh::kernel::Choice::Vectors(vectors) => {
                 $crate::math::lanes::with_vectors!(vectors, simd => {
-                    let $kernel = $crate::bvh::kernel::Wide(simd);
+                    let $kernel = $crate::bvh::kernel::WideBlock(simd);
                     $body
                 })
             }
@@ -260,12 +260,12 @@ fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
 
 /// The kernels in vectors of sixteen (one register, two or four).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wide<S>(pub(super) S);
+pub(super) struct WideBlock<S>(pub(super) S);
 
 /// 0 to 15.
 const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-impl<S: Simd> Kernel for Wide<S> {
+impl<S: Simd> Kernel for WideBlock<S> {
     #[inline(always)]
     fn overlaps<const D: usize>(self, block: &Block<D>, query: &Bounds<D>) -> u32 {
         let mut mask = overlaps_on(self.0, block, query, 0);

@@ -4,7 +4,7 @@
 //! tests of one layer do not depend on each other.
 
 use super::LANES;
-use super::join::{Boxes, Scratch, Sides};
+use super::join::{JoinBoxes, JoinSides, Scratch};
 use super::kernel::Kernel;
 use super::tree::small;
 
@@ -14,7 +14,7 @@ use super::tree::small;
 #[inline(always)]
 pub(super) fn ask<K: Kernel, const D: usize>(
     kernel: K,
-    sides: Sides<'_, D>,
+    sides: JoinSides<'_, D>,
     slots: &[u32],
     out: &mut super::kernel::TaskList,
     scratch: &mut Scratch<D>,
@@ -36,7 +36,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
         }
         core::mem::swap(tasks, next);
     }
-    let (leaves, boxes) = (&sides.second.layers[0], Boxes::of(sides));
+    let (leaves, boxes) = (&sides.second.layers[0], JoinBoxes::of(sides));
     let [queries, blocks] = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];

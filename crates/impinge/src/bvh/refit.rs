@@ -96,7 +96,7 @@ impl<const D: usize> Tree<D> {
         let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut self.layers[0];
         let (before, ids) = (&self.before[..], &self.ids[..]);
         let is_stale = self.is_stale;
-        let source = Source { before, ids, changed, by_id, is_stale, lanes: self.lanes };
+        let source = RefitSource { before, ids, changed, by_id, is_stale, lanes: self.lanes };
         let leaves = Leaves { first: 0, blocks: leaves, bounds, reach };
         leaves.refit(&source, blocks, &mut self.strayed);
     }
@@ -165,7 +165,7 @@ struct Leaves<'a, const D: usize> {
 }
 
 /// What all leaf blocks are computed from.
-struct Source<'a, const D: usize> {
+struct RefitSource<'a, const D: usize> {
     before: &'a [Block<D>],
     ids: &'a [u32],
     changed: &'a [u16],
@@ -176,7 +176,7 @@ struct Source<'a, const D: usize> {
 
 impl<const D: usize> Leaves<'_, D> {
     /// Refits the listed blocks, ascending, which are all in this run. Appends those that strayed.
-    fn refit(mut self, source: &Source<'_, D>, listed: &[u32], strayed: &mut Vec<u32>) {
+    fn refit(mut self, source: &RefitSource<'_, D>, listed: &[u32], strayed: &mut Vec<u32>) {
         #[cfg(feature = "parallel")]
         if listed.len() > PARALLEL_LEAVES && rayon::current_num_threads() > 1 {
             let (near, far) = listed.split_at(listed.len() / 2);
@@ -199,7 +199,7 @@ impl<const D: usize> Leaves<'_, D> {
     fn refit_block<K: Kernel>(
         &mut self,
         kernel: K,
-        source: &Source<'_, D>,
+        source: &RefitSource<'_, D>,
         block: u32,
         strayed: &mut Vec<u32>,
     ) {

@@ -1,6 +1,6 @@
 //! A box that moves, made ready to be held against blocks: the slab test in `f32`, never too strict.
 
-use super::kernel::{Scalar, Wide, low_half};
+use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, LANES};
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, Vector, max_component};
@@ -112,7 +112,7 @@ impl Scalar {
     }
 }
 
-impl<S: Simd> Wide<S> {
+impl<S: Simd> WideBlock<S> {
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,

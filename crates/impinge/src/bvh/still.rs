@@ -18,12 +18,12 @@ const PARALLEL_SORT: usize = 4096;
 
 /// A box to be given a place.
 #[derive(Clone, Copy, Debug)]
-struct Item<const D: usize> {
+struct StillItem<const D: usize> {
     bounds: Bounds<D>,
     id: u32,
 }
 
-impl<const D: usize> Item<D> {
+impl<const D: usize> StillItem<D> {
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
@@ -41,7 +41,7 @@ impl<const D: usize> Item<D> {
 impl<const D: usize> Tree<D> {
     /// The tree of boxes with different ids, settled.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
-        let mut items: Vec<_> = boxes.map(|(id, bounds)| Item { bounds, id }).collect();
+        let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
         let mut tree = Self::sparing(lanes);
         tree.resize_leaves(items.len().div_ceil(LANES));
@@ -65,7 +65,7 @@ impl<const D: usize> Tree<D> {
 
 /// Brings items that start at a whole subtree into order. Each call leaves fewer or smaller children, so
 /// it ends.
-fn arrange<const D: usize>(items: &mut [Item<D>]) {
+fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;
@@ -88,7 +88,11 @@ fn arrange<const D: usize>(items: &mut [Item<D>]) {
 
 /// The axis to cut along, and how many of the children go left; the middle of the longest axis, the
 /// first of equals, where no cut has a cost.
-fn best_cut<const D: usize>(items: &[Item<D>], child: usize, children: usize) -> (usize, usize) {
+fn best_cut<const D: usize>(
+    items: &[StillItem<D>],
+    child: usize,
+    children: usize,
+) -> (usize, usize) {
     let step = items.len().div_ceil(SAMPLE);
     let mut middles = Bounds::<D>::EMPTY;
     for item in items.iter().step_by(step) {
@@ -123,7 +127,11 @@ impl<const D: usize> Bins<D> {
         clippy::cast_sign_loss,
         reason = "a share of the bins; NaN, of an axis without extent, goes to the first"
     )]
-    fn of<'a>(items: impl Iterator<Item = &'a Item<D>>, axis: usize, middles: &Bounds<D>) -> Self {
+    fn of<'a>(
+        items: impl Iterator<Item = &'a StillItem<D>>,
+        axis: usize,
+        middles: &Bounds<D>,
+    ) -> Self {
         let mut bins = Self { bounds: [Bounds::EMPTY; BINS], counts: [0; BINS] };
         let least = middles.lo[axis];
         let scale = BINS as f32 / (middles.hi[axis] - least);

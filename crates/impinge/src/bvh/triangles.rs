@@ -5,7 +5,7 @@
 //! whatever test decides: what is sorted out is certainly not crossed.
 
 use super::LANES;
-use super::kernel::{Scalar, Wide, low_half};
+use super::kernel::{Scalar, WideBlock, low_half};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Real, max_component};
 use fearless_simd::{Simd, SimdBase, f32x16};
@@ -133,7 +133,7 @@ impl Scalar {
     }
 }
 
-impl<S: Simd> Wide<S> {
+impl<S: Simd> WideBlock<S> {
     /// All lanes at once: see [`Kernel::crossed`](super::kernel::Kernel::crossed).
     #[inline(always)]
     pub(super) fn crossed_triangles(

@@ -5,7 +5,7 @@ use crate::math::{Real, Vector};
 
 /// A unit vector from the first core to the second with its certificate.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate<N: Real, const D: usize> {
+pub(super) struct SupportCandidate<N: Real, const D: usize> {
     pub(super) normal: Vector<N, D>,
     /// `min n·b − max n·a`: a lower bound of the signed distance, whatever the normal.
     pub(super) height: N,
@@ -13,7 +13,7 @@ pub(super) struct Candidate<N: Real, const D: usize> {
     pub(super) vertex: Vertex<N, D>,
 }
 
-impl<N: Real, const D: usize> Candidate<N, D> {
+impl<N: Real, const D: usize> SupportCandidate<N, D> {
     /// The certificate of a unit vector.
     #[inline]
     pub(super) fn along<S>(difference: &S, normal: Vector<N, D>) -> Self

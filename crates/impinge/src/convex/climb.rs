@@ -1,6 +1,6 @@
 //! From a good normal of an overlap to the best one nearby.
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, Moved, noise};
 use super::gjk::nearest_normal;
 use super::simplex::Simplicial;
@@ -22,14 +22,14 @@ const DOUBLINGS: usize = 16;
 /// bends: then each trial is first brought back to the ridge by a step of its own.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
 ) {
     for _ in 0..STEPS {
         let before = *best;
         let first = raised(difference, &before);
         best.improve(&first);
         let step = first.normal - before.normal;
-        let along = |normal| Candidate::along(difference, normal);
+        let along = |normal| SupportCandidate::along(difference, normal);
         if !stride(best, &step, along) {
             stride(best, &step, |normal| raised(difference, &along(normal)));
         }
@@ -43,9 +43,9 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
 /// Goes on in the direction of a step that was made, twice as far each time, while that helps; says
 /// whether it did. `trial` makes a candidate of a normal.
 fn stride<N: Simplicial<D>, const D: usize>(
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
     step: &Vector<N, D>,
-    trial: impl Fn(Vector<N, D>) -> Candidate<N, D>,
+    trial: impl Fn(Vector<N, D>) -> SupportCandidate<N, D>,
 ) -> bool {
     let (start, mut stretch) = (best.normal, N::ONE);
     for round in 0..DOUBLINGS {
@@ -61,9 +61,9 @@ fn stride<N: Simplicial<D>, const D: usize>(
 /// One step of the method.
 fn raised<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    from: &Candidate<N, D>,
-) -> Candidate<N, D> {
+    from: &SupportCandidate<N, D>,
+) -> SupportCandidate<N, D> {
     let free = max(-from.height * N::lit(0.25), N::lit(1.0 / 64.0));
     let moved = Moved { inner: difference, by: from.normal * (free - from.height) };
-    Candidate::along(difference, nearest_normal(&moved, &from.normal))
+    SupportCandidate::along(difference, nearest_normal(&moved, &from.normal))
 }

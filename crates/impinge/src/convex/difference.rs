@@ -73,7 +73,7 @@ pub(crate) trait Difference<N: Real, const D: usize> {
 }
 
 /// The cores of two solids, in the frame of the first, in their [`Units`].
-pub(super) struct Pair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
+pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     solid1: &'a A,
     solid2: &'a B,
     rotation: Matrix<N, D>,
@@ -101,7 +101,7 @@ fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) 
     largest
 }
 
-impl<'a, N, A, B, const D: usize> Pair<'a, N, A, B, D>
+impl<'a, N, A, B, const D: usize> CorePair<'a, N, A, B, D>
 where
     N: Real,
     A: SupportMap<N, D> + ?Sized,
@@ -150,7 +150,7 @@ where
     }
 }
 
-impl<N, A, B, const D: usize> Difference<N, D> for Pair<'_, N, A, B, D>
+impl<N, A, B, const D: usize> Difference<N, D> for CorePair<'_, N, A, B, D>
 where
     N: Real,
     A: SupportMap<N, D> + ?Sized,

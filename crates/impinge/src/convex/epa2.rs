@@ -8,7 +8,7 @@
 use smallvec::SmallVec;
 
 use super::Separation;
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
@@ -32,7 +32,7 @@ struct PolygonEdge<N: Real> {
 }
 
 /// Counter-clockwise.
-type Ring<N> = SmallVec<[PolygonEdge<N>; 16]>;
+type EpaRing<N> = SmallVec<[PolygonEdge<N>; 16]>;
 
 impl<N: Real> PolygonEdge<N> {
     fn new(start: Vertex<N, 2>, end: &Vertex<N, 2>) -> Self {
@@ -58,13 +58,13 @@ pub(super) fn deepest<N: Real>(
     }
 }
 
-fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> Ring<N> {
+fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> EpaRing<N> {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(&start, end)| PolygonEdge::new(start, end)).collect()
 }
 
 /// The triangle that is known to hold the origin, if there is one and it is not a sliver.
-fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<Ring<N>> {
+fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     let &[a, b, c] = simplex.vertices() else { return None };
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
     let area = cross2(&e, &f);
@@ -79,7 +79,7 @@ fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<Ring<N>> {
 }
 
 /// A polygon of extreme points; or the answer at once, if the difference is a segment or a point.
-fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Separation<N, 2>> {
+fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>, Separation<N, 2>> {
     let [a, b] = widest_pair(difference);
     let edge = b.point - a.point;
     let Some((along, _)) = unit(&edge).filter(|&(_, width)| width > noise()) else {
@@ -100,12 +100,12 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<Ring<N>, Se
 }
 
 /// Where the polygon lies nearest to the origin, once it has grown to the difference there.
-fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separation<N, 2> {
-    let mut best = Candidate::along(difference, -ring[0].outward);
+fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Separation<N, 2> {
+    let mut best = SupportCandidate::along(difference, -ring[0].outward);
     for _ in 0..ROUNDS {
         let index = nearest_side(ring);
         let (side, next) = (ring[index], ring[(index + 1) % ring.len()].start);
-        let candidate = Candidate::along(difference, -side.outward);
+        let candidate = SupportCandidate::along(difference, -side.outward);
         best.improve(&candidate);
         if -candidate.height - side.offset <= tolerance() {
             let before = best.height;
@@ -139,11 +139,14 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut Ring<N>) -> Separ
 }
 
 /// All points that are known.
-fn vertices<N: Real>(ring: &Ring<N>, best: &Candidate<N, 2>) -> SmallVec<[Vertex<N, 2>; 16]> {
+fn vertices<N: Real>(
+    ring: &EpaRing<N>,
+    best: &SupportCandidate<N, 2>,
+) -> SmallVec<[Vertex<N, 2>; 16]> {
     ring.iter().map(|side| side.start).chain([best.vertex]).collect()
 }
 
-fn nearest_side<N: Real>(ring: &Ring<N>) -> usize {
+fn nearest_side<N: Real>(ring: &EpaRing<N>) -> usize {
     let (mut nearest, mut offset) = (0, N::INFINITY);
     for (index, side) in ring.iter().enumerate() {
         if side.offset < offset {

@@ -7,7 +7,7 @@
 //! one is the answer however the growth ends.
 
 use super::Separation;
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
@@ -140,11 +140,11 @@ fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>
 /// Where the hull lies nearest to the origin, once it has grown to the difference there.
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
-    let mut best = Candidate::along(difference, -hull.face(first).outward);
+    let mut best = SupportCandidate::along(difference, -hull.face(first).outward);
     for _ in 0..ROUNDS {
         let Some(index) = hull.nearest() else { break };
         let face = *hull.face(index);
-        let candidate = Candidate::along(difference, -face.outward);
+        let candidate = SupportCandidate::along(difference, -face.outward);
         best.improve(&candidate);
         if -candidate.height - face.offset <= tolerance() {
             if face.settled {
@@ -191,10 +191,10 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
 fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &Hull<N>,
-    best: &mut Candidate<N, 3>,
+    best: &mut SupportCandidate<N, 3>,
 ) {
     let mut starts: Vec<_> =
-        hull.normals().map(|outward| Candidate::along(difference, -outward)).collect();
+        hull.normals().map(|outward| SupportCandidate::along(difference, -outward)).collect();
     starts.push(*best);
     for _ in 0..CLIMBS {
         let Some(mut start) = starts.iter().copied().reduce(higher) else { break };
@@ -210,7 +210,10 @@ fn climb_on<N: Real>(
 }
 
 /// The candidate that proves more, the first of equals.
-fn higher<N: Real>(first: Candidate<N, 3>, second: Candidate<N, 3>) -> Candidate<N, 3> {
+fn higher<N: Real>(
+    first: SupportCandidate<N, 3>,
+    second: SupportCandidate<N, 3>,
+) -> SupportCandidate<N, 3> {
     if second.height > first.height { second } else { first }
 }
 

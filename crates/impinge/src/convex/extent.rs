@@ -1,6 +1,6 @@
 //! How far a difference stretches, and which of its points show it.
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
@@ -38,12 +38,12 @@ pub(super) fn farthest<N: Real, const D: usize>(
 pub(super) fn best_of<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     normals: &[Vector<N, D>],
-) -> Candidate<N, D> {
-    let mut best = Candidate::along(difference, normals[0]);
-    best.improve(&Candidate::along(difference, -normals[0]));
+) -> SupportCandidate<N, D> {
+    let mut best = SupportCandidate::along(difference, normals[0]);
+    best.improve(&SupportCandidate::along(difference, -normals[0]));
     for normal in &normals[1..] {
-        best.improve(&Candidate::along(difference, *normal));
-        best.improve(&Candidate::along(difference, -normal));
+        best.improve(&SupportCandidate::along(difference, *normal));
+        best.improve(&SupportCandidate::along(difference, -normal));
     }
     best
 }

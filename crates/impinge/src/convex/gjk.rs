@@ -8,12 +8,12 @@
 use smallvec::SmallVec;
 
 use super::Separation;
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, noise, tolerance};
 use super::newton::settles;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
-use super::simplex::{Nearest, Simplex, Simplicial};
+use super::simplex::{NearestOfSimplex, Simplex, Simplicial};
 use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, max};
 
@@ -39,9 +39,9 @@ enum Outcome {
 struct GjkSearch<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
     /// The best normal so far; its height is a lower bound of the distance.
-    best: Candidate<N, D>,
+    best: SupportCandidate<N, D>,
     /// The normal of the nearest point so far.
-    last: Candidate<N, D>,
+    last: SupportCandidate<N, D>,
     /// The length of the nearest point so far: an upper bound.
     upper: N,
     /// The gap between the bounds at which the search stops.
@@ -89,7 +89,7 @@ where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
-    let mut search = GjkSearch::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
     search.gap = if difference.is_flat() { gap() } else { rough_gap() };
     search.near = rounding.map_or(N::ZERO, near);
     let mut outcome = search.run(difference, limit);
@@ -127,7 +127,7 @@ where
     N: Simplicial<D>,
     S: Difference<N, D>,
 {
-    let mut search = GjkSearch::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
     search.near = near(radius);
     if search.best.height > radius - min_depth {
         return false;
@@ -144,7 +144,7 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
 ) -> Vector<N, D> {
-    let mut search = GjkSearch::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
     (search.gap, search.for_points) = (noise(), false);
     search.run(difference, N::INFINITY);
     search.best.normal
@@ -155,14 +155,14 @@ pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
 ) -> (Vector<N, D>, Simplex<N, D>) {
-    let mut search = GjkSearch::new(Candidate::along(difference, *start));
+    let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
     search.gap = N::ZERO;
     search.run(difference, N::INFINITY);
     (search.last.normal, search.simplex)
 }
 
 impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
-    fn new(first: Candidate<N, D>) -> Self {
+    fn new(first: SupportCandidate<N, D>) -> Self {
         Self {
             simplex: Simplex::new(first.vertex),
             best: first,
@@ -192,7 +192,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
             if self.upper < self.near {
                 return Outcome::Near;
             }
-            let candidate = Candidate::along(difference, nearest.point / self.upper);
+            let candidate = SupportCandidate::along(difference, nearest.point / self.upper);
             self.best.improve(&candidate);
             self.last = candidate;
             if self.best.height > limit {
@@ -214,7 +214,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// Takes the last support point into the simplex; `None`, and nothing done, if that brings the
     /// origin no nearer: the arithmetic is at its end.
-    fn advanced(&mut self, nearest: &Nearest<N, D>) -> Option<Nearest<N, D>> {
+    fn advanced(&mut self, nearest: &NearestOfSimplex<N, D>) -> Option<NearestOfSimplex<N, D>> {
         self.simplex.push(self.last.vertex);
         let next = N::nearest(self.simplex.points());
         if next.squared >= nearest.squared {

@@ -12,7 +12,7 @@ use crate::math::{Real, Vector, cross, max, unit};
 
 /// A triangle, counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
-pub(super) struct Face<N: Real> {
+pub(super) struct EpaFace<N: Real> {
     pub(super) corners: [u16; 3],
     /// The unit normal out of the polytope.
     pub(super) outward: Vector<N, 3>,
@@ -23,14 +23,14 @@ pub(super) struct Face<N: Real> {
 }
 
 /// The sides of a hole in the surface, each running as in the face that is gone.
-type Outline = SmallVec<[[u16; 2]; 24]>;
+type Horizon = SmallVec<[[u16; 2]; 24]>;
 
 /// Numbers of faces.
-type Indices = SmallVec<[usize; 16]>;
+type FaceIndices = SmallVec<[usize; 16]>;
 
 pub(super) struct Hull<N: Real> {
     vertices: SmallVec<[Vertex<N, 3>; 32]>,
-    faces: SmallVec<[Face<N>; 48]>,
+    faces: SmallVec<[EpaFace<N>; 48]>,
 }
 
 impl<N: Real> Hull<N> {
@@ -57,7 +57,7 @@ impl<N: Real> Hull<N> {
         &self.vertices[usize::from(index)]
     }
 
-    pub(super) fn face(&self, index: usize) -> &Face<N> {
+    pub(super) fn face(&self, index: usize) -> &EpaFace<N> {
         &self.faces[index]
     }
 
@@ -99,7 +99,7 @@ impl<N: Real> Hull<N> {
         let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
         self.vertices.push(vertex);
         let mut visible = self.visible(from, &vertex);
-        let (mut outline, mut free) = (Outline::new(), Indices::new());
+        let (mut outline, mut free) = (Horizon::new(), FaceIndices::new());
         self.uncover(from, &mut outline);
         free.push(from);
         // Only what is connected to `from` goes: a face elsewhere that rounding makes visible would
@@ -123,8 +123,8 @@ impl<N: Real> Hull<N> {
     }
 
     /// The faces other than `from` that a point lies beyond; those too thin to tell count.
-    fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> Indices {
-        let mut visible = Indices::new();
+    fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
+        let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
             let beyond = face.outward.dot(&vertex.point) - face.offset > noise();
             if index != from && (beyond || face.offset == N::INFINITY) {
@@ -135,13 +135,13 @@ impl<N: Real> Hull<N> {
     }
 
     /// Whether a face shares a side with the hole.
-    fn adjoins(&self, face: usize, outline: &Outline) -> bool {
+    fn adjoins(&self, face: usize, outline: &Horizon) -> bool {
         let [a, b, c] = self.faces[face].corners;
         outline.iter().any(|side| [[b, a], [c, b], [a, c]].contains(side))
     }
 
     /// Takes a face away: its sides become the hole's, or cancel against them.
-    fn uncover(&self, face: usize, outline: &mut Outline) {
+    fn uncover(&self, face: usize, outline: &mut Horizon) {
         let [a, b, c] = self.faces[face].corners;
         for [start, end] in [[a, b], [b, c], [c, a]] {
             match outline.iter().position(|&side| side == [end, start]) {
@@ -153,7 +153,7 @@ impl<N: Real> Hull<N> {
         }
     }
 
-    fn face_of(&self, corners: [u16; 3]) -> Face<N> {
+    fn face_of(&self, corners: [u16; 3]) -> EpaFace<N> {
         let [a, b, c] = corners.map(|corner| self.vertex(corner).point);
         let (e, f) = (b - a, c - a);
         let normal = cross(&e, &f);
@@ -164,6 +164,6 @@ impl<N: Real> Hull<N> {
             let (outward, _) = found;
             (outward, outward.dot(&a))
         });
-        Face { corners, outward, offset, settled: false }
+        EpaFace { corners, outward, offset, settled: false }
     }
 }

@@ -41,7 +41,7 @@ pub(crate) use units::Units;
 
 use crate::math::Pose;
 use crate::shape::SupportMap;
-use difference::{Pair, noise};
+use difference::{CorePair, noise};
 use gjk::Answer;
 
 /// The signed distance of two rounded solids, its normal and the points it lies between, in the
@@ -77,7 +77,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    of_pair(&Pair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
+    of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
 /// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
@@ -93,7 +93,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12)?.between_flat_cores();
+    let pair = CorePair::new(a, b, pose12)?.between_flat_cores();
     of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
@@ -111,7 +111,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
+    let pair = CorePair::new(a, b, pose12)?.with_peaks(peaks);
     of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
@@ -133,7 +133,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let Some(pair) = Pair::new(a, b, pose12) else { return false };
+    let Some(pair) = CorePair::new(a, b, pose12) else { return false };
     let radius = (a.rounding() + b.rounding()) / pair.scale();
     gjk::overlaps(&pair, &pair.start(), radius, min_depth)
 }
@@ -151,7 +151,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    distance_of_pair(&Pair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
+    distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
 /// The distance in [`flat_separation`], or zero if the solids certainly overlap, as [`distance`].
@@ -166,7 +166,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12)?.between_flat_cores();
+    let pair = CorePair::new(a, b, pose12)?.between_flat_cores();
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
@@ -183,12 +183,12 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let pair = Pair::new(a, b, pose12)?.with_peaks(peaks);
+    let pair = CorePair::new(a, b, pose12)?.with_peaks(peaks);
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
 fn distance_of_pair<N, A, B, const D: usize>(
-    pair: &Pair<'_, N, A, B, D>,
+    pair: &CorePair<'_, N, A, B, D>,
     radii: [N; 2],
     limit: N,
 ) -> Option<N>
@@ -206,7 +206,7 @@ where
 }
 
 fn of_pair<N, A, B, const D: usize>(
-    pair: &Pair<'_, N, A, B, D>,
+    pair: &CorePair<'_, N, A, B, D>,
     radii: [N; 2],
     limit: N,
 ) -> Option<Separation<N, D>>
@@ -221,7 +221,7 @@ where
 
 /// A limit of the solids as one of their cores, in units of the pair.
 fn limit_of_cores<N, A, B, const D: usize>(
-    pair: &Pair<'_, N, A, B, D>,
+    pair: &CorePair<'_, N, A, B, D>,
     radii: [N; 2],
     limit: N,
 ) -> N

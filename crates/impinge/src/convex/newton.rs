@@ -1,6 +1,6 @@
 //! From a good normal to one that is right to the last bits, where surfaces are curved.
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, noise};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
@@ -16,7 +16,7 @@ const STEPS: usize = 6;
 /// slope: at kinks of the height, the flat faces and sharp edges, steps fail and nothing is lost.
 pub(super) fn settles<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
 ) -> bool {
     let mut slope = across(&best.vertex.point, &best.normal);
     for _ in 0..STEPS {
@@ -25,7 +25,7 @@ pub(super) fn settles<N: Simplicial<D>, const D: usize>(
         }
         let Some(step) = step(difference, best, &slope) else { return false };
         let Some((normal, _)) = unit(&(best.normal + step)) else { return false };
-        let next = Candidate::along(difference, normal);
+        let next = SupportCandidate::along(difference, normal);
         let left = across(&next.vertex.point, &normal);
         let helps = next.height >= best.height - noise::<N>() * N::HALF
             && left.norm() < slope.norm() * N::HALF;
@@ -47,7 +47,7 @@ fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) 
 /// is not curved downwards.
 fn step<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     slope: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let (mut step, mut residual, mut along) = (Vector::<N, D>::zeros(), *slope, *slope);
@@ -75,7 +75,7 @@ fn step<N: Simplicial<D>, const D: usize>(
 /// to both sides.
 fn bend<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     along: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let (direction, length) = unit(along)?;

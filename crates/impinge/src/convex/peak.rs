@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::Separation;
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, Vertex};
 use super::polish::polish;
 use super::simplex::Simplicial;
@@ -33,7 +33,7 @@ pub(super) fn at_peak<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     peak: &Peak<N, D>,
 ) -> Separation<N, D> {
-    let mut best = Candidate::along(difference, peak.normal);
+    let mut best = SupportCandidate::along(difference, peak.normal);
     let mut vertices = SmallVec::<[Vertex<N, D>; 16]>::new();
     for on1 in &peak.on1 {
         let of = |on2: &Vector<N, D>| Vertex { point: on2 - on1, on1: *on1, on2: *on2 };

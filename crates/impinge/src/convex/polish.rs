@@ -12,7 +12,7 @@
 
 use smallvec::SmallVec;
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Branch, Difference, Vertex, noise, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
@@ -51,7 +51,7 @@ struct ActiveSet<N: Real, const D: usize> {
 /// ones becomes active; one that would have to pull instead of push is no more.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<Mix<N, D>> {
     if difference.is_flat() {
@@ -67,7 +67,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         if squared > N::lit(LONGEST * LONGEST) {
             turn *= N::lit(LONGEST) / squared.sqrt();
         }
-        current = Candidate::along(difference, unit(&(current.normal + turn))?.0);
+        current = SupportCandidate::along(difference, unit(&(current.normal + turn))?.0);
         best.improve(&current);
         sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
         // What is left after a step is about its square, and the weights are as good as the step: a
@@ -98,12 +98,12 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
 /// no derivative.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
 ) {
     for face in difference.round_faces(&best.normal).into_iter().flatten() {
         let is_close = (face - best.normal).norm_squared() < N::lit(SLACK) * tolerance();
         if let Some((normal, _)) = unit(&face).filter(|_| is_close) {
-            best.improve(&Candidate::along(difference, normal));
+            best.improve(&SupportCandidate::along(difference, normal));
         }
     }
 }
@@ -122,7 +122,7 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
 /// The active points of both cores; `None` if all are corners.
 fn active<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Option<[ActiveSet<N, D>; 2]> {
     let mut sides = [Branches::new(), Branches::new()];
@@ -219,7 +219,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
 /// as these can determine a normal; says whether there were any.
 fn add_lower<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    current: &Candidate<N, D>,
+    current: &SupportCandidate<N, D>,
     sides: &mut [ActiveSet<N, D>; 2],
 ) -> bool {
     let mut added = false;
@@ -254,7 +254,7 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
 
 /// A step of the normal; the weights are set to those that go with it.
 fn step<N: Simplicial<D>, const D: usize>(
-    current: &Candidate<N, D>,
+    current: &SupportCandidate<N, D>,
     sides: &mut [ActiveSet<N, D>; 2],
 ) -> Option<Vector<N, D>> {
     let [first, second] = &*sides;

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, Vertex, noise};
 use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
@@ -26,7 +26,7 @@ const KEPT: usize = 8;
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     seen: &mut Bundle<N, D>,
-    best: &mut Candidate<N, D>,
+    best: &mut SupportCandidate<N, D>,
 ) {
     let mut bundle = seen.clone();
     for _ in 0..ROUNDS {
@@ -35,7 +35,7 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
         if !worth_it {
             return;
         }
-        let candidate = Candidate::along(difference, normal);
+        let candidate = SupportCandidate::along(difference, normal);
         best.improve(&candidate);
         if bundle.iter().any(|vertex| vertex.point == candidate.vertex.point) {
             return;

@@ -8,7 +8,7 @@
 
 use smallvec::SmallVec;
 
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::polish::polish;
@@ -33,7 +33,7 @@ const STEPS: usize = 43;
 /// The normal of a ring that is better than the one of this height, brought to the last digits, with the
 /// points that lie lowest along it or nearly so.
 pub(super) struct Better<N: Real> {
-    pub(super) best: Candidate<N, 3>,
+    pub(super) best: SupportCandidate<N, 3>,
     pub(super) mix: Option<Mix<N, 3>>,
     pub(super) lowest: SmallVec<[Vertex<N, 3>; 8]>,
 }
@@ -86,7 +86,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     fn height(&self, difference: &dyn Difference<N, 3>, angle: N) -> N {
-        Candidate::along(difference, self.at(angle)).height
+        SupportCandidate::along(difference, self.at(angle)).height
     }
 
     /// The normal across is about as good as one of this height that the ring is measured from. Else heights vary
@@ -96,13 +96,17 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// The best normal, if it is higher than `least`, and the ring measured from it.
-    fn best(&self, difference: &dyn Difference<N, 3>, least: N) -> Option<(Self, Candidate<N, 3>)> {
-        let mut best: Option<(Self, Candidate<N, 3>)> = None;
+    fn best(
+        &self,
+        difference: &dyn Difference<N, 3>,
+        least: N,
+    ) -> Option<(Self, SupportCandidate<N, 3>)> {
+        let mut best: Option<(Self, SupportCandidate<N, 3>)> = None;
         for top in self.tops(difference) {
             let Some(ring) = self.turned(top).and_then(|ring| ring.risen(difference)) else {
                 continue;
             };
-            let found = Candidate::along(difference, ring.at(N::ZERO));
+            let found = SupportCandidate::along(difference, ring.at(N::ZERO));
             if found.height > best.as_ref().map_or(least, |(_, best)| best.height) {
                 best = Some((ring, found));
             }
@@ -157,7 +161,11 @@ impl<N: Real> NormalRing<N> {
 
     /// The normal that the ring is measured from, brought to the last digits: by Newton's method over the points
     /// that are lowest to all sides of it.
-    fn polished(&self, difference: &dyn Difference<N, 3>, start: Candidate<N, 3>) -> Better<N> {
+    fn polished(
+        &self,
+        difference: &dyn Difference<N, 3>,
+        start: SupportCandidate<N, 3>,
+    ) -> Better<N> {
         let slight = tolerance::<N>().sqrt();
         let sides = [self.aside, -self.aside, self.axis, -self.axis];
         let mut lowest: SmallVec<[Vertex<N, 3>; 8]> = sides

@@ -12,7 +12,7 @@ use crate::math::{Real, Vector};
 /// The scalar `Self` with the part of the algorithms that is particular to `D` dimensions.
 pub(crate) trait Simplicial<const D: usize>: Real {
     /// The point nearest to the origin of the hull of one to `D + 1` points.
-    fn nearest(points: &[Vector<Self, D>]) -> Nearest<Self, D>;
+    fn nearest(points: &[Vector<Self, D>]) -> NearestOfSimplex<Self, D>;
 
     /// Whether the planes of all facets of `D + 1` points are farther from the origin than a radius: where
     /// the points enclose the origin, they hold a ball around it. `false` for fewer points.
@@ -30,7 +30,7 @@ pub(crate) trait Simplicial<const D: usize>: Real {
 
 /// The point of a simplex nearest to the origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Nearest<N: Real, const D: usize> {
+pub(crate) struct NearestOfSimplex<N: Real, const D: usize> {
     /// The point. Its direction comes from the feature it lies in, not from a weighted sum of the
     /// corners, and is right however near the origin is.
     pub(super) point: Vector<N, D>,
@@ -42,7 +42,7 @@ pub(crate) struct Nearest<N: Real, const D: usize> {
     pub(super) enclosed: bool,
 }
 
-impl<N: Real, const D: usize> Nearest<N, D> {
+impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
     pub(super) fn new(point: Vector<N, D>, weights: [N; 4]) -> Self {
         Self { point, squared: point.norm_squared(), weights, enclosed: false }
     }
@@ -79,7 +79,7 @@ impl<N: Real, const D: usize> Nearest<N, D> {
 pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     points: &[Vector<N, D>],
     [i, j]: [usize; 2],
-) -> Nearest<N, D> {
+) -> NearestOfSimplex<N, D> {
     let (a, b) = (&points[i], &points[j]);
     let edge = b - a;
     let squared = edge.norm_squared();
@@ -88,7 +88,11 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     // The test of `squared` keeps the division below safe; NaN ends here too.
     let inside = squared > noise::<N>() * noise() && along > N::ZERO && back > N::ZERO;
     if !inside {
-        return if a_is_nearer { Nearest::corner(i, a) } else { Nearest::corner(j, b) };
+        return if a_is_nearer {
+            NearestOfSimplex::corner(i, a)
+        } else {
+            NearestOfSimplex::corner(j, b)
+        };
     }
     let end = if a_is_nearer { a } else { b };
     let across = end - edge * (end.dot(&edge) / squared);
@@ -96,7 +100,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     weights[j] = along / squared;
     weights[i] = N::ONE - weights[j];
     // Taking out what is left along the edge once more makes the direction right to the last bits.
-    Nearest::new(across - edge * (across.dot(&edge) / squared), weights)
+    NearestOfSimplex::new(across - edge * (across.dot(&edge) / squared), weights)
 }
 
 /// One to `D + 1` points of a difference.

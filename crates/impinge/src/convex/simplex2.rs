@@ -1,14 +1,14 @@
 //! Simplices of the plane: points, segments, triangles.
 
 use super::difference::{Difference, noise};
-use super::simplex::{Nearest, Simplex, Simplicial, nearest_on_segment};
+use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
 use super::{Separation, epa2};
 use crate::math::{Real, Vector, cross2, max, perp};
 
 impl<N: Real> Simplicial<2> for N {
-    fn nearest(points: &[Vector<N, 2>]) -> Nearest<N, 2> {
+    fn nearest(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 2> {
         match points {
-            [point] => Nearest::corner(0, point),
+            [point] => NearestOfSimplex::corner(0, point),
             [_, _] => nearest_on_side(points, [0, 1]),
             _ => nearest_in_triangle(points),
         }
@@ -36,20 +36,20 @@ impl<N: Real> Simplicial<2> for N {
 }
 
 /// As [`nearest_on_segment`]; in 2D the edge alone gives the direction.
-fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> Nearest<N, 2> {
+fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> NearestOfSimplex<N, 2> {
     let nearest = nearest_on_segment(points, [i, j]);
     if nearest.weights[i] == N::ZERO || nearest.weights[j] == N::ZERO {
         return nearest;
     }
     let end = if nearest.weights[i] > N::HALF { &points[i] } else { &points[j] };
     let across = perp(&(points[j] - points[i]));
-    Nearest::new(across * (across.dot(end) / across.norm_squared()), nearest.weights)
+    NearestOfSimplex::new(across * (across.dot(end) / across.norm_squared()), nearest.weights)
 }
 
 /// The three sides; each is opposite to the corner of its number.
 const SIDES: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> Nearest<N, 2> {
+fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 2> {
     let [a, b, c] = [points[0], points[1], points[2]];
     let (e, f) = (b - a, c - a);
     let area = cross2(&e, &f);
@@ -58,20 +58,20 @@ fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> Nearest<N, 2> {
     let flat = area * area <= noise::<N>() * noise::<N>() * longest;
     let (on_b, on_c) = (-cross2(&a, &f) / area, -cross2(&e, &a) / area);
     let weights = [N::ONE - on_b - on_c, on_b, on_c];
-    let mut best: Option<Nearest<N, 2>> = None;
+    let mut best: Option<NearestOfSimplex<N, 2>> = None;
     for (weight, side) in weights.into_iter().zip(SIDES) {
         if flat || weight <= N::ZERO {
             best = Some(nearest_on_side(points, side).or_nearer(best));
         }
     }
-    best.unwrap_or(Nearest::enclosed([weights[0], weights[1], weights[2], N::ZERO]))
+    best.unwrap_or(NearestOfSimplex::enclosed([weights[0], weights[1], weights[2], N::ZERO]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn nearest(points: &[[f64; 2]]) -> Nearest<f64, 2> {
+    fn nearest(points: &[[f64; 2]]) -> NearestOfSimplex<f64, 2> {
         let points: Vec<_> = points.iter().map(|&p| Vector::<f64, 2>::from(p)).collect();
         <f64 as Simplicial<2>>::nearest(&points)
     }

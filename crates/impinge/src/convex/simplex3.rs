@@ -1,14 +1,14 @@
 //! Simplices of space: points, segments, triangles, tetrahedra.
 
 use super::difference::{Difference, noise};
-use super::simplex::{Nearest, Simplex, Simplicial, nearest_on_segment};
+use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
 use super::{Separation, epa3};
 use crate::math::{Real, Vector, cross, max};
 
 impl<N: Real> Simplicial<3> for N {
-    fn nearest(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
+    fn nearest(points: &[Vector<N, 3>]) -> NearestOfSimplex<N, 3> {
         match points {
-            [point] => Nearest::corner(0, point),
+            [point] => NearestOfSimplex::corner(0, point),
             [_, _] => nearest_on_segment(points, [0, 1]),
             [_, _, _] => nearest_on_triangle(points, [0, 1, 2]),
             _ => nearest_in_tetrahedron(points),
@@ -40,7 +40,10 @@ impl<N: Real> Simplicial<3> for N {
 }
 
 /// The point of a triangle nearest to the origin. Flatter than the noise, it is its three sides.
-fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) -> Nearest<N, 3> {
+fn nearest_on_triangle<N: Real>(
+    points: &[Vector<N, 3>],
+    [i, j, k]: [usize; 3],
+) -> NearestOfSimplex<N, 3> {
     let (a, b, c) = (&points[i], &points[j], &points[k]);
     let (e, f) = (b - a, c - a);
     let normal = cross(&e, &f);
@@ -50,7 +53,7 @@ fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) 
     // The origin's coordinates in the frame of the sides from `a`: errors grow like 1/size only.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
-    let mut best: Option<Nearest<N, 3>> = None;
+    let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
         if flat || weight <= N::ZERO {
             let found = nearest_on_segment(points, side);
@@ -64,14 +67,14 @@ fn nearest_on_triangle<N: Real>(points: &[Vector<N, 3>], [i, j, k]: [usize; 3]) 
     best.unwrap_or_else(|| {
         let mut weights = [N::ZERO; 4];
         (weights[i], weights[j], weights[k]) = (on_a, on_b, on_c);
-        Nearest::new(normal * (normal.dot(a) / squared), weights)
+        NearestOfSimplex::new(normal * (normal.dot(a) / squared), weights)
     })
 }
 
 /// The four faces; each is opposite to the corner of its number.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
+fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<N, 3> {
     // Six times the signed volumes of the tetrahedron and of the parts that the origin cuts it in.
     let (mut parts, mut largest) = ([N::ZERO; 4], N::ZERO);
     let mut volume = N::ZERO;
@@ -83,7 +86,7 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
     }
     // Lower than the noise over its largest face: signs mean nothing, all four faces compete.
     let flat = volume * volume <= noise::<N>() * noise::<N>() * largest;
-    let mut best: Option<Nearest<N, 3>> = None;
+    let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (part, face) in parts.into_iter().zip(FACES) {
         if flat || part * volume <= N::ZERO {
             let found = nearest_on_triangle(points, face);
@@ -94,14 +97,14 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> Nearest<N, 3> {
             best = Some(found.or_nearer(best));
         }
     }
-    best.unwrap_or_else(|| Nearest::enclosed(parts.map(|part| part / volume)))
+    best.unwrap_or_else(|| NearestOfSimplex::enclosed(parts.map(|part| part / volume)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn nearest(points: &[[f64; 3]]) -> Nearest<f64, 3> {
+    fn nearest(points: &[[f64; 3]]) -> NearestOfSimplex<f64, 3> {
         let points: Vec<_> = points.iter().map(|&p| Vector::<f64, 3>::from(p)).collect();
         <f64 as Simplicial<3>>::nearest(&points)
     }

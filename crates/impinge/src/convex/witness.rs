@@ -6,7 +6,7 @@
 //! lower than the height, so none lies higher. So all depends on how near a mix comes to that point.
 
 use super::Separation;
-use super::candidate::Candidate;
+use super::candidate::SupportCandidate;
 use super::difference::{Difference, Moved, Vertex, noise, tolerance};
 use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
@@ -46,7 +46,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     }
 
     /// The point of the hull of up to `D + 1` points that is nearest to where `best` has it.
-    pub(super) fn nearest(best: &Candidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
+    pub(super) fn nearest(best: &SupportCandidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
         let target = best.normal * best.height;
         let moved = |vertex: &Vertex<N, D>| moved(vertex, &target);
         let mut simplex = Simplex::new(moved(&vertices[0]));
@@ -76,7 +76,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     }
 
     /// Whether the points lie across from each other and on the supporting planes, but for rounding.
-    pub(super) fn meets(&self, best: &Candidate<N, D>) -> bool {
+    pub(super) fn meets(&self, best: &SupportCandidate<N, D>) -> bool {
         let slack = N::TWO * noise();
         self.miss(&(best.normal * best.height)) <= slack * slack
     }
@@ -86,7 +86,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
 /// normal, and sideways until they lie exactly across from each other, the first by `share` of the
 /// way.
 pub(super) fn placed<N: Simplicial<D>, const D: usize>(
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
     share: N,
 ) -> Separation<N, D> {
@@ -108,7 +108,7 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
 /// lies aside tells which is which.
 fn share<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
 ) -> N {
     let (normal, across) = (best.normal, best.normal * best.height);
@@ -132,7 +132,7 @@ fn share<N: Simplicial<D>, const D: usize>(
 /// not enough, of points that are searched for.
 pub(super) fn settle<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Separation<N, D> {
@@ -145,7 +145,7 @@ pub(super) fn settle<N: Simplicial<D>, const D: usize>(
 /// The answer with a mix of `vertices` or, where these are not enough, of points searched for.
 pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     vertices: &[Vertex<N, D>],
 ) -> Separation<N, D> {
     let mix = mix(&(best.normal * best.height), vertices);
@@ -160,7 +160,7 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
 /// the proximal point method, as in `climb`.
 fn search<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    best: &Candidate<N, D>,
+    best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
 ) -> Separation<N, D> {
     let (mut found, mut mix) = (*best, *mix);
@@ -175,7 +175,7 @@ fn search<N: Simplicial<D>, const D: usize>(
         if miss < least {
             (found, mix, least) = (normal, other, miss);
         }
-        normal = Candidate::along(difference, candidate);
+        normal = SupportCandidate::along(difference, candidate);
         let worse = normal.height < best.height - tolerance();
         if mix.meets(&found) || worse {
             break;

@@ -9,11 +9,11 @@ use super::entry::{
 };
 use super::generator::DefaultContactDispatcher;
 use super::group::PairKey;
-use super::lanes::{Carried, Lane, Lanes, Location, contact_lane, kind_pair};
+use super::lanes::{Carried, Lane, Location, PairLanes, contact_lane, kind_pair};
 use super::reuse::{ReuseError, usable_tolerance};
 use super::state::ContactState;
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
-use super::update::Changes;
+use super::update::PairChanges;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::collide::ManifoldRequest;
 use crate::math::Space;
@@ -43,14 +43,14 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) pairs: PairTable,
     /// Where the state of each pair lies; in step with `pairs`.
     pub(super) locations: Vec<Location>,
-    pub(super) lanes: Lanes<N, D>,
+    pub(super) lanes: PairLanes<N, D>,
     /// How far pairs may move and keep their contacts; of no meaning where lanes have no references.
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
     /// The pairs made due since the last update; some may be gone again.
     pub(super) due: Vec<PairKey>,
     /// Empty but for their memory, from update to update.
-    pub(super) changes: Changes,
+    pub(super) changes: PairChanges,
     pub(super) picked: Vec<Location>,
     /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
@@ -95,11 +95,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             proximity_dispatcher: proximity,
             pairs: PairTable::new(),
             locations: Vec::new(),
-            lanes: Lanes::default(),
+            lanes: PairLanes::default(),
             tolerance: N::ZERO,
             ids: IdAllocator::new(),
             due: Vec::new(),
-            changes: Changes::new(),
+            changes: PairChanges::new(),
             picked: Vec::new(),
             recent: Recent::default(),
             order: OnceLock::new(),
@@ -153,7 +153,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let tolerance = usable_tolerance(tolerance)?;
         let Self { contact_dispatcher, proximity_dispatcher, .. } = self;
         let empty = Self::with_dispatchers(contact_dispatcher, proximity_dispatcher);
-        Ok(Self { lanes: Lanes::with_references(), tolerance, ..empty })
+        Ok(Self { lanes: PairLanes::with_references(), tolerance, ..empty })
     }
 
     /// Brings all pairs up to date, and now and then gives memory back.

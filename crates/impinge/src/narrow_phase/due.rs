@@ -5,7 +5,7 @@ use super::entry::{ContactEntry, ContactView};
 use super::group::Rows;
 use super::reuse::Reference;
 use super::state::ContactState;
-use super::update::{Changes, note_touching};
+use super::update::{PairChanges, note_touching};
 use crate::collide::{KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2, update_pairs3};
 use crate::math::Space;
 use crate::query::ContactManifold;
@@ -24,7 +24,7 @@ pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     /// Where in the rows they are.
     pub(super) places: &'t [usize],
     pub(super) table: &'t ObjectTable<N, D>,
-    pub(super) changes: &'t mut Changes,
+    pub(super) changes: &'t mut PairChanges,
 }
 
 /// [`update_pairs2`], for pairs of the narrow phase.

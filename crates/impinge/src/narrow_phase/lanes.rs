@@ -87,7 +87,7 @@ pub(crate) type CompositeGroup<N, const D: usize> = Group<
 
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
-pub(crate) struct Lanes<N: Space<D>, const D: usize> {
+pub(crate) struct PairLanes<N: Space<D>, const D: usize> {
     pub(crate) contacts: Vec<ContactGroup<N, D>>,
     pub(crate) composites: CompositeGroup<N, D>,
     pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
@@ -95,7 +95,7 @@ pub(crate) struct Lanes<N: Space<D>, const D: usize> {
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
 }
 
-impl<N: Space<D>, const D: usize> Default for Lanes<N, D> {
+impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
     fn default() -> Self {
         Self {
             contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
@@ -129,7 +129,7 @@ pub(crate) fn contact_lane<N: Real, const D: usize>(
     Lane::Contacts(kind_pair(shape1, shape2))
 }
 
-impl<N: Space<D>, const D: usize> Lanes<N, D> {
+impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     /// Without pairs, for contacts that may be kept while pairs hardly move.
     pub(crate) fn with_references() -> Self {
         let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();

@@ -6,7 +6,7 @@ use core::fmt;
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::math::{Pose, Real, Space};
 use crate::memory::Look;
-use crate::query::far::Bounds;
+use crate::query::far::ReachBounds;
 use crate::shape::ShapeHandle;
 
 /// The row of an object that has none.
@@ -48,10 +48,10 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     rows: Vec<u32>,
     /// By row, as all below.
     handles: Vec<CollisionObjectHandle>,
-    solids: Vec<Solid<N, D>>,
+    solids: Vec<ObjectSolid<N, D>>,
     /// Balls and boxes that hold the shapes: most pairs that are far apart are rejected by these, without a
     /// look at the shapes, which lie far off in memory.
-    bounds: Vec<Bounds<N, D>>,
+    bounds: Vec<ReachBounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
     /// The poses as the user gave them, for algorithms of the user's own.
     isometries: Vec<N::Isometry>,
@@ -76,7 +76,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
 /// What every query of a pair reads of an object: of `f32` in 3D one cache line.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-struct Solid<N: Real, const D: usize> {
+struct ObjectSolid<N: Real, const D: usize> {
     pose: Pose<N, D>,
     shape: ShapeHandle<N, D>,
 }
@@ -153,7 +153,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if self.has_row(index) {
             let (place, row) = (self.row(index), row());
             self.handles[place] = row.handle;
-            self.bounds[place] = Bounds::of(row.shape.as_ref());
+            self.bounds[place] = ReachBounds::of(row.shape.as_ref());
             self.solids[place].shape = row.shape;
             self.queries[place] = row.query;
             self.set_position(index, &row.isometry);
@@ -166,9 +166,9 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.changed.push(index);
         self.is_written.push(true);
         self.handles.push(row.handle);
-        self.bounds.push(Bounds::of(row.shape.as_ref()));
+        self.bounds.push(ReachBounds::of(row.shape.as_ref()));
         let pose = row.shape.geometry().pose_at(&row.isometry);
-        self.solids.push(Solid { pose, shape: row.shape });
+        self.solids.push(ObjectSolid { pose, shape: row.shape });
         self.isometries.push(row.isometry);
         self.queries.push(row.query);
     }
@@ -292,7 +292,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// What holds the shape.
     #[inline]
-    pub(crate) fn bounds(&self, index: u32) -> &Bounds<N, D> {
+    pub(crate) fn bounds(&self, index: u32) -> &ReachBounds<N, D> {
         &self.bounds[self.row(index)]
     }
 

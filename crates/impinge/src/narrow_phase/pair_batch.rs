@@ -15,7 +15,7 @@ use crate::pairs::pack;
 const AT_ONCE: usize = 16;
 
 /// Some pairs, by handle index.
-type Keys = SmallVec<[PairKey; AT_ONCE]>;
+type BatchKeys = SmallVec<[PairKey; AT_ONCE]>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Takes in the pairs that began and lets those go that ended, as
@@ -35,8 +35,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         };
         let (mut starting, mut stopping) = (all(true), all(false));
         loop {
-            let started: Keys = starting.by_ref().take(AT_ONCE).collect();
-            let stopped: Keys = stopping.by_ref().take(AT_ONCE).collect();
+            let started: BatchKeys = starting.by_ref().take(AT_ONCE).collect();
+            let stopped: BatchKeys = stopping.by_ref().take(AT_ONCE).collect();
             if started.is_empty() && stopped.is_empty() {
                 return;
             }

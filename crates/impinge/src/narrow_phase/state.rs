@@ -8,7 +8,7 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::far::{Apart, Bounds};
+use crate::query::far::{Apart, ReachBounds};
 use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
@@ -20,7 +20,7 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) pose2: &'a Pose<N, D>,
     pub(crate) shape2: &'a dyn Shape<N, D>,
     /// What holds the shapes, if that is known without asking them.
-    pub(crate) bounds: Option<[&'a Bounds<N, D>; 2]>,
+    pub(crate) bounds: Option<[&'a ReachBounds<N, D>; 2]>,
     /// Both are one object, which is tested against itself.
     pub(crate) is_self: bool,
 }

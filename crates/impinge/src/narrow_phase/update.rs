@@ -19,10 +19,10 @@ use crate::math::Space;
 const SPARSE: usize = 8;
 
 /// Places of pairs in a chunk.
-type Places = SmallVec<[usize; CHUNK]>;
+type LanePlaces = SmallVec<[usize; CHUNK]>;
 
 /// What changed, pair by pair.
-pub(super) type Changes = Vec<(PairKey, Change)>;
+pub(super) type PairChanges = Vec<(PairKey, Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Brings all pairs up to date with the rows of the table and reports what changed.
@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Goes through all pairs, lane by lane.
-    fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
+    fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         let reuse = Reuse { table, tolerance: self.tolerance };
         // Of the hundreds of groups most are empty.
         for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
@@ -88,7 +88,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// One by one: algorithms of the user's share one source of names.
-    fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut Changes) {
+    fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         for place in 0..self.lanes.custom_contacts.keys().len() {
             if self.lanes.custom_contacts.rows().take_due(place, table) {
                 self.update_custom_contact(table, place, changes);
@@ -105,7 +105,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &mut self,
         table: &ObjectTable<N, D>,
         place: usize,
-        changes: &mut Changes,
+        changes: &mut PairChanges,
     ) {
         let mut rows = self.lanes.custom_contacts.rows();
         let (key, entry, _) = rows.row(place);
@@ -117,7 +117,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &mut self,
         table: &ObjectTable<N, D>,
         place: usize,
-        changes: &mut Changes,
+        changes: &mut PairChanges,
     ) {
         let mut rows = self.lanes.custom_proximity.rows();
         let (key, entry, _) = rows.row(place);
@@ -126,7 +126,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Updates the pairs of the objects that changed, and those that are due.
-    fn update_some(&mut self, table: &ObjectTable<N, D>, due: &[PairKey], changes: &mut Changes) {
+    fn update_some(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        due: &[PairKey],
+        changes: &mut PairChanges,
+    ) {
         let mut picked = core::mem::take(&mut self.picked);
         self.pick(table, due, &mut picked);
         for picked in picked.chunk_by(|one, other| one.lane == other.lane) {
@@ -157,7 +162,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &mut self,
         table: &ObjectTable<N, D>,
         picked: &[Location],
-        changes: &mut Changes,
+        changes: &mut PairChanges,
     ) {
         let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].lane {
@@ -200,7 +205,7 @@ pub(super) fn note_touching<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
     index: usize,
     is_touching: bool,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     if rows.set_touching(index, is_touching) {
         changes.push((rows.keys[index], Change::Contact { touching: is_touching }));
@@ -212,7 +217,7 @@ pub(super) fn note_touching<S, V, R>(
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
     let mut due = rows.take_all_due(reuse.table);
@@ -220,7 +225,7 @@ fn update_convex<N: Space<D>, const D: usize>(
     if may_keep {
         due.retain(|place| !reuse.keeps(&mut rows, place));
     }
-    let places: Places = due.indices().collect();
+    let places: LanePlaces = due.indices().collect();
     compute_convex(&mut rows, reuse.table, &places, solids, changes);
     if may_keep {
         places.iter().for_each(|&place| reuse.note(&mut rows, place));
@@ -238,7 +243,7 @@ fn compute_convex<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     places: &[usize],
     solids: Option<&[Solid<N, D>; 2]>,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
@@ -255,13 +260,13 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
     picked: &[Location],
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     let first = picked[0].place as usize;
     let solids = rows.states[first].state.solids().copied();
     let may_keep = !has_ball(solids.as_ref());
     for picked in picked.chunks(CHUNK) {
-        let mut places: Places = picked.iter().map(|at| at.place as usize).collect();
+        let mut places: LanePlaces = picked.iter().map(|at| at.place as usize).collect();
         for &place in &places {
             rows.take_mark(place);
         }
@@ -290,7 +295,7 @@ fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     reuse: Reuse<'_, N, D>,
     place: usize,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     if !reuse.keeps(rows, place) {
         compute_contact(rows, reuse.table, place, changes);
@@ -303,7 +308,7 @@ fn compute_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     table: &ObjectTable<N, D>,
     place: usize,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     let (key, entry, view) = rows.row(place);
     let is_touching = entry.update(view, &posed(table, key));
@@ -315,7 +320,7 @@ fn update_status<N: Space<D>, const D: usize>(
     rows: &mut Rows<'_, ProximityEntry<N>, ()>,
     table: &ObjectTable<N, D>,
     place: usize,
-    changes: &mut Changes,
+    changes: &mut PairChanges,
 ) {
     let (key, entry, _) = rows.row(place);
     let change = entry.update(&posed(table, key));
@@ -326,8 +331,8 @@ fn update_status<N: Space<D>, const D: usize>(
 /// changed comes in the order of the group either way.
 fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sync>(
     group: &mut Group<S, V, R>,
-    changes: &mut Changes,
-    update: impl Fn(Rows<'_, S, V, R>, &mut Changes) + Sync,
+    changes: &mut PairChanges,
+    update: impl Fn(Rows<'_, S, V, R>, &mut PairChanges) + Sync,
 ) {
     let rows = group.rows();
     #[cfg(feature = "parallel")]
@@ -335,11 +340,11 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sy
         use rayon::prelude::*;
         let chunks: Vec<_> = rows.chunks().collect();
         let chunk = |rows| {
-            let mut changes = Changes::new();
+            let mut changes = PairChanges::new();
             update(rows, &mut changes);
             changes
         };
-        let results: Vec<Changes> = chunks.into_par_iter().map(chunk).collect();
+        let results: Vec<PairChanges> = chunks.into_par_iter().map(chunk).collect();
         changes.extend(results.into_iter().flatten());
         return;
     }
@@ -352,8 +357,8 @@ fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sy
 fn update_each<N: Space<D>, S, V, R, const D: usize>(
     mut rows: Rows<'_, S, V, R>,
     table: &ObjectTable<N, D>,
-    changes: &mut Changes,
-    update: impl Fn(&mut Rows<'_, S, V, R>, &ObjectTable<N, D>, usize, &mut Changes),
+    changes: &mut PairChanges,
+    update: impl Fn(&mut Rows<'_, S, V, R>, &ObjectTable<N, D>, usize, &mut PairChanges),
 ) {
     for place in 0..rows.len() {
         if rows.take_due(place, table) {

@@ -6,7 +6,7 @@ use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::entry::posed;
 use super::group::PairKey;
-use super::lanes::{CompositeGroup, ContactGroup, Lane, Lanes};
+use super::lanes::{CompositeGroup, ContactGroup, Lane, PairLanes};
 use super::state::KeptContacts;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
@@ -57,10 +57,10 @@ impl<'a, N: Space<D>, I: Iterator<Item = View<'a, N, D>>, const D: usize> Iterat
 /// assert_eq!((manifolds.len(), pair.num_contacts()), (1, 2));
 /// ```
 #[derive(Clone, Copy)]
-pub struct ContactPair<'a, N: Space<D>, const D: usize>(Contacts<'a, N, D>);
+pub struct ContactPair<'a, N: Space<D>, const D: usize>(ViewedContacts<'a, N, D>);
 
 #[derive(Clone, Copy)]
-enum Contacts<'a, N: Space<D>, const D: usize> {
+enum ViewedContacts<'a, N: Space<D>, const D: usize> {
     BuiltIn(BuiltIn<'a, N, D>),
     Composite(Composite<'a, N, D>),
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
@@ -112,16 +112,16 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     /// The contacts that an algorithm of one's own holds.
     #[must_use]
     pub fn from_algorithm(algorithm: &'a dyn ContactManifoldGenerator<N, D>) -> Self {
-        Self(Contacts::Custom(algorithm))
+        Self(ViewedContacts::Custom(algorithm))
     }
 
     /// How many contact points there are, over all manifolds.
     #[must_use]
     pub fn num_contacts(&self) -> usize {
         match self.0 {
-            Contacts::BuiltIn(pair) => pair.group.state(pair.place).state.len(),
-            Contacts::Composite(pair) => pair.group.state(pair.place).state.len(),
-            Contacts::Custom(algorithm) => algorithm.num_contacts(),
+            ViewedContacts::BuiltIn(pair) => pair.group.state(pair.place).state.len(),
+            ViewedContacts::Composite(pair) => pair.group.state(pair.place).state.len(),
+            ViewedContacts::Custom(algorithm) => algorithm.num_contacts(),
         }
     }
 
@@ -130,9 +130,9 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         let (mut own, mut parts, mut others) = (None, &[][..], Vec::new());
         match self.0 {
             // The common cases allocate nothing.
-            Contacts::BuiltIn(pair) => own = pair.manifold(),
-            Contacts::Composite(pair) => parts = pair.manifolds(),
-            Contacts::Custom(algorithm) => algorithm.contacts(&mut others),
+            ViewedContacts::BuiltIn(pair) => own = pair.manifold(),
+            ViewedContacts::Composite(pair) => parts = pair.manifolds(),
+            ViewedContacts::Custom(algorithm) => algorithm.contacts(&mut others),
         }
         own.into_iter().chain(parts).chain(others)
     }
@@ -140,9 +140,9 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     /// Pushes the manifolds that hold a contact.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
-            Contacts::BuiltIn(pair) => out.extend(pair.manifold()),
-            Contacts::Composite(pair) => out.extend(pair.manifolds()),
-            Contacts::Custom(algorithm) => algorithm.contacts(out),
+            ViewedContacts::BuiltIn(pair) => out.extend(pair.manifold()),
+            ViewedContacts::Composite(pair) => out.extend(pair.manifolds()),
+            ViewedContacts::Custom(algorithm) => algorithm.contacts(out),
         }
     }
 }
@@ -264,7 +264,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         table: &'a ObjectTable<N, D>,
         pieces: usize,
     ) -> impl Iterator<Item = impl Iterator<Item = View<'a, N, D>> + Send + 'a> + 'a {
-        let Lanes { contacts, composites, .. } = &self.lanes;
+        let PairLanes { contacts, composites, .. } = &self.lanes;
         // Cut between words of flags: first those of convex solids, then those of composites.
         let convex = ConvexViews::num_words(contacts);
         let words = convex + composites.touching().len();
@@ -307,15 +307,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             Lane::Contacts(group) => {
                 let group = &self.lanes.contacts[usize::from(group)];
                 let pair = BuiltIn { table, group, place: location.place };
-                Some(ContactPair(Contacts::BuiltIn(pair)))
+                Some(ContactPair(ViewedContacts::BuiltIn(pair)))
             }
             Lane::Composites => {
                 let (group, place) = (&self.lanes.composites, location.place);
-                Some(ContactPair(Contacts::Composite(Composite { table, group, place })))
+                Some(ContactPair(ViewedContacts::Composite(Composite { table, group, place })))
             }
             Lane::CustomContacts => {
                 let entry = self.lanes.custom_contacts.state(location.place);
-                Some(ContactPair(Contacts::Custom(&*entry.algorithm)))
+                Some(ContactPair(ViewedContacts::Custom(&*entry.algorithm)))
             }
             _ => None,
         }

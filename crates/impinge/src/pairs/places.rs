@@ -11,7 +11,7 @@ const LEAST: usize = 256;
 
 /// A link, named by its two ends, and its place.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct PlaceEntry {
     key: u64,
     place: u32,
 }
@@ -20,7 +20,7 @@ struct Entry {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
     /// A power of two of entries, at most half of them in use; or none.
-    entries: Vec<Entry>,
+    entries: Vec<PlaceEntry>,
     used: usize,
 }
 
@@ -41,7 +41,7 @@ impl Places {
         }
         let place = self.place_of(key);
         self.used += usize::from(self.entries[place].place == FREE);
-        self.entries[place] = Entry { key, place: value };
+        self.entries[place] = PlaceEntry { key, place: value };
     }
 
     /// Takes the link out, if it is there: entries behind it that could not stand here before move
@@ -101,7 +101,7 @@ impl Places {
 
     fn grow(&mut self) {
         let length = (2 * self.entries.len()).max(LEAST);
-        let free = Entry { key: 0, place: FREE };
+        let free = PlaceEntry { key: 0, place: FREE };
         let old = core::mem::replace(&mut self.entries, vec![free; length]);
         for entry in old.iter().filter(|entry| entry.place != FREE) {
             let place = self.place_of(entry.key);

@@ -28,13 +28,13 @@ impl<N: Real> Stop<N> {
 
 /// A right-handed frame whose second vector is the axis; the identity for the y axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame<N: Real> {
+pub(super) struct RevolutionFrame<N: Real> {
     across: Vector<N, 3>,
     axis: Vector<N, 3>,
     third: Vector<N, 3>,
 }
 
-impl<N: Real> Frame<N> {
+impl<N: Real> RevolutionFrame<N> {
     /// The frame around a unit vector.
     pub(super) fn around(axis: Vector<N, 3>) -> Self {
         let (across, _) = orthonormal_basis(&axis);
@@ -55,7 +55,7 @@ impl<N: Real> Frame<N> {
 /// The surface that a profile, from the far end of the axis to the near one, leaves behind in a turn of
 /// `count` parts.
 pub(super) fn revolve<N: Real>(
-    frame: &Frame<N>,
+    frame: &RevolutionFrame<N>,
     count: u32,
     profile: &[Stop<N>],
 ) -> TriangleSurface<N> {
@@ -76,7 +76,7 @@ pub(super) fn revolve<N: Real>(
 
 /// The surface as it grows, band by band.
 struct Bands<'a, N: Real> {
-    frame: &'a Frame<N>,
+    frame: &'a RevolutionFrame<N>,
     directions: Vec<Vector<N, 2>>,
     surface: TriangleSurface<N>,
 }

@@ -2,7 +2,7 @@
 
 use super::TriangleSurface;
 use super::circle::{direction, parts_of_turn};
-use super::revolution::{Frame, Stop, revolve};
+use super::revolution::{RevolutionFrame, Stop, revolve};
 use crate::math::{Point, Real, Vector, min, unit_or};
 use crate::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolyhedron, Cuboid, Cylinder, Ellipsoid, Feature,
@@ -31,7 +31,8 @@ pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
     // cos(π / n) · cos(π / 4k) of the radius, which is not below cos²(π / n).
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
-    let sphere = Sphere { radius: ball.radius(), frame: Frame::around(up()), axis: up(), quarter };
+    let sphere =
+        Sphere { radius: ball.radius(), frame: RevolutionFrame::around(up()), axis: up(), quarter };
     let profile: Vec<_> =
         (0..=2 * quarter).map(|index| sphere.stop(&Point::origin(), index)).collect();
     revolve(&sphere.frame, count, &profile)
@@ -49,7 +50,8 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 3>, subdivisions: u32) -> TriangleS
     let quarter = count.div_ceil(4);
     let (a, b) = (capsule.segment().a(), capsule.segment().b());
     let axis = unit_or(&(b - a), up());
-    let sphere = Sphere { radius: capsule.radius(), frame: Frame::around(axis), axis, quarter };
+    let sphere =
+        Sphere { radius: capsule.radius(), frame: RevolutionFrame::around(axis), axis, quarter };
     let far = (0..=quarter).map(|index| sphere.stop(b, index));
     let near = (quarter..=2 * quarter).map(|index| sphere.stop(a, index));
     let profile: Vec<_> = far.chain(near).collect();
@@ -94,7 +96,7 @@ pub fn tapered_capsule<N: Real>(
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let axis = capsule.taper().map_or_else(up, |taper| taper.along);
-    let frame = Frame::around(axis);
+    let frame = RevolutionFrame::around(axis);
     let sphere = |end: usize| Sphere { radius: capsule.radii()[end], frame, axis, quarter };
     let parallels = |end: usize| {
         let sphere = sphere(end);
@@ -149,7 +151,7 @@ pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleS
         Stop { center: on_axis(bottom), radius, before: beside, after: below },
         Stop::smooth(on_axis(bottom), N::ZERO, below),
     ];
-    revolve(&Frame::around(up()), parts_of_turn(subdivisions), &profile)
+    revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
 /// `n = subdivisions` triangles up to the apex and `n` in the base that meet at its middle.
@@ -169,7 +171,7 @@ pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
         Stop { center: base, radius, before: slope, after: below },
         Stop::smooth(base, N::ZERO, below),
     ];
-    revolve(&Frame::around(up()), parts_of_turn(subdivisions), &profile)
+    revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
 /// Twelve triangles between the eight vertices of a box.
@@ -228,7 +230,7 @@ pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
 #[derive(Clone, Copy)]
 struct Sphere<N: Real> {
     radius: N,
-    frame: Frame<N>,
+    frame: RevolutionFrame<N>,
     axis: Vector<N, 3>,
     quarter: u32,
 }

@@ -79,7 +79,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
 
 /// What holds a shape in its own frame: a ball around the origin and a box.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds<N: Real, const D: usize> {
+pub(crate) struct ReachBounds<N: Real, const D: usize> {
     /// The radius of the ball; infinite where none is known, and the box then says nothing.
     extent: N,
     middle: Vector<N, D>,
@@ -87,7 +87,7 @@ pub(crate) struct Bounds<N: Real, const D: usize> {
     turns: bool,
 }
 
-impl<N: Real, const D: usize> Bounds<N, D> {
+impl<N: Real, const D: usize> ReachBounds<N, D> {
     /// Those of a shape.
     pub(crate) fn of(shape: &dyn Shape<N, D>) -> Self {
         let (geometry, aabb) = (shape.geometry(), shape.local_aabb());
@@ -180,9 +180,9 @@ mod tests {
         let corners = [[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]].map(Point::<f64, 3>::from);
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let plane = Plane::<f64, 3>::new(Vector::<f64, 3>::y_axis());
-        assert_eq!(Bounds::of(&Cuboid::new(half)).reach(), 3.0, "its corner");
-        assert_eq!(Bounds::of(&mesh).reach(), 5.0, "of the box, as there is no ball");
-        assert_eq!(Bounds::of(&plane).reach(), f64::INFINITY, "it has no end");
+        assert_eq!(ReachBounds::of(&Cuboid::new(half)).reach(), 3.0, "its corner");
+        assert_eq!(ReachBounds::of(&mesh).reach(), 5.0, "of the box, as there is no ball");
+        assert_eq!(ReachBounds::of(&plane).reach(), f64::INFINITY, "it has no end");
     }
 
     /// A solid of any kind that has a ball, with sizes between nothing and one.
@@ -240,7 +240,7 @@ mod tests {
         let (mut rejected, mut boxed, mut moved) = (0, 0, 0);
         for round in 0..4000 {
             let shapes = [draw(random, round % kinds), draw(random, round / kinds % kinds)];
-            let bounds = [Bounds::of(shapes[0].as_ref()), Bounds::of(shapes[1].as_ref())];
+            let bounds = [ReachBounds::of(shapes[0].as_ref()), ReachBounds::of(shapes[1].as_ref())];
             let shapes = [shapes[0].geometry(), shapes[1].geometry()];
             let apart = Apart { shapes, between: Vector::<N, D>::zeros() };
             let limit = N::lit([0.0, 0.25, -0.1][round % 3]);

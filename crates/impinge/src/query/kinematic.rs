@@ -8,7 +8,7 @@ mod tests;
 use core::fmt;
 
 pub use self::own::ContactSide;
-use self::side::Side;
+use self::side::KinematicSide;
 use super::Contact;
 use crate::collide::{Pair, RawPoint};
 use crate::convex::Separation;
@@ -116,7 +116,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         normal: &Vector<N, D>,
         point: &RawPoint<N, D>,
     ) -> Self {
-        Sides::new(pair, normal).kinematic(point)
+        KinematicSides::new(pair, normal).kinematic(point)
     }
 
     /// The feature of the first solid that touches.
@@ -268,11 +268,11 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             NormalRule::Second => pose12.vector(&self.normal2),
             NormalRule::Edges(edge1, edge2) => {
                 let edge2 = NeighborhoodGeometry::Line(pose12.vector(&edge2));
-                let lines = Lines::along(NeighborhoodGeometry::Line(edge1), edge2);
+                let lines = SlideLines::along(NeighborhoodGeometry::Line(edge1), edge2);
                 lines.upright(&self.normal1)
             }
             NormalRule::Geometry => {
-                let lines = Lines::along(self.geometry1, geometry2);
+                let lines = SlideLines::along(self.geometry1, geometry2);
                 lines.connection(&self.local1, point2, &self.normal1)
             }
         }
@@ -286,19 +286,19 @@ fn least_angle<N: Real>() -> N {
 }
 
 /// What the kinematics of all points of one manifold have in common.
-pub(super) struct Sides<'a, N: Real, const D: usize> {
+pub(super) struct KinematicSides<'a, N: Real, const D: usize> {
     pose12: &'a Pose<N, D>,
     /// The manifold's normal in the frames of the two solids.
     normal1: Vector<N, D>,
     normal2: Vector<N, D>,
-    side1: Side<N, D>,
-    side2: Side<N, D>,
+    side1: KinematicSide<N, D>,
+    side2: KinematicSide<N, D>,
     turns: [bool; 2],
     /// The rule of points whose own geometry does not give the normal, once it was asked for.
     rule: Option<NormalRule<N, D>>,
 }
 
-impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
+impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
     /// The sides of a manifold whose normal is given in the frame of the first solid.
     pub(super) fn new(pair: &'a Pair<'_, N, D>, normal: &Vector<N, D>) -> Self {
         let normal2 = pair.pose12.inverse_vector(normal);
@@ -306,8 +306,8 @@ impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
             pose12: &pair.pose12,
             normal1: *normal,
             normal2,
-            side1: Side::new(pair.first, *normal),
-            side2: Side::new(pair.second, -normal2),
+            side1: KinematicSide::new(pair.first, *normal),
+            side2: KinematicSide::new(pair.second, -normal2),
             turns: [pair.first, pair.second].map(|kind| Geometry(kind).turns()),
             rule: None,
         }
@@ -355,8 +355,8 @@ impl<'a, N: Real, const D: usize> Sides<'a, N, D> {
 
 /// Edges of the two solids, each in its own frame, whose crossing gives the manifold its normal.
 fn level_edges<N: Real, const D: usize>(
-    side1: &Side<N, D>,
-    side2: &Side<N, D>,
+    side1: &KinematicSide<N, D>,
+    side2: &KinematicSide<N, D>,
     pose12: &Pose<N, D>,
 ) -> Option<(Vector<N, D>, Vector<N, D>)> {
     let (edge1, edge2) = (side1.level_edge()?, side2.level_edge()?);
@@ -376,13 +376,13 @@ impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
 }
 
 /// Orthonormal directions that a contact may slide along: none, one or two.
-struct Lines<N: Real, const D: usize> {
+struct SlideLines<N: Real, const D: usize> {
     first: Vector<N, D>,
     second: Vector<N, D>,
     are_two: bool,
 }
 
-impl<N: Real, const D: usize> Lines<N, D> {
+impl<N: Real, const D: usize> SlideLines<N, D> {
     fn along(geometry1: NeighborhoodGeometry<N, D>, geometry2: NeighborhoodGeometry<N, D>) -> Self {
         let direction = |geometry| match geometry {
             NeighborhoodGeometry::Line(along) => along,

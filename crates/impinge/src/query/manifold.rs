@@ -1,6 +1,6 @@
 //! Contact manifolds as users see them: world frame, kinematics, ids.
 
-use super::kinematic::Sides;
+use super::kinematic::KinematicSides;
 use super::{Contact, ContactKinematic};
 use crate::collide::{Pair, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
@@ -208,7 +208,7 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     placement: &Placement<'_, N, D>,
     old: ContactManifold<N, D>,
 ) -> ContactManifold<N, D> {
-    let mut sides = Sides::new(pair, &raw.normal);
+    let mut sides = KinematicSides::new(pair, &raw.normal);
     let normal = placement.pose1.vector(&raw.normal);
     let tracked = |point: &RawPoint<N, D>| {
         let contact = placed(&raw.normal, point, placement.pose1, normal);

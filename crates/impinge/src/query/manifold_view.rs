@@ -88,11 +88,11 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 /// # assert!(world.contains(a) && world.contains(b));
 /// ```
 #[derive(Clone, Copy)]
-pub struct ManifoldView<'a, N: Real, const D: usize>(Kept<'a, N, D>);
+pub struct ManifoldView<'a, N: Real, const D: usize>(ViewSource<'a, N, D>);
 
 /// What a view looks at.
 #[derive(Clone, Copy, Debug)]
-enum Kept<'a, N: Real, const D: usize> {
+enum ViewSource<'a, N: Real, const D: usize> {
     /// The contacts of two convex solids.
     Convex(&'a RawManifold<N, D>, Placement<'a, N, D>),
     /// Some of the contacts of a composite.
@@ -110,17 +110,17 @@ impl<N: Real, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
 
 impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     pub(crate) fn of_convex(raw: &'a RawManifold<N, D>, placement: Placement<'a, N, D>) -> Self {
-        Self(Kept::Convex(raw, placement))
+        Self(ViewSource::Convex(raw, placement))
     }
 
     pub(super) fn of_patch(patch: &'a Patch<N, D>, placement: Placement<'a, N, D>) -> Self {
-        Self(Kept::Patch(patch, placement))
+        Self(ViewSource::Patch(patch, placement))
     }
 
     /// A view of a manifold; `None` if it is empty.
     #[must_use]
     pub fn of_manifold(manifold: &'a ContactManifold<N, D>) -> Option<Self> {
-        (!manifold.is_empty()).then_some(Self(Kept::Made(manifold)))
+        (!manifold.is_empty()).then_some(Self(ViewSource::Made(manifold)))
     }
 
     /// How many contacts it holds: at least one.
@@ -129,9 +129,9 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
     pub fn len(&self) -> usize {
         match self.0 {
-            Kept::Convex(raw, _) => raw.points.len(),
-            Kept::Patch(patch, _) => patch.points.len(),
-            Kept::Made(manifold) => manifold.len(),
+            ViewSource::Convex(raw, _) => raw.points.len(),
+            ViewSource::Patch(patch, _) => patch.points.len(),
+            ViewSource::Made(manifold) => manifold.len(),
         }
     }
 
@@ -144,9 +144,9 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
             Unit::new_unchecked(if placement.is_swapped { -normal } else { normal })
         };
         match self.0 {
-            Kept::Convex(raw, placement) => world(&raw.normal, &placement),
-            Kept::Patch(patch, placement) => world(&patch.normal, &placement),
-            Kept::Made(manifold) => manifold.contacts()[0].contact.normal,
+            ViewSource::Convex(raw, placement) => world(&raw.normal, &placement),
+            ViewSource::Patch(patch, placement) => world(&patch.normal, &placement),
+            ViewSource::Made(manifold) => manifold.contacts()[0].contact.normal,
         }
     }
 
@@ -161,9 +161,9 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[must_use]
     pub fn deepest_contact(&self) -> ContactPoint<N, D> {
         let depth = |index: usize| match self.0 {
-            Kept::Convex(raw, _) => -raw.points[index].distance,
-            Kept::Patch(patch, _) => -patch.points[index].raw.distance,
-            Kept::Made(manifold) => manifold.contacts()[index].contact.depth,
+            ViewSource::Convex(raw, _) => -raw.points[index].distance,
+            ViewSource::Patch(patch, _) => -patch.points[index].raw.distance,
+            ViewSource::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
         let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
         self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
@@ -174,9 +174,9 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[inline]
     fn own_normal(&self) -> [Vector<N, D>; 2] {
         let (own, pose1) = match self.0 {
-            Kept::Convex(raw, placement) => (raw.normal, placement.pose1),
-            Kept::Patch(patch, placement) => (patch.normal, placement.pose1),
-            Kept::Made(_) => return [Vector::<N, D>::zeros(); 2],
+            ViewSource::Convex(raw, placement) => (raw.normal, placement.pose1),
+            ViewSource::Patch(patch, placement) => (patch.normal, placement.pose1),
+            ViewSource::Made(_) => return [Vector::<N, D>::zeros(); 2],
         };
         [own, pose1.vector(&own)]
     }
@@ -185,12 +185,14 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[inline]
     fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
-            Kept::Convex(raw, placement) => point(normal, &raw.points[index], [0; 2], &placement),
-            Kept::Patch(patch, placement) => {
+            ViewSource::Convex(raw, placement) => {
+                point(normal, &raw.points[index], [0; 2], &placement)
+            }
+            ViewSource::Patch(patch, placement) => {
                 let found = &patch.points[index];
                 point(normal, &found.raw, found.parts, &placement)
             }
-            Kept::Made(manifold) => {
+            ViewSource::Made(manifold) => {
                 let made = &manifold.contacts()[index];
                 ContactPoint {
                     contact: made.contact,

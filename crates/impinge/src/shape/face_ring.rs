@@ -1,7 +1,7 @@
 //! The face of a 3D solid with few corners, in lists of fixed size.
 
 use crate::math::{Point, Real, Vector};
-use crate::shape::solids::cuboid::Part;
+use crate::shape::solids::cuboid::CuboidPart;
 use crate::shape::tilt::Tilt;
 use crate::shape::{Cuboid, FeatureId};
 
@@ -51,7 +51,7 @@ impl<N: Real> Cuboid<N, 3> {
     /// The name of what [`core_feature`](super::SupportMap::core_feature) answers of a box with a volume.
     #[inline]
     pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
-        Part::<3>::facing(direction, Tilt::usual()).name()
+        CuboidPart::<3>::facing(direction, Tilt::usual()).name()
     }
 
     /// Makes a blank ring the face with a number; answers whether it has an area.
@@ -60,7 +60,7 @@ impl<N: Real> Cuboid<N, 3> {
         if (0..3).any(|other| other != axis && self.half_extents()[other] == N::ZERO) {
             return false;
         }
-        let (ring, sides) = &Part::<3>::FACES[index as usize];
+        let (ring, sides) = &CuboidPart::<3>::FACES[index as usize];
         face.id = FeatureId::Face(index);
         face.normal[axis] = if is_negative { -N::ONE } else { N::ONE };
         for (&corner, &side) in ring.corners.iter().zip(sides) {

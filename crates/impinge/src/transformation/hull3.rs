@@ -1,7 +1,7 @@
 //! Convex hulls in 3D.
 
-use super::hull_faces::{Face, faces, redundant};
-use super::quickhull::{Facet, Surface};
+use super::hull_faces::{HullFace, faces, redundant};
+use super::quickhull::{Facet, HullSurface};
 use super::span::{Scaled, first_four};
 use crate::math::{Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
@@ -93,7 +93,7 @@ impl Grown {
         let points = Scaled { points, unit: scaled.unit };
         let index_of = |index: usize| u32::try_from(index).expect("a hull of at most 2³² points");
         let first = first_four(&points)?.map(index_of);
-        let facets = Surface::grown(&points.points, first, 2.0 * scaled.unit);
+        let facets = HullSurface::grown(&points.points, first, 2.0 * scaled.unit);
         let facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
         Ok(Self { named, points, facets })
     }
@@ -110,7 +110,7 @@ impl Grown {
     fn indexed<N: Real>(&self) -> IndexedHull<N> {
         let name = |vertex: &u32| self.named[*vertex as usize];
         let (mut loops, mut normals) = (Vec::<Vec<usize>>::new(), Vec::new());
-        for Face { normal, ring } in faces(&self.facets, &self.points) {
+        for HullFace { normal, ring } in faces(&self.facets, &self.points) {
             loops.push(ring.iter().map(name).collect());
             normals.push(normal.map(N::lit));
         }

@@ -89,7 +89,7 @@ fn widest_normal<'a>(
 
 /// A face of the hull.
 #[derive(Clone, Debug)]
-pub(super) struct Face {
+pub(super) struct HullFace {
     /// The outward unit normal of the largest triangle in it: the hull has no point in front of that,
     /// however much smaller triangles are bent within the tolerance.
     pub(super) normal: Vector<f64, 3>,
@@ -100,15 +100,15 @@ pub(super) struct Face {
 /// The faces: triangles within the tolerance of one plane are one face.
 ///
 /// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
-pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Face> {
+pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<HullFace> {
     let points = &scaled.points;
     let mut faces = Merger::new(facets, scaled).merged();
     if !(straighten(&mut faces, scaled) && is_closed(&faces)) {
         let triangle =
-            |facet: &Facet| Face { normal: facet.normal(points), ring: facet.corners.to_vec() };
+            |facet: &Facet| HullFace { normal: facet.normal(points), ring: facet.corners.to_vec() };
         faces = facets.iter().map(triangle).collect();
     }
-    for Face { ring, .. } in &mut faces {
+    for HullFace { ring, .. } in &mut faces {
         let first = (1..ring.len()).fold(0, |first, candidate| {
             let is_before = precedes(&points[at(ring[candidate])], &points[at(ring[first])]);
             if is_before { candidate } else { first }
@@ -120,7 +120,7 @@ pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<Face> {
 
 /// A corner of a face that grows, and the facet beyond the side to the next corner.
 #[derive(Clone, Copy)]
-struct Corner {
+struct HullCorner {
     vertex: u32,
     beyond: u32,
 }
@@ -147,7 +147,7 @@ impl<'a> Merger<'a> {
     }
 
     /// Grows a face from each facet that is in none yet, the largest first.
-    fn merged(mut self) -> Vec<Face> {
+    fn merged(mut self) -> Vec<HullFace> {
         let mut seeds: Vec<u32> = (0..).take(self.facets.len()).collect();
         let area = |facet: u32| self.facets[at(facet)].doubled_area();
         seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
@@ -155,7 +155,7 @@ impl<'a> Merger<'a> {
         for seed in seeds {
             if !self.is_taken[at(seed)] {
                 let normal = self.facets[at(seed)].normal(self.points);
-                faces.push(Face { normal, ring: self.grow(seed) });
+                faces.push(HullFace { normal, ring: self.grow(seed) });
             }
         }
         faces
@@ -167,7 +167,7 @@ impl<'a> Merger<'a> {
         let mut ring = Vec::with_capacity(4);
         for side in 0..3 {
             self.in_face_of[at(facet.corners[side])] = seed + 1;
-            ring.push(Corner { vertex: facet.corners[side], beyond: facet.neighbors[side] });
+            ring.push(HullCorner { vertex: facet.corners[side], beyond: facet.neighbors[side] });
         }
         // Each success takes one facet more; after a whole turn without any the face is done.
         let (mut position, mut failures) = (0, 0);
@@ -185,7 +185,7 @@ impl<'a> Merger<'a> {
 
     /// Takes in the facet beyond a side, if it lies in the plane of the seed and the face stays
     /// convex.
-    fn take_beyond(&mut self, seed: u32, ring: &mut Vec<Corner>, position: usize) -> bool {
+    fn take_beyond(&mut self, seed: u32, ring: &mut Vec<HullCorner>, position: usize) -> bool {
         let (from, beyond) = (ring[position].vertex, ring[position].beyond);
         let facet = &self.facets[at(beyond)];
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
@@ -203,12 +203,12 @@ impl<'a> Merger<'a> {
         ring[position].beyond = facet.neighbors[shared];
         ring.insert(
             position + 1,
-            Corner { vertex: far, beyond: facet.neighbors[(shared + 1) % 3] },
+            HullCorner { vertex: far, beyond: facet.neighbors[(shared + 1) % 3] },
         );
         true
     }
 
-    fn stays_convex(&self, seed: u32, ring: &[Corner], position: usize, far: u32) -> bool {
+    fn stays_convex(&self, seed: u32, ring: &[HullCorner], position: usize, far: u32) -> bool {
         let count = ring.len();
         let vertex = |step: usize| ring[(position + step) % count].vertex;
         let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
@@ -227,7 +227,7 @@ impl<'a> Merger<'a> {
 /// Drops the vertices that only two faces share: in each of them the sides there form one line. Answers
 /// false if there is one where they do not, as where two faces that hardly lean against each other meet all
 /// around: a vertex of two sides is none.
-fn straighten(faces: &mut [Face], scaled: &Scaled<3>) -> bool {
+fn straighten(faces: &mut [HullFace], scaled: &Scaled<3>) -> bool {
     let mut uses = vec![(0_u32, [0_usize; 2]); scaled.points.len()];
     for (index, face) in faces.iter().enumerate() {
         for &vertex in &face.ring {
@@ -259,8 +259,8 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
 }
 
 /// Each side of a face is, backwards, the side of one other face.
-fn is_closed(faces: &[Face]) -> bool {
-    let sides = |Face { ring, .. }: &Face| {
+fn is_closed(faces: &[HullFace]) -> bool {
+    let sides = |HullFace { ring, .. }: &HullFace| {
         let next = ring.iter().cycle().skip(1);
         ring.iter().copied().zip(next.copied()).collect::<Vec<_>>()
     };

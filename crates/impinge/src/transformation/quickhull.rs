@@ -29,7 +29,7 @@ pub(super) struct Facet {
 }
 
 /// The surface while it grows.
-pub(super) struct Surface<'a> {
+pub(super) struct HullSurface<'a> {
     points: &'a [P3],
     facets: Vec<Facet>,
     /// Points no higher than this above every facet are left outside.
@@ -79,7 +79,7 @@ impl Facet {
     }
 }
 
-impl<'a> Surface<'a> {
+impl<'a> HullSurface<'a> {
     /// The facets of the hull, grown from a tetrahedron of four of the points; `None` if these lie in
     /// a plane.
     pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {

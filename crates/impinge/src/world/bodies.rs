@@ -44,7 +44,7 @@ pub(crate) struct Body<N: Space<D>, const D: usize> {
 
 /// What happened to an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Changes {
+struct BodyChanges {
     /// Another object, shape or query type: the whole row is to be written.
     row: bool,
     /// The shape or query type of an object that may have pairs.
@@ -57,10 +57,10 @@ struct Changes {
 
 /// An object that changed.
 #[derive(Clone, Debug)]
-struct Entry<N: Real, const D: usize> {
+struct BodyEntry<N: Real, const D: usize> {
     /// The handle index; [`GONE`] if the object is.
     index: u32,
-    changes: Changes,
+    changes: BodyChanges,
     /// The exact box of the shape where the object is now, if the volume changed.
     aabb: Aabb<N, D>,
 }
@@ -68,7 +68,7 @@ struct Entry<N: Real, const D: usize> {
 /// The objects that changed since the last update, each once.
 #[derive(Debug)]
 pub(crate) struct ChangeList<N: Real, const D: usize> {
-    entries: Vec<Entry<N, D>>,
+    entries: Vec<BodyEntry<N, D>>,
     /// Memory for their handle indices in order.
     order: Vec<u32>,
     /// Of the last update: those whose pairs with themselves begin or end.
@@ -178,7 +178,7 @@ impl<N: Space<D>, const D: usize> Body<N, D> {
     /// Hands the changes since the last update on, and forgets them.
     pub(crate) fn flush(&mut self, list: &mut ChangeList<N, D>, readers: &mut Readers<'_, N, D>) {
         let Some(place) = self.place() else { return };
-        let Entry { changes, aabb, .. } = list.entries[place];
+        let BodyEntry { changes, aabb, .. } = list.entries[place];
         self.set_place(PLACE);
         if self.wants_self_pair() != self.has_self_pair() {
             self.state ^= SELF_PAIR;
@@ -244,7 +244,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         let mut body = Body { shape, isometry, solid, proxy, state: PLACE, handle, groups, query };
         let entry = self.note(&mut body);
         entry.aabb = aabb;
-        entry.changes = Changes { row: true, volume: true, ..Changes::default() };
+        entry.changes = BodyChanges { row: true, volume: true, ..BodyChanges::default() };
         body
     }
 
@@ -320,13 +320,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Lists an object as changed.
-    fn note(&mut self, body: &mut Body<N, D>) -> &mut Entry<N, D> {
+    fn note(&mut self, body: &mut Body<N, D>) -> &mut BodyEntry<N, D> {
         let place = body.place().unwrap_or_else(|| {
             let place = self.entries.len();
             let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
             body.set_place(small.expect("a world holds fewer than 2^31 objects"));
-            let (index, changes) = (body.index(), Changes::default());
-            self.entries.push(Entry { index, changes, aabb: Aabb::unbounded() });
+            let (index, changes) = (body.index(), BodyChanges::default());
+            self.entries.push(BodyEntry { index, changes, aabb: Aabb::unbounded() });
             place
         });
         &mut self.entries[place]

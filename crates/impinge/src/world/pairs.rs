@@ -11,24 +11,24 @@ use crate::query::{ContactManifold, ManifoldView};
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
 /// Two objects and a manifold of theirs.
-type View<'a, N, const D: usize, T> =
+type PairView<'a, N, const D: usize, T> =
     (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
 /// Manifolds with their objects. Written out, since the closure of an adapter would be a call for each.
-struct Views<'a, N: Space<D>, const D: usize, T, I> {
+struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
     views: I,
 }
 
 /// Two handles and a manifold.
-type Named<'a, N, const D: usize> =
+type NamedPair<'a, N, const D: usize> =
     (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
 
-impl<'a, N: Space<D>, const D: usize, T, I> Iterator for Views<'a, N, D, T, I>
+impl<'a, N: Space<D>, const D: usize, T, I> Iterator for PairViews<'a, N, D, T, I>
 where
-    I: Iterator<Item = Named<'a, N, D>>,
+    I: Iterator<Item = NamedPair<'a, N, D>>,
 {
-    type Item = View<'a, N, D, T>;
+    type Item = PairView<'a, N, D, T>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
@@ -143,7 +143,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> {
         let views = self.narrow_phase.contact_views(&self.objects);
-        Views { objects: &self.objects, views }
+        PairViews { objects: &self.objects, views }
     }
 
     /// What [`Self::contact_views`] gives, in its order, cut into at most so many pieces of about as many
@@ -182,12 +182,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn contact_view_pieces(
         &self,
         pieces: usize,
-    ) -> Vec<impl Iterator<Item = View<'_, N, D, T>> + Send>
+    ) -> Vec<impl Iterator<Item = PairView<'_, N, D, T>> + Send>
     where
         T: Sync,
     {
         let pieces = self.narrow_phase.contact_view_pieces(&self.objects, pieces);
-        let views = pieces.into_iter().map(|views| Views { objects: &self.objects, views });
+        let views = pieces.into_iter().map(|views| PairViews { objects: &self.objects, views });
         views.collect()
     }
 

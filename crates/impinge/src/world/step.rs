@@ -121,7 +121,7 @@ pub(super) fn in_order(
 
 /// What a pair was at the last update, if anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Status {
+enum StepStatus {
     Touching,
     Near(Proximity),
 }
@@ -213,13 +213,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// The pairs that something is to be said of, sorted.
-    fn statuses(&self) -> Vec<(HandlePair, Status)> {
+    fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);
-        let touching = touching.map(|(h1, h2, _)| ((h1, h2), Status::Touching));
+        let touching = touching.map(|(h1, h2, _)| ((h1, h2), StepStatus::Touching));
         let proximities = self.narrow_phase.proximity_pairs(&self.objects);
         let near = proximities.filter(|(_, _, pair)| pair.proximity() != Proximity::Disjoint);
-        let near = near.map(|(h1, h2, pair)| ((h1, h2), Status::Near(pair.proximity())));
+        let near = near.map(|(h1, h2, pair)| ((h1, h2), StepStatus::Near(pair.proximity())));
         let mut statuses: Vec<_> = touching.chain(near).collect();
         statuses.sort_unstable();
         statuses
@@ -228,11 +228,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// The events that lead from one sorted list of statuses to another.
 fn push_differences(
-    before: &[(HandlePair, Status)],
-    after: &[(HandlePair, Status)],
+    before: &[(HandlePair, StepStatus)],
+    after: &[(HandlePair, StepStatus)],
     events: &mut Events,
 ) {
-    let find = |list: &[(HandlePair, Status)], pair| {
+    let find = |list: &[(HandlePair, StepStatus)], pair| {
         let found = list.binary_search_by_key(&pair, |&(other, _)| other);
         found.ok().map(|place| list[place].1)
     };
@@ -249,13 +249,13 @@ fn push_differences(
 /// The events that lead from one status of a pair to another.
 fn push_change(
     (collider1, collider2): HandlePair,
-    before: Option<Status>,
-    after: Option<Status>,
+    before: Option<StepStatus>,
+    after: Option<StepStatus>,
     events: &mut Events,
 ) {
-    let touching = |status| status == Some(Status::Touching);
+    let touching = |status| status == Some(StepStatus::Touching);
     let proximity = |status| match status {
-        Some(Status::Near(proximity)) => proximity,
+        Some(StepStatus::Near(proximity)) => proximity,
         _ => Proximity::Disjoint,
     };
     if touching(before) && !touching(after) {

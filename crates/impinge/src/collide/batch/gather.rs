@@ -7,15 +7,15 @@ use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide};
 
 /// A vector in each lane, by rows.
-type Rows<N, const D: usize> = [[N; LANES]; D];
+type LaneRows<N, const D: usize> = [[N; LANES]; D];
 
 /// What eight pairs are asked about: a row for each number, a column for each pair.
 pub(super) struct Inputs<N: Real, const D: usize> {
     /// By columns.
-    rotations: [[Rows<N, D>; D]; 2],
-    translations: [Rows<N, D>; 2],
+    rotations: [[LaneRows<N, D>; D]; 2],
+    translations: [LaneRows<N, D>; 2],
     /// The ends of a segment; the first is the half extents of a box.
-    ends: [[Rows<N, D>; 2]; 2],
+    ends: [[LaneRows<N, D>; 2]; 2],
     radii: [[N; LANES]; 2],
     prediction: [N; LANES],
     sine: [N; LANES],
@@ -155,7 +155,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
 }
 
 #[inline(always)]
-fn put<N: Real, const D: usize>(rows: &mut Rows<N, D>, lane: usize, vector: &Vector<N, D>) {
+fn put<N: Real, const D: usize>(rows: &mut LaneRows<N, D>, lane: usize, vector: &Vector<N, D>) {
     for axis in 0..D {
         rows[axis][lane & (LANES - 1)] = vector[axis];
     }
@@ -163,7 +163,7 @@ fn put<N: Real, const D: usize>(rows: &mut Rows<N, D>, lane: usize, vector: &Vec
 
 #[inline(always)]
 fn put_all<N: Real, const D: usize>(
-    columns: &mut [Rows<N, D>; D],
+    columns: &mut [LaneRows<N, D>; D],
     lane: usize,
     matrix: &Matrix<N, D>,
 ) {
@@ -177,7 +177,7 @@ fn put_all<N: Real, const D: usize>(
 #[inline(always)]
 fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
-    columns: &[Rows<N, D>; D],
+    columns: &[LaneRows<N, D>; D],
 ) -> [[V; D]; D] {
     by_axis(
         #[inline(always)]

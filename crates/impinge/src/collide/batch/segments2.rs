@@ -53,7 +53,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
             LaneSide::of(simd, &line, &ends1, radii[0], true),
             LaneSide::of(simd, &line, &ends2, radii[1], false),
         ];
-        let contacts = Contacts::of(simd, &line, &sides);
+        let contacts = SegmentContacts::of(simd, &line, &sides);
         contacts.store(found);
         line.tolerance.store(&mut found.tolerance);
         let is_apart = apart.is_known & line.distance.simd_gt(line.prediction);
@@ -77,14 +77,14 @@ impl<N: Real> Form<N, 2> for Segments2 {
 }
 
 /// A point or vector of the plane in each lane.
-type Plane<V> = [V; 2];
+type PlaneLanes<V> = [V; 2];
 
 /// The line perpendicular to the normal through the nearest point of the first solid, and what is asked for: a
 /// [`Frame`](crate::collide::manifold::frame::Frame) in lanes.
 struct ContactLine<V> {
-    normal: Plane<V>,
-    tangent: Plane<V>,
-    point1: Plane<V>,
+    normal: PlaneLanes<V>,
+    tangent: PlaneLanes<V>,
+    point1: PlaneLanes<V>,
     distance: V,
     tolerance: V,
     prediction: V,
@@ -94,7 +94,7 @@ struct ContactLine<V> {
 impl<V> ContactLine<V> {
     /// The place on the line where a point is seen.
     #[inline(always)]
-    fn flat<S: Simd>(&self, point: &Plane<V>) -> V
+    fn flat<S: Simd>(&self, point: &PlaneLanes<V>) -> V
     where
         V: Wide<S>,
     {
@@ -120,7 +120,7 @@ impl<V> ContactLine<V> {
 struct LaneSide<V, M> {
     is_first: bool,
     /// The ends in the order of their places, and these.
-    ends: [Plane<V>; 2],
+    ends: [PlaneLanes<V>; 2],
     places: [V; 2],
     /// They are in the opposite order of the segment's.
     is_turned: M,
@@ -142,7 +142,7 @@ impl<V, M> LaneSide<V, M> {
     fn of<S: Simd, N: Real>(
         simd: S,
         line: &ContactLine<V>,
-        ends: &[Plane<V>; 2],
+        ends: &[PlaneLanes<V>; 2],
         radius: V,
         is_first: bool,
     ) -> Self
@@ -183,7 +183,7 @@ impl<V, M> LaneSide<V, M> {
 
     /// How far a point of the core is below the nearest point of the surface.
     #[inline(always)]
-    fn below_witness<S: Simd>(&self, point: &Plane<V>, line: &ContactLine<V>) -> V
+    fn below_witness<S: Simd>(&self, point: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
         V: Wide<S>,
     {
@@ -193,7 +193,7 @@ impl<V, M> LaneSide<V, M> {
 
     /// The point of the core that is seen at a place.
     #[inline(always)]
-    fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> Plane<V>
+    fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> PlaneLanes<V>
     where
         V: Wide<S, Scalar = N>,
     {
@@ -204,7 +204,7 @@ impl<V, M> LaneSide<V, M> {
 
     /// How far the rounded surface is above a point of the core, along the normal.
     #[inline(always)]
-    fn lift<S: Simd, N: Real>(&self, simd: S, core: &Plane<V>, line: &ContactLine<V>) -> V
+    fn lift<S: Simd, N: Real>(&self, simd: S, core: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -233,7 +233,7 @@ impl<V, M> LaneSide<V, M> {
 
 /// A pair of points that face each other.
 struct LaneContact<V, M> {
-    point1: Plane<V>,
+    point1: PlaneLanes<V>,
     distance: V,
     is_admitted: M,
     /// At the first end of the first segment; at the last; the same of the second segment.
@@ -299,7 +299,7 @@ impl<V, M> LaneContact<V, M> {
 }
 
 /// One contact or two.
-struct Contacts<V, M> {
+struct SegmentContacts<V, M> {
     first: LaneContact<V, M>,
     second: LaneContact<V, M>,
     is_two: M,
@@ -307,7 +307,7 @@ struct Contacts<V, M> {
     is_known: M,
 }
 
-impl<V, M> Contacts<V, M> {
+impl<V, M> SegmentContacts<V, M> {
     /// The ends of the interval that are admitted, the nearest points if there are none.
     ///
     /// Not known is what rounding would decide, and what takes the nearest points besides an end.

@@ -14,7 +14,7 @@ use crate::shape::FeatureId;
 pub(super) struct Segments3;
 
 /// The ends of a segment in each lane.
-type Ends<V> = [[V; 3]; 2];
+type SegmentEnds<V> = [[V; 3]; 2];
 
 impl<N: Real> Form<N, 3> for Segments3 {
     #[inline(always)]
@@ -62,14 +62,14 @@ impl<N: Real> Form<N, 3> for Segments3 {
 }
 
 /// Two points and the square of their distance.
-struct Points<V> {
-    points: Ends<V>,
+struct SegmentPoints<V> {
+    points: SegmentEnds<V>,
     squared: V,
 }
 
-impl<V> Points<V> {
+impl<V> SegmentPoints<V> {
     #[inline(always)]
-    fn new<S: Simd>(points: Ends<V>) -> Self
+    fn new<S: Simd>(points: SegmentEnds<V>) -> Self
     where
         V: Wide<S>,
     {
@@ -100,9 +100,9 @@ impl<V> Points<V> {
 #[inline(always)]
 fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    ends1: &Ends<V>,
-    ends2: &Ends<V>,
-) -> (Ends<V>, V::Mask) {
+    ends1: &SegmentEnds<V>,
+    ends2: &SegmentEnds<V>,
+) -> (SegmentEnds<V>, V::Mask) {
     let on1 = [
         nearest_on_segment(simd, ends1, &ends2[0]).point,
         nearest_on_segment(simd, ends1, &ends2[1]).point,
@@ -111,12 +111,12 @@ fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         nearest_on_segment(simd, ends2, &ends1[0]).point,
         nearest_on_segment(simd, ends2, &ends1[1]).point,
     ];
-    let mut best = Points::new([ends1[0], on2[0]]);
+    let mut best = SegmentPoints::new([ends1[0], on2[0]]);
     for points in [[ends1[1], on2[1]], [on1[0], ends2[0]], [on1[1], ends2[1]]] {
-        best = best.or_nearer(&Points::new(points), None);
+        best = best.or_nearer(&SegmentPoints::new(points), None);
     }
     let (common, is_common, is_moderate) = common_perpendicular(simd, ends1, ends2);
-    (best.or_nearer(&Points::new(common), Some(is_common)).points, is_moderate)
+    (best.or_nearer(&SegmentPoints::new(common), Some(is_common)).points, is_moderate)
 }
 
 /// The power of two at or below a number from 2⁻¹⁶ to 2¹⁶, and where it is one.
@@ -148,9 +148,9 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    ends1: &Ends<V>,
-    ends2: &Ends<V>,
-) -> (Ends<V>, V::Mask, V::Mask) {
+    ends1: &SegmentEnds<V>,
+    ends2: &SegmentEnds<V>,
+) -> (SegmentEnds<V>, V::Mask, V::Mask) {
     let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
     let (toward1, inverse1, is_moderate1) = scaled(simd, &along1);
     let (toward2, inverse2, is_moderate2) = scaled(simd, &along2);
@@ -175,8 +175,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    [ends1, ends2]: [&Ends<V>; 2],
-    points: &Ends<V>,
+    [ends1, ends2]: [&SegmentEnds<V>; 2],
+    points: &SegmentEnds<V>,
 ) -> ([V; 3], V, V::Mask) {
     let mut reach = V::all(simd, N::ZERO);
     for end in [&ends1[0], &ends1[1], &ends2[0], &ends2[1]] {
@@ -194,7 +194,7 @@ fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    [ends1, ends2]: [&Ends<V>; 2],
+    [ends1, ends2]: [&SegmentEnds<V>; 2],
     normal: &[V; 3],
     sine: V,
 ) -> V::Mask {
@@ -221,7 +221,7 @@ impl<N: Real> EightContacts<N, 3> {
         &mut self,
         place: usize,
         point: &[V; 3],
-        [first, last]: &Ends<V>,
+        [first, last]: &SegmentEnds<V>,
         noise: V,
     ) -> V::Mask {
         let along = minus(last, first);

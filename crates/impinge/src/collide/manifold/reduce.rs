@@ -193,7 +193,7 @@ fn weight<N: Real>(point: &Projected<N>) -> N {
 }
 
 /// The coordinates of few points and what they count for, side by side for vectors.
-struct Rows<N: Real> {
+struct CoordinateRows<N: Real> {
     x: [[N; LANES]; FEW / LANES],
     y: [[N; LANES]; FEW / LANES],
     weights: [[N; LANES]; FEW / LANES],
@@ -204,7 +204,7 @@ struct Rows<N: Real> {
 /// How many numbers are treated side by side.
 const LANES: usize = 4;
 
-impl<N: Real> Rows<N> {
+impl<N: Real> CoordinateRows<N> {
     #[inline]
     fn of(points: &[Projected<N>]) -> Self {
         let zero = [[N::ZERO; LANES]; FEW / LANES];
@@ -240,7 +240,7 @@ impl<N: Real> Rows<N> {
 /// unless there may be four; `None` if all points lie in a row.
 fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) -> Option<Indices> {
     let (mut ends, mut most) = ([0; 2], N::ZERO);
-    let rows = Rows::of(points);
+    let rows = CoordinateRows::of(points);
     for (first, start) in points.iter().enumerate().filter(|(_, point)| point.is_deepest) {
         for (opposite, end) in points.iter().enumerate() {
             // A diagonal between two deepest points is tried once.

@@ -8,7 +8,8 @@ use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_ce
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    of_parts,
 };
 use crate::bounding_volume::Aabb;
 use crate::collide::packet::{LANES, PartGap};
@@ -64,7 +65,7 @@ struct Rolling<'b, 'a, N: Real> {
 }
 
 /// A triangle as the middle of the ball sees it.
-struct Seen<N: Real> {
+struct SeenTriangle<N: Real> {
     part: u32,
     triangle: Triangle<N, 3>,
     tolerance: N,
@@ -113,7 +114,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         // What is outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, seen.from_middle);
-        let way = Way { old: contacts.reference, clearance };
+        let way = Travelled { old: contacts.reference, clearance };
         self.from = advanced(self.between, &way, self.center);
         let around = &contacts.around;
         each_lane(
@@ -161,19 +162,19 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// One of the triangles that are kept; `None` where the numbers end.
-    fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<Seen<N>> {
+    fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<SeenTriangle<N>> {
         let corners = around.tiles()[index / LANES].corners(index % LANES);
         let [a, b, c] = corners.map(|corner| corner - self.between.pose21.translation);
         let triangle = Triangle::try_new(a, b, c).ok()?;
         let size = self.ball.radius() + triangle.reach();
         let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
-        Some(Seen { part: around.parts()[index], triangle, tolerance })
+        Some(SeenTriangle { part: around.parts()[index], triangle, tolerance })
     }
 
     /// Adds the contact of a triangle, if there is one.
     fn add(
         &self,
-        seen: &Seen<N>,
+        seen: &SeenTriangle<N>,
         around: &PartCache<N, 3>,
         (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
     ) {
@@ -199,7 +200,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn plainly(
         &self,
-        seen: &Seen<N>,
+        seen: &SeenTriangle<N>,
         found: &Separation<N, 3>,
         arena: &mut Arena<N, 3>,
     ) -> Option<Option<PartContact<N, 3>>> {
@@ -237,7 +238,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// What the surface says of the way from the ball to a triangle.
     fn filtered_normal(
         &self,
-        seen: &Seen<N>,
+        seen: &SeenTriangle<N>,
         found: &Separation<N, 3>,
         over: FeatureId,
     ) -> FilteredNormal<N, 3> {

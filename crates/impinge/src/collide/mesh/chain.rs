@@ -9,7 +9,8 @@ use super::part_contact::{Arena, PartContact, PartStatus};
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Way, advanced, is_settled, middle_of_first, of_parts,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    of_parts,
 };
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::manifold::{Along, SegmentPair};
@@ -81,20 +82,20 @@ struct Chain<'b, 'a, N: Real> {
 }
 
 /// The segments that are kept: all that overlap a box.
-struct Kept<'t, N: Real> {
+struct KeptLinks<'t, N: Real> {
     tiles: &'t [Tiles<N, 2>],
     parts: &'t [u32],
     within: Aabb<N, 2>,
 }
 
-impl<N: Real> Kept<'_, N> {
+impl<N: Real> KeptLinks<'_, N> {
     fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
         let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
         [a, b]
     }
 }
 
-impl<N: Real> KnownSegments<N> for Kept<'_, N> {
+impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
     fn are_all_at(&self, point: &Point<N, 2>) -> bool {
         self.tiles.len() <= MAX_SEARCHED && self.within.contains_point(point)
     }
@@ -121,7 +122,7 @@ impl<N: Real> KnownSegments<N> for Kept<'_, N> {
 }
 
 /// A segment of the chain within reach of the solid.
-struct Link<'c, 'b, 'a, N: Real> {
+struct ChainLink<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
     parts: [u32; 2],
     segment: Segment<N, 2>,
@@ -202,9 +203,9 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let mut near = Links::new(depth_in(&aabb, &self.center));
         links(&question, &mut near)?;
         let slack = relative_slack::<N>() * (near.from_middle + self.size + limit);
-        let way = Way { old: contacts.reference, clearance: near.from_middle - slack };
+        let way = Travelled { old: contacts.reference, clearance: near.from_middle - slack };
         self.from = advanced(self.between, &way, self.center);
-        let kept = Kept { tiles: around.tiles(), parts: around.parts(), within: aabb };
+        let kept = KeptLinks { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
             if let Some(link) = self.link(&kept, *index, found) {
                 link.find(part_contacts, &mut arena.points)?;
@@ -216,10 +217,10 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     /// One of the segments that are kept; `None` if it cannot be touched or is not finitely far away.
     fn link<'c>(
         &'c self,
-        kept: &'c Kept<'_, N>,
+        kept: &'c KeptLinks<'_, N>,
         index: usize,
         found: &Separation<N, 2>,
-    ) -> Option<Link<'c, 'b, 'a, N>> {
+    ) -> Option<ChainLink<'c, 'b, 'a, N>> {
         if !found.distance.is_finite_number() {
             return None;
         }
@@ -232,7 +233,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let segment = Segment::of_finite(a, b);
         let size = segment.reach() + self.size;
         let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
-        Some(Link { chain: self, parts, segment, known, found: *found, tolerance })
+        Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
     /// A direction from the first of a pair to the second, from the solid to the chain in the solid's frame.
@@ -256,9 +257,13 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     }
 }
 
-impl<N: Real> Link<'_, '_, '_, N> {
+impl<N: Real> ChainLink<'_, '_, '_, N> {
     /// Finds the contact of the segment, if there is one; `None` where that is left to the general way.
-    fn find(&self, part_contacts: &mut PartContacts<N, 2>, points: &mut Points<N>) -> Option<()> {
+    fn find(
+        &self,
+        part_contacts: &mut PartContacts<N, 2>,
+        points: &mut ChainPoints<N>,
+    ) -> Option<()> {
         let normal = self.chain.outward(&self.found.normal);
         let filtered = self.filtered_normal(&normal);
         let start = points.len();
@@ -317,7 +322,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
     }
 
     /// Appends the contacts at the nearest points with a normal, and answers it as the pieces have it.
-    fn between(&self, normal: &Vector<N, 2>, points: &mut Points<N>) -> Option<Vector<N, 2>> {
+    fn between(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let witness = Separation { normal: inward, ..self.found };
         self.pair().between(&witness, |point| points.push(self.chain.placed(point, &inward)))?;
@@ -325,7 +330,7 @@ impl<N: Real> Link<'_, '_, '_, N> {
     }
 
     /// Appends the contacts along a normal, and answers it as the pieces have it.
-    fn along(&self, normal: &Vector<N, 2>, points: &mut Points<N>) -> Option<Vector<N, 2>> {
+    fn along(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;
         let least = if distance > -self.tolerance { distance } else { -N::INFINITY };
@@ -336,4 +341,4 @@ impl<N: Real> Link<'_, '_, '_, N> {
 }
 
 /// The points of all pieces.
-type Points<N> = super::patch::Points<N, 2>;
+type ChainPoints<N> = super::patch::Points<N, 2>;

@@ -30,7 +30,7 @@ pub(super) fn least_length<N: Real>() -> N {
 }
 
 /// A convex first shape, as the second sees it.
-pub(super) struct Probe<'a, N: Real, const D: usize> {
+pub(super) struct CullProbe<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
     /// Its core is the middle alone.
     is_ball: bool,
@@ -50,7 +50,7 @@ pub(super) struct Bound<N> {
     pub(super) is_beyond: bool,
 }
 
-impl<'a, N: Space<D>, const D: usize> Probe<'a, N, D> {
+impl<'a, N: Space<D>, const D: usize> CullProbe<'a, N, D> {
     /// `None` of two composites and of half-spaces.
     pub(super) fn new(between: &'a Between<'a, N, D>, reach: N) -> Option<Self> {
         let Pair { first, .. } = between.pair;
@@ -230,7 +230,7 @@ mod tests {
         let pose12 = Pose::identity();
         let pair = Pair { first: geometries.0.0, second: geometries.1.0, pose12 };
         let between = Between::of_pair(&pair);
-        let probe = Probe::new(&between, reach).expect("a convex solid");
+        let probe = CullProbe::new(&between, reach).expect("a convex solid");
         let everywhere = Aabb::new(P3::from([-9.0; 3]), P3::from([9.0; 3]));
         let mut around = PartCache::default();
         assert!(around.reaches(&mesh, &everywhere), "one triangle is kept");

@@ -27,7 +27,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
 }
 
 /// Which of eight parts may be near, and how near.
-pub(super) struct Bounds<N> {
+pub(super) struct LowerBounds<N> {
     /// A bit for each part that may be within reach.
     pub(super) near: u8,
     /// Those in the box are at least so far from the middle of the solid; zero if that is not known.
@@ -36,7 +36,7 @@ pub(super) struct Bounds<N> {
 
 impl<N: Real, const D: usize> LowerBoundQuery<N, D> {
     /// The bounds of eight parts.
-    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> Bounds<N> {
+    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> LowerBounds<N> {
         at(Level::new(), tiles, self)
     }
 }
@@ -46,7 +46,7 @@ fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &Tiles<N, D>,
     query: &LowerBoundQuery<N, D>,
-) -> Bounds<N> {
+) -> LowerBounds<N> {
     with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query))
 }
 
@@ -55,7 +55,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     tiles: &Tiles<N, D>,
     query: &LowerBoundQuery<N, D>,
-) -> Bounds<N> {
+) -> LowerBounds<N> {
     let corners: [[V; D]; 3] = [
         load(simd, &tiles.corners[0]),
         load(simd, &tiles.corners[1]),
@@ -83,7 +83,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     let known_bound = is_bound.select(from_middle, V::all(simd, N::ZERO));
     is_in.select(known_bound, V::all(simd, N::INFINITY)).store(&mut known);
     let near = bits(is_in & !is_beyond);
-    Bounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
+    LowerBounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 
 /// The parts whose boxes overlap that of the search.

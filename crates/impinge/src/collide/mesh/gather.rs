@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::cull::Probe;
+use super::cull::CullProbe;
 use super::part_cache::PartCache;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
@@ -15,14 +15,14 @@ use crate::shape::CompositeShape;
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
 /// A bit for each part of tiles.
-pub(super) type Near = SmallVec<[u8; 8]>;
+pub(super) type NearBits = SmallVec<[u8; 8]>;
 
 /// What of two shapes may be within reach of each other.
 pub(super) struct Nearby<N: Real> {
     /// In order.
     pub(super) parts: PartPairs,
     /// The same as bits for each of the tiles that are kept; empty if there are none.
-    pub(super) near: Near,
+    pub(super) near: NearBits,
     /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
     /// nothing is known.
     pub(super) clearance: N,
@@ -38,10 +38,11 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
     reach: N,
     around: Option<&mut PartCache<N, D>>,
 ) -> Nearby<N> {
-    let ([None, Some(parts2)], Some(probe)) = (between.composites(), Probe::new(between, reach))
+    let ([None, Some(parts2)], Some(probe)) =
+        (between.composites(), CullProbe::new(between, reach))
     else {
         let parts = candidates(between, is_self, reach);
-        return Nearby { parts, near: Near::new(), clearance: N::ZERO };
+        return Nearby { parts, near: NearBits::new(), clearance: N::ZERO };
     };
     let aabb = search_box(between, reach);
     if let Some(around) = around
@@ -57,18 +58,18 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
         !bound.is_beyond
     });
     parts.sort_unstable();
-    Nearby { parts, near: Near::new(), clearance }
+    Nearby { parts, near: NearBits::new(), clearance }
 }
 
 /// Of the parts that are kept those that may be within reach.
 fn near_kept<N: Space<D>, const D: usize>(
-    probe: &Probe<'_, N, D>,
+    probe: &CullProbe<'_, N, D>,
     composite: &dyn CompositeShape<N, D>,
     around: &mut PartCache<N, D>,
     aabb: &Aabb<N, D>,
 ) -> Nearby<N> {
     let query = probe.lower_bound_query(around, aabb);
-    let (mut parts, mut near) = (PartPairs::new(), Near::new());
+    let (mut parts, mut near) = (PartPairs::new(), NearBits::new());
     let mut clearance = depth_in(aabb, probe.center());
     for (block, kept) in around.parts().chunks(LANES).enumerate() {
         let bounds = around.tiles().get(block).map(|tiles| query.bounds(tiles));

@@ -24,14 +24,14 @@ const MAX_HIDING: usize = 16;
 
 /// Where a face lies to the plane of another.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum PlaneSide {
     Front,
     Back,
     Across,
 }
 
 /// A face that is touched.
-struct Face<N: Real, const D: usize> {
+struct TouchedFace<N: Real, const D: usize> {
     contact: usize,
     /// How far its part is from the solid.
     distance: N,
@@ -42,7 +42,8 @@ struct Face<N: Real, const D: usize> {
 }
 
 /// The faces, and for each corner of each the number of the corner and the index of the face; in order.
-type Faces<N, const D: usize> = (SmallVec<[Face<N, D>; 8]>, SmallVec<[(u64, usize); 24]>);
+type TouchedFaces<N, const D: usize> =
+    (SmallVec<[TouchedFace<N, D>; 8]>, SmallVec<[(u64, usize); 24]>);
 
 /// Leaves out the contacts of a convex solid with faces that others hide, with which they share a corner.
 ///
@@ -80,8 +81,8 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &[PartContact<N, D>],
-) -> Faces<N, D> {
-    let (mut faces, mut shared) = Faces::default();
+) -> TouchedFaces<N, D> {
+    let (mut faces, mut shared) = TouchedFaces::default();
     faces.reserve(contacts.len());
     shared.reserve(3 * contacts.len());
     for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
@@ -92,7 +93,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.map(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, faces.len())));
-        faces.push(Face { contact, distance: *distance, normal, corners });
+        faces.push(TouchedFace { contact, distance: *distance, normal, corners });
     }
     shared.sort_unstable();
     (faces, shared)
@@ -104,13 +105,16 @@ pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N,
 }
 
 /// Which of two contacts is hidden: its face is behind the other, but the other is not behind it.
-fn hidden_of<N: Real, const D: usize>(a: &Face<N, D>, b: &Face<N, D>) -> Option<usize> {
+fn hidden_of<N: Real, const D: usize>(
+    a: &TouchedFace<N, D>,
+    b: &TouchedFace<N, D>,
+) -> Option<usize> {
     if are_alike(&a.normal, &b.normal) {
         return None;
     }
     let (back, front) = match (place(a, b), place(b, a)) {
-        (Place::Back, Place::Front) => (a, b),
-        (Place::Front, Place::Back) => (b, a),
+        (PlaneSide::Back, PlaneSide::Front) => (a, b),
+        (PlaneSide::Front, PlaneSide::Back) => (b, a),
         _ => return None,
     };
     // What is farther hides nothing, so that the prediction never changes what overlaps.
@@ -118,7 +122,10 @@ fn hidden_of<N: Real, const D: usize>(a: &Face<N, D>, b: &Face<N, D>) -> Option<
 }
 
 /// Where a part lies to the plane of another.
-fn place<N: Real, const D: usize>(part: &Face<N, D>, plane: &Face<N, D>) -> Place {
+fn place<N: Real, const D: usize>(
+    part: &TouchedFace<N, D>,
+    plane: &TouchedFace<N, D>,
+) -> PlaneSide {
     let origin = plane.corners[0];
     let (mut low, mut high, mut level) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
     let mut size = N::ZERO;
@@ -131,8 +138,8 @@ fn place<N: Real, const D: usize>(part: &Face<N, D>, plane: &Face<N, D>) -> Plac
     }
     let room = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
     match (low - level < -room, high - level > room) {
-        (true, false) => Place::Back,
-        (false, true) => Place::Front,
-        _ => Place::Across,
+        (true, false) => PlaneSide::Back,
+        (false, true) => PlaneSide::Front,
+        _ => PlaneSide::Across,
     }
 }

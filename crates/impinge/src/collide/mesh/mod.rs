@@ -155,7 +155,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = Some(&mut self.around);
         let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
-        let way = Way { old: self.reference, clearance: nearby.clearance };
+        let way = Travelled { old: self.reference, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
         let around = Some(&self.around);
         let query = Query { between, around, reference: &reference, request: &of_parts };
@@ -216,7 +216,7 @@ fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Opti
 }
 
 /// Where the middle of the first shape was.
-struct Way<N: Real, const D: usize> {
+struct Travelled<N: Real, const D: usize> {
     old: Reference<N, D>,
     /// No part of the second shape is nearer to where it is.
     clearance: N,
@@ -226,10 +226,10 @@ struct Way<N: Real, const D: usize> {
 /// from where it was leads through the surface and is no longer than the shape is.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    way: &Way<N, D>,
+    way: &Travelled<N, D>,
     center: Point<N, D>,
 ) -> Point<N, D> {
-    let Way { old, clearance } = *way;
+    let Travelled { old, clearance } = *way;
     let [_, composite] = between.composites();
     let composite = composite.filter(|composite| composite.surface().is_some());
     let map = Geometry(between.pair.first).as_support_map();

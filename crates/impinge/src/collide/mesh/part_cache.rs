@@ -9,7 +9,7 @@ use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangl
 
 /// The room that is searched around a box to find parts for later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Room {
+enum CacheRoom {
     /// Where it holds no more parts than are looked at side by side.
     #[default]
     Large,
@@ -19,7 +19,7 @@ enum Room {
     None,
 }
 
-impl Room {
+impl CacheRoom {
     /// As a share of the half extents of the box.
     fn share(self) -> f64 {
         match self {
@@ -46,13 +46,13 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
-    room: Room,
+    room: CacheRoom,
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
     /// For one update alone.
     pub(super) fn for_once() -> Self {
-        Self { room: Room::None, ..Self::default() }
+        Self { room: CacheRoom::None, ..Self::default() }
     }
 }
 
@@ -98,11 +98,11 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
 
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let with_room = |room: Room| aabb.loosened(half * N::lit(room.share()));
+        let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
         let mut within = with_room(self.room);
         self.search(composite, &within);
-        if self.room == Room::Large && self.parts.len() > most {
-            self.room = Room::Small;
+        if self.room == CacheRoom::Large && self.parts.len() > most {
+            self.room = CacheRoom::Small;
             within = with_room(self.room);
             self.search(composite, &within);
         }

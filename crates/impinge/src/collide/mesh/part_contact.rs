@@ -5,7 +5,7 @@ use core::cell::Cell;
 use super::Query;
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::patch::{Piece, Points};
-use super::scene::{PartPair, Scene};
+use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
 use crate::collide::packet::PartGap;
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
@@ -82,7 +82,7 @@ impl<N: Real, const D: usize> PartContact<N, D> {
 
 /// Appends the manifold of two parts to the points; answers the piece and its least distance.
 fn appended<N: Space<D>, const D: usize>(
-    placed: &PartPair<'_, N, D>,
+    placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     arena: &mut Arena<N, D>,
 ) -> (Piece<N, D>, N) {
@@ -97,7 +97,7 @@ pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 /// reach or cannot touch.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    placed: &PartPair<'_, N, D>,
+    placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     query: &Query<'_, N, D>,
     known: Option<&PartGap<N, D>>,
@@ -114,7 +114,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
-    let meeting = Meeting { placed, parts, centers, reference };
+    let meeting = PartMeeting { placed, parts, centers, reference };
     match known {
         Some(gap) => of_surfaces(scene, &meeting, gap, request, arena),
         None => of_separation(scene, &meeting, request, arena),
@@ -123,7 +123,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
 
 /// Solids side by side: their contacts are those of the whole.
 fn plain<N: Space<D>, const D: usize>(
-    placed: &PartPair<'_, N, D>,
+    placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
@@ -139,8 +139,8 @@ fn plain<N: Space<D>, const D: usize>(
 }
 
 /// Two parts, of which one at least belongs to a surface.
-struct Meeting<'a, N: Real, const D: usize> {
-    placed: &'a PartPair<'a, N, D>,
+struct PartMeeting<'a, N: Real, const D: usize> {
+    placed: &'a PlacedPair<'a, N, D>,
     parts: [u32; 2],
     /// Of the part of the first shape and of that of the second, as seen by both shapes.
     centers: [[Point<N, D>; 2]; 2],
@@ -148,7 +148,7 @@ struct Meeting<'a, N: Real, const D: usize> {
     reference: &'a Reference<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> Meeting<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
     /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
     /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is not
     /// known.
@@ -202,7 +202,7 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
 /// The contact of two parts whose separation is not known yet.
 fn of_separation<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    meeting: &Meeting<'_, N, D>,
+    meeting: &PartMeeting<'_, N, D>,
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
@@ -213,7 +213,7 @@ fn of_separation<N: Space<D>, const D: usize>(
 /// The contact of two parts, of which one at least belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    meeting: &Meeting<'_, N, D>,
+    meeting: &PartMeeting<'_, N, D>,
     gap: &PartGap<N, D>,
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
@@ -360,7 +360,7 @@ enum Settled<N: Real, const D: usize> {
 /// Combines the results of both surfaces; `normal` is the one that they are about. All in the frame of
 /// the first shape.
 fn settled<N: Space<D>, const D: usize>(
-    placed: &PartPair<'_, N, D>,
+    placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],
     normal: &Vector<N, D>,
 ) -> Settled<N, D> {

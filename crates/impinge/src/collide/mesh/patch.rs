@@ -52,7 +52,7 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
 }
 
 /// The numbers that points inherit.
-pub(super) type Kept = SmallVec<[Option<u32>; 32]>;
+pub(super) type KeptIds = SmallVec<[Option<u32>; 32]>;
 
 /// Merges the manifolds of parts into patches, which come in the order of their first parts, and
 /// replaces those of the update before, whose points on features that are still touched hand on their
@@ -123,8 +123,8 @@ fn blank<N: Real, const D: usize>(
 impl<N: Real, const D: usize> Merging<'_, N, D> {
     /// Which points have the numbers of old ones: each old number goes to one point on its features,
     /// the nearest, the first of equals.
-    fn kept(&self, old: &[Patch<N, D>]) -> Kept {
-        let mut kept = Kept::from_elem(None, self.points.len());
+    fn kept(&self, old: &[Patch<N, D>]) -> KeptIds {
+        let mut kept = KeptIds::from_elem(None, self.points.len());
         let mut at = 0;
         for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
             let Some(found) = self.piece_of(*parts, at) else { continue };

@@ -35,7 +35,7 @@ pub(super) struct Lead {
 }
 
 /// The pieces of one patch.
-pub(super) struct Group {
+pub(super) struct PieceGroup {
     /// The piece whose point is the deepest.
     pub(super) lead: Lead,
     /// The first of the parts.
@@ -47,7 +47,7 @@ pub(super) struct Group {
 /// The patches that some pieces make.
 pub(super) struct Groups {
     /// Those within the prediction, in the order of their first parts.
-    pub(super) groups: SmallVec<[Group; 8]>,
+    pub(super) groups: SmallVec<[PieceGroup; 8]>,
     /// The pieces of each group together.
     order: SmallVec<[usize; 16]>,
 }
@@ -60,7 +60,7 @@ impl Groups {
         for (piece, own) in pieces.iter().enumerate() {
             leads.extend(merging.deepest_of(own).map(|deepest| Lead { piece, deepest }));
         }
-        let mut cells = Cells::of(pieces);
+        let mut cells = NormalCells::of(pieces);
         let mut all = if cells.have_own_normals(pieces) {
             Self::of_one_each(merging, &leads)
         } else {
@@ -78,7 +78,7 @@ impl Groups {
 
     /// Each piece is a patch of its own.
     fn of_one_each<N: Real, const D: usize>(merging: &Merging<'_, N, D>, leads: &[Lead]) -> Self {
-        let group = |(at, lead): (usize, &Lead)| Group {
+        let group = |(at, lead): (usize, &Lead)| PieceGroup {
             lead: *lead,
             first: merging.pieces[lead.piece].parts,
             pieces: at..at + 1,
@@ -91,9 +91,9 @@ impl Groups {
     fn of_level<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
-        cells: &mut Cells,
+        cells: &mut NormalCells,
     ) -> Self {
-        let (mut groups, pieces) = (SmallVec::<[Group; 8]>::new(), merging.pieces);
+        let (mut groups, pieces) = (SmallVec::<[PieceGroup; 8]>::new(), merging.pieces);
         let mut of_leads = SmallVec::<[(usize, usize); 16]>::with_capacity(leads.len());
         for lead in leads {
             let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
@@ -102,7 +102,7 @@ impl Groups {
             let parts = pieces[lead.piece].parts;
             if known.is_none() {
                 cells.put(group, lead.piece);
-                groups.push(Group { lead: *lead, first: parts, pieces: 0..0 });
+                groups.push(PieceGroup { lead: *lead, first: parts, pieces: 0..0 });
             }
             groups[group].first = groups[group].first.min(parts);
             of_leads.push((group, lead.piece));
@@ -118,7 +118,7 @@ impl Groups {
     }
 
     /// The pieces of one of the groups.
-    pub(super) fn pieces(&self, group: &Group) -> &[usize] {
+    pub(super) fn pieces(&self, group: &PieceGroup) -> &[usize] {
         &self.order[group.pieces.clone()]
     }
 }
@@ -147,26 +147,26 @@ fn square_of_same<N: Real>() -> N {
 }
 
 /// A stretch of the axis, in which the normals of some pieces end.
-struct Cell {
+struct NormalCell {
     number: i32,
     /// The patches whose first pieces are here, the deepest first.
     patches: SmallVec<[usize; 2]>,
 }
 
 /// The normals of many pieces in cells; those of few in one.
-struct Cells {
+struct NormalCells {
     /// In ascending order.
-    cells: SmallVec<[Cell; 1]>,
+    cells: SmallVec<[NormalCell; 1]>,
     /// The place of the cell of each of many pieces.
     of_pieces: Vec<usize>,
     /// Many pieces in the order of their cells.
     order: Vec<(i32, usize)>,
 }
 
-impl Cells {
+impl NormalCells {
     fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
         let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
-        let empty = |number| Cell { number, patches: SmallVec::new() };
+        let empty = |number| NormalCell { number, patches: SmallVec::new() };
         if pieces.len() <= FEW_PIECES {
             cells.push(empty(0));
             return Self { cells, of_pieces, order };
@@ -175,7 +175,7 @@ impl Cells {
         order.sort_unstable();
         of_pieces.resize(pieces.len(), 0);
         for &(number, piece) in &order {
-            if cells.last().is_none_or(|last: &Cell| last.number != number) {
+            if cells.last().is_none_or(|last: &NormalCell| last.number != number) {
                 cells.push(empty(number));
             }
             of_pieces[piece] = cells.len() - 1;
@@ -247,7 +247,7 @@ mod tests {
     /// All patches with the same normal are near, and few others: their number does not grow with that of all.
     fn check<const D: usize>(count: usize, most: usize) {
         let pieces = pieces::<D>(count, true);
-        let (mut cells, mut compared, mut same) = (Cells::of(&pieces), 0, 0);
+        let (mut cells, mut compared, mut same) = (NormalCells::of(&pieces), 0, 0);
         assert!(!cells.have_own_normals(&pieces), "of {count} pieces some have one normal");
         for (at, piece) in pieces.iter().enumerate() {
             let near: Vec<usize> = cells.near(at).collect();
@@ -282,7 +282,7 @@ mod tests {
                 (pieces[at].normal - pieces[before].normal).norm() > SAME
             };
             assert!((1..count).all(|at| (0..at).all(|before| are_apart(at, before))));
-            assert!(Cells::of(&pieces).have_own_normals(&pieces), "{count} normals");
+            assert!(NormalCells::of(&pieces).have_own_normals(&pieces), "{count} normals");
         }
     }
 }

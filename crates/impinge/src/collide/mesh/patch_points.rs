@@ -7,7 +7,7 @@
 use smallvec::SmallVec;
 
 use super::super::{PairIds, RawPoint};
-use super::patch::{Kept, Merging, PatchPoint};
+use super::patch::{KeptIds, Merging, PatchPoint};
 use super::patch_groups::Lead;
 use crate::collide::manifold::deepest_of;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
@@ -31,7 +31,7 @@ pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
 /// What the points of a patch are chosen by.
 pub(super) struct Choosing<'a, N: Real, const D: usize> {
     pub(super) merging: &'a Merging<'a, N, D>,
-    pub(super) kept: &'a Kept,
+    pub(super) kept: &'a KeptIds,
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {

@@ -13,13 +13,13 @@ const ALIKE: f64 = 0.99;
 const MAX_WAYS: usize = 32;
 
 /// A way to part the two shapes as far as some of their parts know: a normal and a depth along it.
-struct Way<N: Real, const D: usize> {
+struct WayOut<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
 /// Ways to part the shapes, found shallowest first: the longest of each direction.
-struct Ways<N: Real, const D: usize>(SmallVec<[Way<N, D>; MAX_WAYS]>);
+struct Ways<N: Real, const D: usize>(SmallVec<[WayOut<N, D>; MAX_WAYS]>);
 
 /// Leaves the contacts that hold for the whole.
 ///
@@ -97,13 +97,13 @@ impl<N: Real, const D: usize> Ways<N, D> {
         if depth <= N::ZERO {
             return;
         }
-        let is_alike = |way: &Way<N, D>| way.normal.dot(&normal) >= N::lit(ALIKE);
+        let is_alike = |way: &WayOut<N, D>| way.normal.dot(&normal) >= N::lit(ALIKE);
         if let Some(old) = self.0.iter().position(is_alike) {
             self.0.remove(old);
         } else if self.0.len() == MAX_WAYS {
             self.0.remove(0);
         }
-        self.0.push(Way { normal, depth });
+        self.0.push(WayOut { normal, depth });
     }
 }
 
@@ -122,12 +122,13 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_beyond = contact.status == PartStatus::Beyond;
     // A way that is shorter than the parts are deep in each other does not part them.
     let least = -contact.distance - contact.tolerance;
-    let is_asked = |way: &&Way<N, D>| {
+    let is_asked = |way: &&WayOut<N, D>| {
         way.depth >= least && (is_beyond || way.normal.dot(&normal) < N::lit(ALIKE))
     };
     // The plane that is known to part the two best may do so well enough once they are moved.
-    let rest = |way: &Way<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
-    let (mut asked, room): (SmallVec<[&Way<N, D>; 16]>, N) = (SmallVec::new(), -contact.tolerance);
+    let rest = |way: &WayOut<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
+    let (mut asked, room): (SmallVec<[&WayOut<N, D>; 16]>, N) =
+        (SmallVec::new(), -contact.tolerance);
     for way in ways.0.iter().filter(is_asked) {
         if rest(way) > room {
             return true;

@@ -49,13 +49,13 @@ struct Lying<N: Real, const D: usize> {
 }
 
 /// A part of one of the shapes; a convex shape is its own part.
-struct Body<'a, N: Real, const D: usize> {
+struct PlacedPart<'a, N: Real, const D: usize> {
     /// Where it lies to the axes of its shape put through the point that it is seen from.
     pose: Pose<N, D>,
-    solid: Solid<'a, N, D>,
+    solid: WholeOrPart<'a, N, D>,
 }
 
-enum Solid<'a, N: Real, const D: usize> {
+enum WholeOrPart<'a, N: Real, const D: usize> {
     Whole(Kind<'a, N, D>),
     Part(PartSolid<'a, N, D>),
 }
@@ -64,9 +64,9 @@ enum Solid<'a, N: Real, const D: usize> {
 ///
 /// Both are seen from one point close to them, as [`Between::parts`] does; so this is the same
 /// pair, up to the order, and as far apart to the bit.
-pub(super) struct PartPair<'a, N: Real, const D: usize> {
+pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
-    bodies: [Body<'a, N, D>; 2],
+    bodies: [PlacedPart<'a, N, D>; 2],
     lying: Lying<N, D>,
     /// The point in the frames of the two shapes.
     origins: [Point<N, D>; 2],
@@ -79,26 +79,29 @@ pub(super) struct PartPair<'a, N: Real, const D: usize> {
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
     origin: &Point<N, D>,
-) -> Body<'a, N, D> {
+) -> PlacedPart<'a, N, D> {
     let local = part.pose.inverse_point(origin).coords;
     let Pose { rotation, translation } = part.pose;
     match recentred(&part.solid, &local) {
         Some(solid) => {
             let translation = Vector::<N, D>::zeros();
-            Body { pose: Pose { rotation, translation }, solid: Solid::Part(solid) }
+            PlacedPart { pose: Pose { rotation, translation }, solid: WholeOrPart::Part(solid) }
         }
         None => {
             let translation = translation - origin.coords;
-            Body { pose: Pose { rotation, translation }, solid: Solid::Part(part.solid) }
+            PlacedPart {
+                pose: Pose { rotation, translation },
+                solid: WholeOrPart::Part(part.solid),
+            }
         }
     }
 }
 
-impl<N: Real, const D: usize> Body<'_, N, D> {
+impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
     fn kind(&self) -> Kind<'_, N, D> {
         match &self.solid {
-            Solid::Whole(kind) => *kind,
-            Solid::Part(solid) => solid.geometry().0,
+            WholeOrPart::Whole(kind) => *kind,
+            WholeOrPart::Part(solid) => solid.geometry().0,
         }
     }
 
@@ -188,9 +191,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     /// exchanged.
     pub(super) fn pair_in<'s>(
         &self,
-        slot: &'s mut Option<PartPair<'a, N, D>>,
+        slot: &'s mut Option<PlacedPair<'a, N, D>>,
         parts: [u32; 2],
-    ) -> &'s PartPair<'a, N, D> {
+    ) -> &'s PlacedPair<'a, N, D> {
         let is_exchanged = match (&mut *slot, self.usual.get(), self.between.composites()) {
             (Some(old), Some(usual), [_, Some(composite)]) if old.is_usual => {
                 old.exchange(usual, &self.part2(composite, parts[1]))
@@ -204,7 +207,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 
     /// Two parts.
-    pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
+    pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PlacedPair<'a, N, D> {
         let [composite1, composite2] = self.between.composites();
         let piece1 = composite1.map(|composite| composite.part(part1));
         let piece2 = composite2.map(|composite| self.part2(composite, part2));
@@ -222,13 +225,13 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             }
         };
         let body = |kind, piece: Option<Part<'a, N, D>>, origin| match piece {
-            None => Body { pose: Pose::identity(), solid: Solid::Whole(kind) },
+            None => PlacedPart { pose: Pose::identity(), solid: WholeOrPart::Whole(kind) },
             Some(piece) => moved(&piece, origin),
         };
         let whole = &self.between.pair;
         let bodies =
             [body(whole.first, piece1, &origins[0]), body(whole.second, piece2, &origins[1])];
-        PartPair::new(bodies, self.turn(), origins)
+        PlacedPair::new(bodies, self.turn(), origins)
     }
 
     /// The rotation of the second shape's frame in that of the first.
@@ -238,16 +241,17 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 
     /// A convex solid and a part that lies like those before: the same pair at less cost. `None` of
     /// others.
-    fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PartPair<'a, N, D>> {
+    fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
         }
         let usual = self.usual.get_or_init(|| self.usual(part));
-        let solid = Solid::Part(usual.recentred(part)?);
+        let solid = WholeOrPart::Part(usual.recentred(part)?);
         let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
-        let whole = Solid::Whole(self.between.pair.first);
-        let bodies = [Body { pose: Pose::identity(), solid: whole }, Body { pose, solid }];
-        Some(PartPair { is_usual: true, ..PartPair::of(bodies, usual.lying, usual.origins) })
+        let whole = WholeOrPart::Whole(self.between.pair.first);
+        let bodies =
+            [PlacedPart { pose: Pose::identity(), solid: whole }, PlacedPart { pose, solid }];
+        Some(PlacedPair { is_usual: true, ..PlacedPair::of(bodies, usual.lying, usual.origins) })
     }
 
     fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
@@ -286,9 +290,9 @@ impl<N: Space<D>, const D: usize> Lying<N, D> {
     }
 }
 
-impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
-    fn new(bodies: [Body<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
-        let kind = |body: &Body<'_, N, D>| Geometry(body.kind()).kind();
+impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
+    fn new(bodies: [PlacedPart<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
+        let kind = |body: &PlacedPart<'_, N, D>| Geometry(body.kind()).kind();
         let is_turned = kind(&bodies[0]) > kind(&bodies[1]);
         let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_turned);
         Self::of(bodies, lying, origins)
@@ -296,7 +300,7 @@ impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
 
     /// A part of the first shape and one of the second.
     fn of(
-        [body1, body2]: [Body<'a, N, D>; 2],
+        [body1, body2]: [PlacedPart<'a, N, D>; 2],
         lying: Lying<N, D>,
         origins: [Point<N, D>; 2],
     ) -> Self {
@@ -309,12 +313,12 @@ impl<'a, N: Space<D>, const D: usize> PartPair<'a, N, D> {
     fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = usual.recentred(part) else { return false };
         let at = usize::from(!self.lying.is_turned);
-        self.bodies[at].solid = Solid::Part(solid);
+        self.bodies[at].solid = WholeOrPart::Part(solid);
         true
     }
 }
 
-impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
+impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// The two parts in the order of their kinds.
     pub(super) fn pair(&self) -> Pair<'_, N, D> {
         let [first, second] = &self.bodies;
@@ -350,7 +354,7 @@ impl<N: Space<D>, const D: usize> PartPair<'_, N, D> {
 
     /// Lengths below this are rounding errors of the pair.
     pub(super) fn tolerance(&self) -> N {
-        let size = |body: &Body<'_, N, D>| {
+        let size = |body: &PlacedPart<'_, N, D>| {
             let map = Geometry(body.kind()).as_support_map();
             map.map_or(N::ZERO, |map| map.reach() + map.rounding())
         };

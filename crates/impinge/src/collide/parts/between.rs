@@ -26,7 +26,7 @@ pub(crate) struct Between<'a, N: Real, const D: usize> {
 
 /// A part, or all of a convex solid, seen from some point of the frame of its shape.
 #[derive(Clone, Copy)]
-struct Seen<'a, N: Real, const D: usize> {
+struct AnchoredPart<'a, N: Real, const D: usize> {
     solid: PartOf<'a, N, D>,
     /// Where it lies to the axes of its shape put through that point.
     pose: Pose<N, D>,
@@ -40,8 +40,8 @@ enum PartOf<'a, N: Real, const D: usize> {
 
 /// A part of each shape, as a pair in the frame of the first part.
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
-    seen1: Seen<'a, N, D>,
-    seen2: Seen<'a, N, D>,
+    seen1: AnchoredPart<'a, N, D>,
+    seen2: AnchoredPart<'a, N, D>,
     /// The point that both are seen from, in the frame of the first shape.
     origin1: Point<N, D>,
     pose12: Pose<N, D>,
@@ -94,8 +94,8 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
                 (origin1, self.pose21.point(&origin1))
             }
         };
-        let seen1 = Seen::new(self.pair.first, piece1, &origin1);
-        let seen2 = Seen::new(self.pair.second, piece2, &origin2);
+        let seen1 = AnchoredPart::new(self.pair.first, piece1, &origin1);
+        let seen2 = AnchoredPart::new(self.pair.second, piece2, &origin2);
         let turn = Pose { rotation: self.pair.pose12.rotation, ..Pose::identity() };
         let pose12 = Pose::relative(&seen1.pose, &turn.compose(&seen2.pose));
         PartPair { seen1, seen2, origin1, pose12 }
@@ -104,7 +104,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
     /// Two convex solids as they are.
     fn whole(&self) -> PartPair<'a, N, D> {
         let [seen1, seen2] = [self.pair.first, self.pair.second]
-            .map(|kind| Seen { solid: PartOf::Whole(kind), pose: Pose::identity() });
+            .map(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
         PartPair { seen1, seen2, origin1: Point::origin(), pose12: self.pair.pose12 }
     }
 }
@@ -169,7 +169,7 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
     if parts2.num_parts() < parts1.num_parts() { (1, parts2, parts1) } else { (0, parts1, parts2) }
 }
 
-impl<'a, N: Real, const D: usize> Seen<'a, N, D> {
+impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);

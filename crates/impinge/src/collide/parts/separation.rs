@@ -2,7 +2,7 @@
 
 use super::between::{Between, by_number};
 use super::bounds::loosened;
-use super::slabs::Slabs;
+use super::slabs::AxisSlabs;
 use super::sweep::Sweep;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{TreePair, visit_pairs};
@@ -67,7 +67,7 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     wanted: Wanted,
     first: Option<[u32; 2]>,
 ) -> Option<PartSeparation<N, D>> {
-    let mut nearest = Nearest { between, limit, wanted, best: None };
+    let mut nearest = NearestPart { between, limit, wanted, best: None };
     if let Some(parts) = first {
         nearest.visit(parts);
     }
@@ -85,20 +85,21 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     visitor: &mut dyn PairVisitor<N, D>,
 ) {
-    let mut search = Search { between, visitor };
+    let mut search = NearestSearch { between, visitor };
     match between.composites() {
         [None, None] => search.visitor.visit([0, 0]),
         [Some(parts1), None] => search.of_one(1, 0, parts1),
         [None, Some(parts2)] => match between.pair.first {
             Kind::Plane(plane) => {
-                search.outside(0, 0, parts2, |sweep| Slabs::of_half_space(between, plane, sweep));
+                search
+                    .outside(0, 0, parts2, |sweep| AxisSlabs::of_half_space(between, plane, sweep));
             }
             _ => search.of_one(0, 0, parts2),
         },
         [Some(parts1), Some(parts2)] => {
             let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
             let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
-            let Search { visitor, .. } = search;
+            let NearestSearch { visitor, .. } = search;
             let mut pairs = TreeParts { between, visitor, parts: [parts1, parts2], slabs: None };
             visit_pairs([tree1, tree2], &mut pairs);
         }
@@ -117,7 +118,7 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
 struct PartSlabs<N: Real, const D: usize> {
     which: usize,
     part: u32,
-    slabs: Slabs<N, D>,
+    slabs: AxisSlabs<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
@@ -146,7 +147,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         let of_own = || PartSlabs {
             which,
             part: own,
-            slabs: Slabs::of_part(between, which, own, visitor.sweep(which).as_ref()),
+            slabs: AxisSlabs::of_part(between, which, own, visitor.sweep(which).as_ref()),
         };
         let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == own;
         let kept = slabs.take().filter(is_own).unwrap_or_else(of_own);
@@ -157,16 +158,16 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-struct Search<'a, 'q, N: Real, const D: usize> {
+struct NearestSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     /// A part of one shape, the first or the second, against those of the other that are near.
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
-        self.outside(which, part, others, |sweep| Slabs::of_part(between, which, part, sweep));
+        self.outside(which, part, others, |sweep| AxisSlabs::of_part(between, which, part, sweep));
     }
 
     /// The same but for parts that slabs tell to be farther than matters; these are made for the first that is asked.
@@ -175,7 +176,7 @@ impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
         which: usize,
         part: u32,
         others: &dyn CompositeShape<N, D>,
-        slabs: impl Fn(Option<&Sweep<N, D>>) -> Slabs<N, D>,
+        slabs: impl Fn(Option<&Sweep<N, D>>) -> AxisSlabs<N, D>,
     ) {
         let (sweep, mut made) = (self.visitor.sweep(which), None);
         let aabb = self.between.aabb_in_other(which, part);
@@ -206,14 +207,14 @@ impl<N: Space<D>, const D: usize> Search<'_, '_, N, D> {
 }
 
 /// The best pair of parts so far.
-struct Nearest<'a, N: Real, const D: usize> {
+struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
     wanted: Wanted,
     best: Option<PartSeparation<N, D>>,
 }
 
-impl<N: Space<D>, const D: usize> PairVisitor<N, D> for Nearest<'_, N, D> {
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
     fn limit(&self) -> N {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }

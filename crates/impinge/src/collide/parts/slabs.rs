@@ -11,7 +11,7 @@ use crate::shape::{Part, PartSolid, Plane};
 const ROUNDING: f64 = 128.0;
 
 /// Slabs that a solid lies in, in the frame of the composite that it is held against, while it moves.
-pub(crate) struct Slabs<N: Real, const D: usize> {
+pub(crate) struct AxisSlabs<N: Real, const D: usize> {
     /// Heights are measured from here.
     origin: Vector<N, D>,
     /// A length that the rounding of the solid's place is in proportion to.
@@ -27,7 +27,7 @@ struct Slab<N: Real, const D: usize> {
     highest: N,
 }
 
-impl<N: Space<D>, const D: usize> Slabs<N, D> {
+impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     /// Of a half-space that the second shape is held against: its slab has one side.
     pub(crate) fn of_half_space(
         between: &Between<'_, N, D>,

@@ -4,7 +4,7 @@ use crate::collide::CompositeContacts;
 use crate::collide::Pair;
 use crate::collide::mesh::{Patch, PatchPoint};
 use crate::math::{Pose, Space, Vector};
-use crate::query::kinematic::{ContactKinematic, Sides};
+use crate::query::kinematic::{ContactKinematic, KinematicSides};
 use crate::query::manifold::{TrackedContact, placed};
 use crate::query::{ContactId, ContactManifold, ManifoldView, Placement};
 use crate::shape::{Geometry, Kind, Part, PartSolid};
@@ -73,7 +73,7 @@ fn kinematic<N: Space<D>, const D: usize>(
     raw.point1 = pose1.inverse_point(&raw.point1);
     let parts = Pair { first, second, pose12 };
     let normal = pose1.inverse_vector(&patch.normal);
-    let kinematic = Sides::new(&parts, &normal).kinematic(&raw);
+    let kinematic = KinematicSides::new(&parts, &normal).kinematic(&raw);
     let kinematic = match turning(pair, patch, point) {
         Some(is_second) => kinematic.turning_with(is_second),
         None => kinematic,

@@ -16,7 +16,7 @@ const MAX_SPANS: usize = 64;
 
 /// A body and how large it is, seen from the centre of its motion.
 #[derive(Clone, Copy)]
-pub(super) struct Body<'a, N: Space<D>, const D: usize> {
+pub(super) struct MovingBody<'a, N: Space<D>, const D: usize> {
     pub(super) motion: &'a dyn RigidMotion<N, D>,
     pub(super) shape: Geometry<'a, N, D>,
     center: Point<N, D>,
@@ -29,7 +29,7 @@ pub(super) struct Body<'a, N: Space<D>, const D: usize> {
     radius: N,
 }
 
-impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
+impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
     pub(super) fn new(motion: &'a dyn RigidMotion<N, D>, shape: &'a dyn Shape<N, D>) -> Self {
         let (center, sphere, geometry) =
             (motion.local_center(), shape.local_bounding_sphere(), shape.geometry());
@@ -55,7 +55,7 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
         solid: Geometry<'p, N, D>,
         pose: &Pose<N, D>,
         center: &Vector<N, D>,
-    ) -> Body<'p, N, D>
+    ) -> MovingBody<'p, N, D>
     where
         'a: 'p,
     {
@@ -67,7 +67,7 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
         let across = self.constant().map(|motion| motion.across(&(pose.translation - center)));
         let arm = across.map_or(reach, |across| min((across + extent) * slack, reach));
         let radius = reach + rounding;
-        Body { motion: self.motion, shape: solid, center: local, reach, arm, radius }
+        MovingBody { motion: self.motion, shape: solid, center: local, reach, arm, radius }
     }
 
     /// A length of the body for tolerances; zero for what is unbounded.
@@ -103,7 +103,7 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
 
 /// Two bodies at one time.
 pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
-    pub(super) bodies: [&'b Body<'a, N, D>; 2],
+    pub(super) bodies: [&'b MovingBody<'a, N, D>; 2],
     /// The point of the world that all places are seen from.
     pub(super) origin: Vector<N, D>,
     pub(super) poses: [Pose<N, D>; 2],
@@ -115,8 +115,8 @@ pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
 }
 
 /// One part of each of two bodies.
-pub(super) struct Parts<'p, N: Space<D>, const D: usize> {
-    bodies: [Body<'p, N, D>; 2],
+pub(super) struct ImpactParts<'p, N: Space<D>, const D: usize> {
+    bodies: [MovingBody<'p, N, D>; 2],
     poses: [Pose<N, D>; 2],
 }
 
@@ -181,7 +181,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         &self,
         parts: &'p PartPair<'_, N, D>,
         frame: &Pose<N, D>,
-    ) -> Parts<'p, N, D>
+    ) -> ImpactParts<'p, N, D>
     where
         'a: 'p,
     {
@@ -189,19 +189,19 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let [center1, center2] = &self.centers;
         let part1 = self.bodies[0].part(Geometry(pair.first), &poses[0], center1);
         let part2 = self.bodies[1].part(Geometry(pair.second), &poses[1], center2);
-        Parts { bodies: [part1, part2], poses }
+        ImpactParts { bodies: [part1, part2], poses }
     }
 
     /// [`Self::safe_time`] of parts of the bodies, for bodies that both have constant velocities. `normal` is from
     /// part to part in the frame of the first.
     pub(super) fn safe_time_of(
         &self,
-        parts: &Parts<'_, N, D>,
+        parts: &ImpactParts<'_, N, D>,
         normal: &Vector<N, D>,
         gap: N,
         to: N,
     ) -> N {
-        let Parts { bodies, poses } = parts;
+        let ImpactParts { bodies, poses } = parts;
         let normal = poses[0].vector(normal);
         let (bodies, centers) = (bodies.each_ref(), self.centers);
         let (poses, origin, time) = (*poses, self.origin, self.time);
@@ -209,7 +209,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 
     /// How fast parts of the bodies approach in any direction, at most.
-    pub(super) fn rate_of(&self, parts: &Parts<'_, N, D>, to: N) -> Rate<N> {
+    pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         let swings = [0, 1].map(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
         });
@@ -344,7 +344,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// At least how fast the centres approach along a unit vector from the first to the second; with
     /// none, in any direction. Rounding is taken for nothing.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
-        if let [Some(motion1), Some(motion2)] = self.bodies.map(Body::constant) {
+        if let [Some(motion1), Some(motion2)] = self.bodies.map(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
             let noise = N::lit(8.0) * N::EPSILON * max_component(&relative);
             let speed = direction.map_or_else(|| length(&relative), |n| n.dot(&relative));
@@ -384,7 +384,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// much of that rounding can make.
     pub(super) fn closing(&self, points: &[Vector<N, D>; 2], size: N) -> (N, N) {
         let arms = [0, 1].map(|index| points[index] - self.centers[index]);
-        if let [Some(motion1), Some(motion2)] = self.bodies.map(Body::constant) {
+        if let [Some(motion1), Some(motion2)] = self.bodies.map(MovingBody::constant) {
             let terms =
                 [motion1.linear - motion2.linear, motion1.spin * arms[0], motion2.spin * arms[1]];
             let noise = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));

@@ -1,6 +1,6 @@
 //! The first touch of two bodies that move and turn.
 
-use super::bounds::{Body, Moment, Rate, length};
+use super::bounds::{Moment, MovingBody, Rate, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
 use core::cmp::Ordering;
 use core::iter;
@@ -104,7 +104,8 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     flight: &Flight<'_, N, D>,
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
-    let [one, two] = [0, 1].map(|index| Body::new(flight.motions[index], flight.shapes[index]));
+    let [one, two] =
+        [0, 1].map(|index| MovingBody::new(flight.motions[index], flight.shapes[index]));
     let world = Vector::<N, D>::zeros();
     let [start1, start2] = [&one, &two].map(|body| body.placed(&world, N::ZERO));
     let order = order(&start1, &start2);
@@ -131,8 +132,8 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
 /// Of two bodies that are the same at time zero, the second comes first, by where they are when they
 /// differ: at the longest time or, if there is none, at one of the times 1, 2¹⁶, 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
-    one: &Body<'_, N, D>,
-    two: &Body<'_, N, D>,
+    one: &MovingBody<'_, N, D>,
+    two: &MovingBody<'_, N, D>,
     options: &ImpactOptions<N>,
 ) -> bool {
     let world = Vector::<N, D>::zeros();
@@ -145,7 +146,7 @@ fn two_leads<N: Space<D>, const D: usize>(
     orders.find(|order| order.is_ne()).is_some_and(Ordering::is_gt)
 }
 
-impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
+impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
     /// The body at a time, seen from a point of the world.
     fn placed(&self, origin: &Vector<N, D>, time: N) -> Placed<'a, N, D> {
         Placed::of_pose(&self.motion.pose_about(origin, time), self.shape)
@@ -154,7 +155,7 @@ impl<'a, N: Space<D>, const D: usize> Body<'a, N, D> {
 
 /// The search for an impact of two bodies in canonical order.
 struct ImpactSearch<'a, N: Space<D>, const D: usize> {
-    bodies: [Body<'a, N, D>; 2],
+    bodies: [MovingBody<'a, N, D>; 2],
     /// The point of the world that all places are seen from: near the bodies, to keep digits.
     origin: Vector<N, D>,
     end: N,
@@ -247,7 +248,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
-        let [radius1, radius2] = self.bodies.each_ref().map(Body::radius);
+        let [radius1, radius2] = self.bodies.each_ref().map(MovingBody::radius);
         let (excess, apart) =
             (configuration.excess(mode), between - radius1 - radius2 - self.target);
         let whole = moment.safe_time(excess, apart, self.end - moment.time);

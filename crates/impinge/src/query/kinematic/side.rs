@@ -8,15 +8,15 @@ use crate::shape::{Cylinder, FacingPart, Feature, FeatureId, Geometry, Kind, Sup
 const LYING_SINE: f64 = 0.05;
 
 /// One solid's share in all contacts of a manifold, in its local frame.
-pub(super) struct Side<N: Real, const D: usize> {
+pub(super) struct KinematicSide<N: Real, const D: usize> {
     pub(super) rounding: N,
     /// The manifold's normal away from the solid.
     outward: Vector<N, D>,
-    facing: Facing<N, D>,
+    facing: SideFacing<N, D>,
 }
 
 /// What of a solid faces the other one.
-enum Facing<N: Real, const D: usize> {
+enum SideFacing<N: Real, const D: usize> {
     /// A half-space, with its outward normal.
     Boundary(Vector<N, D>),
     /// A ball.
@@ -30,21 +30,21 @@ enum Facing<N: Real, const D: usize> {
     Feature(Feature<N, D>),
 }
 
-impl<N: Real, const D: usize> Side<N, D> {
+impl<N: Real, const D: usize> KinematicSide<N, D> {
     /// The side of a solid; `outward` is the manifold's normal away from it.
     pub(super) fn new(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
         let (facing, rounding) = match kind {
-            Kind::Plane(plane) => (Facing::Boundary(plane.normal().into_inner()), N::ZERO),
-            Kind::Ball(ball) => (Facing::Center, ball.radius()),
+            Kind::Plane(plane) => (SideFacing::Boundary(plane.normal().into_inner()), N::ZERO),
+            Kind::Ball(ball) => (SideFacing::Center, ball.radius()),
             Kind::Cylinder(cylinder, _) if is_lying(cylinder, &outward) => {
-                (Facing::Axis, cylinder.radius())
+                (SideFacing::Axis, cylinder.radius())
             }
             Kind::Rounded(solid) => {
                 let inner = Self::new(solid.inner().0, outward);
                 return Self { rounding: inner.rounding + solid.radius(), ..inner };
             }
             Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
-                Some(part) => (Facing::Part(part), N::ZERO),
+                Some(part) => (SideFacing::Part(part), N::ZERO),
                 None => return Self::of_core(kind, outward),
             },
             other => return Self::of_core(other, outward),
@@ -57,7 +57,7 @@ impl<N: Real, const D: usize> Side<N, D> {
             Geometry(kind).as_support_map().expect("neither a half-space nor a composite");
         let mut feature = Feature::default();
         map.core_feature(&outward, &mut feature);
-        Self { rounding: map.rounding(), outward, facing: Facing::Feature(feature) }
+        Self { rounding: map.rounding(), outward, facing: SideFacing::Feature(feature) }
     }
 
     /// The point of the core below a point of the surface.
@@ -68,22 +68,26 @@ impl<N: Real, const D: usize> Side<N, D> {
     /// What the core looks like at the feature `id`.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
         match (&self.facing, id) {
-            (Facing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
-            (Facing::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
-            (Facing::Part(_), FeatureId::Edge(index)) => {
+            (SideFacing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
+            (SideFacing::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
+            (SideFacing::Part(_), FeatureId::Edge(index)) => {
                 NeighborhoodGeometry::Line(FacingPart::edge_direction(index))
             }
-            (Facing::Part(part), FeatureId::Face(_)) => {
+            (SideFacing::Part(part), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(part.normal.unwrap_or(self.outward))
             }
-            (Facing::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
-            (Facing::Feature(feature), FeatureId::Face(_)) => {
+            (SideFacing::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
+            (SideFacing::Feature(feature), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
             }
             // The ends of a lying cylinder are on the rims.
-            (Facing::Center | Facing::Axis | Facing::Part(_) | Facing::Feature(_), _) => {
-                NeighborhoodGeometry::Point
-            }
+            (
+                SideFacing::Center
+                | SideFacing::Axis
+                | SideFacing::Part(_)
+                | SideFacing::Feature(_),
+                _,
+            ) => NeighborhoodGeometry::Point,
         }
     }
 
@@ -91,10 +95,10 @@ impl<N: Real, const D: usize> Side<N, D> {
     /// normal and the contact's. 2, the most there is, without such a face.
     pub(super) fn lean(&self) -> N {
         let normal = match &self.facing {
-            Facing::Boundary(normal) => Some(*normal),
-            Facing::Part(part) => part.normal,
-            Facing::Feature(feature) => feature.normal,
-            Facing::Center | Facing::Axis => None,
+            SideFacing::Boundary(normal) => Some(*normal),
+            SideFacing::Part(part) => part.normal,
+            SideFacing::Feature(feature) => feature.normal,
+            SideFacing::Center | SideFacing::Axis => None,
         };
         normal.map_or(N::TWO, |normal| (normal - self.outward).norm())
     }
@@ -102,10 +106,10 @@ impl<N: Real, const D: usize> Side<N, D> {
     /// An edge of what faces the other solid that is perpendicular to the contact's normal.
     pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
         match &self.facing {
-            Facing::Part(part) => {
+            SideFacing::Part(part) => {
                 part.most_level_side(&self.outward).filter(|side| is_level(side, &self.outward))
             }
-            Facing::Feature(feature) => level_edge(feature, &self.outward),
+            SideFacing::Feature(feature) => level_edge(feature, &self.outward),
             _ => None,
         }
     }

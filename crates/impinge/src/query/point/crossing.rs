@@ -14,7 +14,7 @@ use crate::math::exact::{area, volume};
 
 /// A ray from a point to infinity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+pub(super) struct RayWay {
     pub(super) axis: usize,
     /// Towards larger coordinates.
     pub(super) is_ascending: bool,
@@ -34,7 +34,7 @@ fn sign(determinant: f64) -> i64 {
 
 /// Of a segment of the plane, whose left is inside. The point may lie on a segment across the ray
 /// unnoticed; then its winding number is that of a point beside it.
-pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: Way) -> Added {
+pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: RayWay) -> Added {
     let across = 1 - way.axis;
     let at = point[across];
     let rises = ends[0][across] <= at && at < ends[1][across];
@@ -55,7 +55,11 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: W
 
 /// Of a triangle in 3D, whose front is outside. The point may lie on a triangle along the ray
 /// unnoticed; then its winding number is that of a point beside it.
-pub(super) fn of_triangle(corners: [Point<f64, 3>; 3], point: &Point<f64, 3>, way: Way) -> Added {
+pub(super) fn of_triangle(
+    corners: [Point<f64, 3>; 3],
+    point: &Point<f64, 3>,
+    way: RayWay,
+) -> Added {
     let seen =
         |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
     let around = around_seen(&corners.each_ref().map(seen), &seen(point));
@@ -92,8 +96,8 @@ fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
 mod tests {
     use super::*;
 
-    fn ways(axes: usize) -> impl Iterator<Item = Way> {
-        (0..axes).flat_map(|axis| [true, false].map(|is_ascending| Way { axis, is_ascending }))
+    fn ways(axes: usize) -> impl Iterator<Item = RayWay> {
+        (0..axes).flat_map(|axis| [true, false].map(|is_ascending| RayWay { axis, is_ascending }))
     }
 
     /// All eight points of a grid of three by three around the middle one, as an outline.

@@ -5,7 +5,7 @@
 //! using the angle weighted pseudonormal", 2005) need a manifold, and in floating point fail at needles;
 //! the tests hold the two against each other.
 
-use super::crossing::{Way, of_segment, of_triangle};
+use super::crossing::{RayWay, of_segment, of_triangle};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, max, max_component};
 use crate::partitioning::BoxTree;
@@ -139,7 +139,7 @@ fn signed<N: Space<D>, const D: usize>(
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
-    mut added: impl FnMut(u32, Way) -> Option<i64>,
+    mut added: impl FnMut(u32, RayWay) -> Option<i64>,
 ) -> Option<i64> {
     let Some((way, probe)) = tree.bounds().and_then(|bounds| way_out(bounds, point)) else {
         return Some(0);
@@ -157,17 +157,18 @@ fn winding<N: Space<D>, const D: usize>(
 fn way_out<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     point: &Point<N, D>,
-) -> Option<(Way, Aabb<N, D>)> {
+) -> Option<(RayWay, Aabb<N, D>)> {
     let (mins, maxs) = (bounds.mins(), bounds.maxs());
     let is_within = (0..D).all(|axis| mins[axis] <= point[axis] && point[axis] <= maxs[axis]);
     if !is_within {
         return None;
     }
-    let length = |way: &Way| match way.is_ascending {
+    let length = |way: &RayWay| match way.is_ascending {
         true => maxs[way.axis] - point[way.axis],
         false => point[way.axis] - mins[way.axis],
     };
-    let all = (0..D).flat_map(|axis| [true, false].map(|is_ascending| Way { axis, is_ascending }));
+    let all =
+        (0..D).flat_map(|axis| [true, false].map(|is_ascending| RayWay { axis, is_ascending }));
     let way = all.reduce(|best, way| if length(&way) < length(&best) { way } else { best })?;
     let mut end = *point;
     end[way.axis] = if way.is_ascending { maxs[way.axis] } else { mins[way.axis] };

@@ -13,7 +13,9 @@ use crate::shape::Kind;
 pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
     match kind {
         Kind::Ball(solid) => ball::span(solid.radius(), ray),
-        Kind::Segment(solid) => segment::span([solid.a(), solid.b()], segment::Names::SEGMENT, ray),
+        Kind::Segment(solid) => {
+            segment::span([solid.a(), solid.b()], segment::RayNames::SEGMENT, ray)
+        }
         Kind::Capsule(solid) => capsule::span(solid, ray),
         Kind::Triangle(solid) => triangle2::span(solid, ray),
         Kind::Cuboid(solid) => {

@@ -13,7 +13,9 @@ use crate::shape::Kind;
 pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     match kind {
         Kind::Ball(solid) => ball::span(solid.radius(), ray),
-        Kind::Segment(solid) => segment::span([solid.a(), solid.b()], segment::Names::SEGMENT, ray),
+        Kind::Segment(solid) => {
+            segment::span([solid.a(), solid.b()], segment::RayNames::SEGMENT, ray)
+        }
         Kind::Capsule(solid) => capsule::span(solid, ray),
         Kind::Triangle(solid) => triangle3::span(solid, ray),
         Kind::Cuboid(solid) => {

@@ -1,7 +1,7 @@
 //! A line and a rounded solid.
 
 use super::Span;
-use super::support_map::Seen;
+use super::support_map::RaySolid;
 use crate::bounding_volume::Ray;
 use crate::collide::Pair;
 use crate::collide::separation::separation;
@@ -28,7 +28,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         (N::tables().surface_point)(inner.0, &Point::from(*place)).feature
     };
     let radius = solid.reach() + solid.rounding();
-    Seen { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
+    RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
 }
 
 /// How accurate the distances of points are, in parts of the size: closed forms are exact but for

@@ -8,12 +8,12 @@ use crate::shape::FeatureId;
 
 /// The names of a segment and of its ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Names {
+pub(super) struct RayNames {
     pub(super) ends: [u32; 2],
     pub(super) between: FeatureId,
 }
 
-impl Names {
+impl RayNames {
     /// Those of a segment that is a shape.
     pub(super) const SEGMENT: Self = Self { ends: [0, 1], between: FeatureId::Edge(0) };
 }
@@ -23,7 +23,7 @@ impl Names {
 /// entered at one end and left at the other.
 pub(super) fn span<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
-    names: Names,
+    names: RayNames,
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
     let squared = ray.dir.norm_squared();

@@ -31,7 +31,7 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     };
     let precision = max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 549_755_813_888.0));
     let radius = map.reach() + map.rounding();
-    Seen { see: &see, name: &name, radius, precision }.span(ray)
+    RaySolid { see: &see, name: &name, radius, precision }.span(ray)
 }
 
 /// Tells the signed distance of a place and the unit vector out of the solid along which it is
@@ -39,7 +39,7 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
 pub(super) type See<'a, N, const D: usize> = &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>;
 
 /// A convex solid as seen from places in its local frame.
-pub(super) struct Seen<'a, N: Real, const D: usize> {
+pub(super) struct RaySolid<'a, N: Real, const D: usize> {
     pub(super) see: See<'a, N, D>,
     /// The name of a place on the surface, given with the normal there.
     pub(super) name: &'a dyn Fn(&Vector<N, D>, &Vector<N, D>) -> FeatureId,
@@ -49,7 +49,7 @@ pub(super) struct Seen<'a, N: Real, const D: usize> {
     pub(super) precision: N,
 }
 
-impl<N: Real, const D: usize> Seen<'_, N, D> {
+impl<N: Real, const D: usize> RaySolid<'_, N, D> {
     /// When the line is inside; `None` if never, or if that is over at time zero.
     pub(super) fn span(&self, ray: &Ray<N, D>) -> Option<Span<N, D>> {
         // Somewhat larger than the radius, which is only right up to rounding.
@@ -76,7 +76,7 @@ impl<N: Real, const D: usize> Seen<'_, N, D> {
 
 /// A point that moves from outside the solid along a line.
 struct Advance<'a, N: Real, const D: usize> {
-    seen: &'a Seen<'a, N, D>,
+    seen: &'a RaySolid<'a, N, D>,
     from: Vector<N, D>,
     dir: Vector<N, D>,
     /// How long it may move.

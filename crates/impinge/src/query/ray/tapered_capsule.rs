@@ -2,7 +2,7 @@
 
 use super::ball::around;
 use super::clip::in_order;
-use super::segment::{Names, span as segment_span};
+use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Real, Vector, max, min, unit_or};
@@ -16,7 +16,7 @@ pub(super) fn span<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     if capsule.radii() == [N::ZERO; 2] {
         let segment = capsule.segment();
-        return segment_span([segment.a(), segment.b()], Names::SEGMENT, ray);
+        return segment_span([segment.a(), segment.b()], RayNames::SEGMENT, ray);
     }
     let ball = |end: usize, name| {
         around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(name), ray)
@@ -24,7 +24,7 @@ pub(super) fn span<N: Real, const D: usize>(
     let Some(taper) = capsule.taper() else {
         return if capsule.larger_end() == 0 { ball(0, 0) } else { ball(1, 1) };
     };
-    let side = Side::new(capsule, &taper, ray).span();
+    let side = TaperedSide::new(capsule, &taper, ray).span();
     Span::union_of(side, Span::union_of(ball(0, 0), ball(1, 1)))
 }
 
@@ -32,7 +32,7 @@ pub(super) fn span<N: Real, const D: usize>(
 ///
 /// A point at height `y` over the first end and `x` away from the axis is inside where
 /// `cosine · x ≤ radius1 − sine · y`, of which the right side is positive between the circles.
-struct Side<'a, N: Real, const D: usize> {
+struct TaperedSide<'a, N: Real, const D: usize> {
     taper: &'a Taper<N, D>,
     /// The heights of the two circles.
     heights: [N; 2],
@@ -51,7 +51,7 @@ struct Side<'a, N: Real, const D: usize> {
     widening: N,
 }
 
-impl<'a, N: Real, const D: usize> Side<'a, N, D> {
+impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
     fn new(capsule: &TaperedCapsule<N, D>, taper: &'a Taper<N, D>, ray: &Ray<N, D>) -> Self {
         let [radius1, radius2] = capsule.radii();
         let to_middle = capsule.segment().a() + taper.along * (taper.length * N::HALF) - ray.origin;

@@ -7,7 +7,7 @@ use crate::shape::{FeatureId, Triangle};
 
 /// A corner as the line sees it.
 #[derive(Clone, Copy)]
-struct Corner<N: Real> {
+struct RayCorner<N: Real> {
     /// When the line is nearest to it.
     t: N,
     /// On which side of the line it lies, and how far, in units of the direction's length.
@@ -45,14 +45,14 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Optio
     Some(Span { thin, ..in_order(enter, leave) })
 }
 
-fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> Corner<N> {
+fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     let to_corner = corner - ray.origin;
     let t = to_corner.dot(&ray.dir) / ray.dir.norm_squared();
-    Corner { t, side: cross2(&ray.dir, &to_corner) }
+    RayCorner { t, side: cross2(&ray.dir, &to_corner) }
 }
 
 /// The side leads from the left of the line, or from it, to the right (`falling`) or back.
-fn crosses<N: Real>(corners: &[Corner<N>; 3], side: usize, falling: bool) -> bool {
+fn crosses<N: Real>(corners: &[RayCorner<N>; 3], side: usize, falling: bool) -> bool {
     let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
     let (high, low) = if falling { (from, to) } else { (to, from) };
     high >= N::ZERO && low <= N::ZERO && high > low
@@ -61,7 +61,7 @@ fn crosses<N: Real>(corners: &[Corner<N>; 3], side: usize, falling: bool) -> boo
 /// Where the line crosses a side: between the times of its ends, in proportion to their distances.
 fn crossing<N: Real>(
     triangle: &Triangle<N, 2>,
-    corners: &[Corner<N>; 3],
+    corners: &[RayCorner<N>; 3],
     side: usize,
     turns_left: bool,
 ) -> Crossing<N, 2> {
@@ -87,7 +87,7 @@ fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2>
 }
 
 /// All corners lie on the line: from the first to the last.
-fn lengthwise<N: Real>(corners: &[Corner<N>; 3], against: Vector<N, 2>) -> Span<N, 2> {
+fn lengthwise<N: Real>(corners: &[RayCorner<N>; 3], against: Vector<N, 2>) -> Span<N, 2> {
     let (mut first, mut last) = (0, 0);
     for index in 1..3 {
         first = if corners[index].t < corners[first].t { index } else { first };

@@ -1,6 +1,6 @@
 //! A line and a triangle in 3D.
 
-use super::segment::{Names, span as segment_span};
+use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, cross, cross2, unit, unit_or};
@@ -20,7 +20,7 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Optio
         Through::EdgeOn => (0..3).fold(None, |span, side| {
             let next = (side + 1) % 3;
             let ends = [&triangle.corners()[side as usize], &triangle.corners()[next as usize]];
-            let names = Names { ends: [side, next], between: FeatureId::Edge(side) };
+            let names = RayNames { ends: [side, next], between: FeatureId::Edge(side) };
             Span::union_of(span, segment_span(ends, names, ray))
         }),
     }

@@ -8,12 +8,12 @@ use crate::shape::{Polytope, PolytopeEdge, PolytopeFace};
 
 /// Points as doubles near 1, in which products neither overflow nor vanish, and the power of two
 /// that takes them back.
-struct Scaled<const D: usize> {
+struct ScaledPoints<const D: usize> {
     points: Vec<Point<f64, D>>,
     scale: f64,
 }
 
-impl<const D: usize> Scaled<D> {
+impl<const D: usize> ScaledPoints<D> {
     fn of<N: Real>(points: &[Point<N, D>]) -> Self {
         let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
         let scale = points.iter().fold(N::ZERO, largest).power_of_two_below().as_f64();
@@ -61,7 +61,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 impl<N: Real> Polytope<N, 2> {
     /// The polygon with these corners, which are counter-clockwise and three at least.
     pub(in crate::shape) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
-        let center = Scaled::of(&corners).center();
+        let center = ScaledPoints::of(&corners).center();
         let mut polygon = Self::from_vertices(corners, center);
         let count = count32(polygon.vertices.len());
         for side in 0..count {
@@ -87,7 +87,7 @@ impl<N: Real> Polytope<N, 3> {
         normals: &[Vector<N, 3>],
         faces: &[Vec<usize>],
     ) -> Option<Self> {
-        let center = Scaled::of(&corners).center();
+        let center = ScaledPoints::of(&corners).center();
         let mut hull = Self::from_vertices(corners, center);
         for (normal, face) in normals.iter().zip(faces) {
             let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();

@@ -7,29 +7,29 @@ use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Sho
 
 /// What faces a direction: the indices of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
-enum Part {
+enum HullPart {
     Face(u32),
     Side(u32),
     Vertex(usize),
 }
 
 /// Two vertices with their names.
-type Ends<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
+type EdgeEnds<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
 
 impl<N: Real, const D: usize> Polytope<N, D> {
     /// The rule of [`SupportMap::core_feature`], with any limit.
-    fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> Part {
+    fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> HullPart {
         let vertex = self.support_vertex(direction);
         let Some((side, slope)) = self.flattest_side(vertex, direction) else {
-            return Part::Vertex(vertex);
+            return HullPart::Vertex(vertex);
         };
         let face = self.most_aligned(self.side(side).faces.into_iter(), direction);
         if tilt.admits_face(&self.faces[face as usize].normal, direction) {
-            Part::Face(face)
+            HullPart::Face(face)
         } else if tilt.admits(slope * slope) {
-            Part::Side(side)
+            HullPart::Side(side)
         } else {
-            Part::Vertex(vertex)
+            HullPart::Vertex(vertex)
         }
     }
 
@@ -42,11 +42,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         noise: N,
     ) -> FeatureId {
         match self.part_toward(direction, Tilt::usual()) {
-            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
-            Part::Side(side) => {
+            HullPart::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+            HullPart::Side(side) => {
                 self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
             }
-            Part::Face(index) => {
+            HullPart::Face(index) => {
                 let face = &self.faces[index as usize];
                 let end = self.end_at(self.face_vertices(face), point, noise);
                 let side = || {
@@ -92,21 +92,21 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
     }
 
-    fn fill(&self, part: Part, out: &mut Feature<N, D>) {
+    fn fill(&self, part: HullPart, out: &mut Feature<N, D>) {
         match part {
-            Part::Face(face) => self.fill_face(face, out),
-            Part::Side(side) => out.set_segment(Self::side_id(side), self.ends(side)),
-            Part::Vertex(vertex) => {
+            HullPart::Face(face) => self.fill_face(face, out),
+            HullPart::Side(side) => out.set_segment(Self::side_id(side), self.ends(side)),
+            HullPart::Vertex(vertex) => {
                 out.set_point(FeatureId::Vertex(count32(vertex)), self.vertices[vertex]);
             }
         }
     }
 
-    fn named(part: Part) -> FeatureId {
+    fn named(part: HullPart) -> FeatureId {
         match part {
-            Part::Face(face) => FeatureId::Face(face),
-            Part::Side(side) => Self::side_id(side),
-            Part::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
+            HullPart::Face(face) => FeatureId::Face(face),
+            HullPart::Side(side) => Self::side_id(side),
+            HullPart::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
         }
     }
 
@@ -127,10 +127,10 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// What [`Self::fill`] says of a part of no more than two vertices.
-    fn ends_of(&self, part: Part) -> Option<(FeatureId, Ends<N, D>)> {
+    fn ends_of(&self, part: HullPart) -> Option<(FeatureId, EdgeEnds<N, D>)> {
         match part {
-            Part::Side(side) => Some((Self::side_id(side), self.ends(side))),
-            Part::Face(face) => {
+            HullPart::Side(side) => Some((Self::side_id(side), self.ends(side))),
+            HullPart::Face(face) => {
                 let [from, to] = *self.face_vertices(&self.faces[face as usize]) else {
                     return None;
                 };
@@ -138,11 +138,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
                     |vertex: u32| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
                 Some((FeatureId::Face(face), [named(from), named(to)]))
             }
-            Part::Vertex(_) => None,
+            HullPart::Vertex(_) => None,
         }
     }
 
-    fn ends(&self, side: u32) -> Ends<N, D> {
+    fn ends(&self, side: u32) -> EdgeEnds<N, D> {
         let ends = self.side(side).vertices;
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
     }
@@ -182,7 +182,7 @@ impl<N: Real> Polytope<N, 2> {
         if let Some((id, ends)) = self.ends_of(part) {
             return Shown::side(id, ends);
         }
-        let vertex = if let Part::Vertex(vertex) = part { vertex } else { 0 };
+        let vertex = if let HullPart::Vertex(vertex) = part { vertex } else { 0 };
         Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 

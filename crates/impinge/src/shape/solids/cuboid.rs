@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(Part::facing(direction, Tilt::usual()), out);
+        self.fill(CuboidPart::facing(direction, Tilt::usual()), out);
     }
 }
 
@@ -97,15 +97,15 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
             }
             free |= u32::from(point[axis].abs() < half - noise) << axis;
         }
-        let part = Part::<D> { free, corner: signs(&point.coords) };
-        (free != Part::<D>::ALL).then(|| part.name())
+        let part = CuboidPart::<D> { free, corner: signs(&point.coords) };
+        (free != CuboidPart::<D>::ALL).then(|| part.name())
     }
 
     /// The name of a part of the surface by `D` bits that say along which axes it ranges and `D` more
     /// that say along which of the others it is on the positive side.
     #[inline]
     pub(crate) const fn part_named(bits: u8) -> FeatureId {
-        Part::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
+        CuboidPart::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 
@@ -113,7 +113,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 /// the others are those of `corner`. Both are sets of axes as bits, `corner` of those with the
 /// positive sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::shape) struct Part<const D: usize> {
+pub(in crate::shape) struct CuboidPart<const D: usize> {
     free: u32,
     corner: u32,
 }
@@ -121,7 +121,7 @@ pub(in crate::shape) struct Part<const D: usize> {
 /// The part of a box that faces some direction: a point, a segment or a flat face with sides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacingPart<N: Real, const D: usize> {
-    part: Part<D>,
+    part: CuboidPart<D>,
     /// The outward normal of a face.
     pub(crate) normal: Option<Vector<N, D>>,
 }
@@ -153,7 +153,7 @@ const fn has(set: u32, axis: usize) -> bool {
     set >> axis & 1 == 1
 }
 
-impl<const D: usize> Part<D> {
+impl<const D: usize> CuboidPart<D> {
     const ALL: u32 = (1 << D) - 1;
 
     /// The names of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three dimensions.
@@ -249,11 +249,11 @@ impl<const D: usize> Part<D> {
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
     /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
-    const fn ring(self) -> Ring {
+    const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;
         let first = if is_face { own + 1 } else { 0 };
-        let mut ring = Ring::of_corner(self.corner & !self.free);
+        let mut ring = CuboidRing::of_corner(self.corner & !self.free);
         let mut at = first;
         while at < first + D {
             if has(self.free, at % D) {
@@ -266,7 +266,7 @@ impl<const D: usize> Part<D> {
     }
 
     /// The names of the sides of a ring. A point has no side, a segment one and a rectangle four.
-    const fn side_ids(ring: &Ring) -> [FeatureId; 4] {
+    const fn side_ids(ring: &CuboidRing) -> [FeatureId; 4] {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {
             let (from, to) = (ring.corners[at], ring.corners[(at + 1) % ring.count]);
@@ -277,8 +277,9 @@ impl<const D: usize> Part<D> {
     }
 
     /// The rings of all faces, in the order of their names, and the names of their sides.
-    pub(in crate::shape) const FACES: [(Ring, [FeatureId; 4]); 6] = {
-        let (mut faces, mut index) = ([(Ring::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
+    pub(in crate::shape) const FACES: [(CuboidRing, [FeatureId; 4]); 6] = {
+        let (mut faces, mut index) =
+            ([(CuboidRing::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
         while index < 2 * D {
             let axis = 1 << (index / 2);
             let corner = if index % 2 == 0 { axis } else { 0 };
@@ -323,12 +324,12 @@ impl<const D: usize> Part<D> {
 
 /// The corners of a part that is not the whole box, as sets of axes: four at most.
 #[derive(Clone, Copy)]
-pub(in crate::shape) struct Ring {
+pub(in crate::shape) struct CuboidRing {
     pub(in crate::shape) corners: [u32; 4],
     count: usize,
 }
 
-impl Ring {
+impl CuboidRing {
     const fn of_corner(corner: u32) -> Self {
         Self { corners: [corner; 4], count: 1 }
     }
@@ -386,7 +387,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     /// What [`SupportMap::core_feature`] answers, without its corners; `None` where the box is flat
     /// along an edge of it.
     pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
-        let part = Part::<D>::facing(direction, Tilt::usual());
+        let part = CuboidPart::<D>::facing(direction, Tilt::usual());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
         if (0..D).any(is_flat) {
             return None;
@@ -395,12 +396,12 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         Some(FacingPart { part, normal: is_face.then(|| part.normal()) })
     }
 
-    fn fill(&self, part: Part<D>, out: &mut Feature<N, D>) {
+    fn fill(&self, part: CuboidPart<D>, out: &mut Feature<N, D>) {
         out.clear();
         out.id = part.name();
         let (ring, side_ids) = match out.id {
-            FeatureId::Face(index) => Part::<D>::FACES[index as usize],
-            _ => (part.ring(), Part::<D>::side_ids(&part.ring())),
+            FeatureId::Face(index) => CuboidPart::<D>::FACES[index as usize],
+            _ => (part.ring(), CuboidPart::<D>::side_ids(&part.ring())),
         };
         for &corner in &ring.corners[..ring.count] {
             out.push(FeatureId::Vertex(corner), self.corner(corner));
@@ -416,8 +417,8 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     }
 
     #[track_caller]
-    fn part(id: FeatureId, dimension: usize) -> Part<D> {
-        match Part::named(id) {
+    fn part(id: FeatureId, dimension: usize) -> CuboidPart<D> {
+        match CuboidPart::named(id) {
             Some(part) if part.dimension() == dimension => part,
             _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
         }
@@ -427,14 +428,14 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 impl<N: Real> Cuboid<N, 2> {
     /// See [`Shown::of`]; `None` where the box is flat along the side.
     pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
-        let part = Part::<2>::facing(direction, Tilt::usual());
+        let part = CuboidPart::<2>::facing(direction, Tilt::usual());
         let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
         let FeatureId::Face(index) = part.name() else {
             let (id, point) = named(part.corner);
             return Some(Shown::vertex(id, point));
         };
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
-        let [from, to, ..] = Part::<2>::FACES[index as usize].0.corners;
+        let [from, to, ..] = CuboidPart::<2>::FACES[index as usize].0.corners;
         (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
     }
 }
@@ -446,7 +447,7 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
         let known = match id {
-            FeatureId::Edge(index) => Part::<D>::EDGES.get(index as usize).copied().flatten(),
+            FeatureId::Edge(index) => CuboidPart::<D>::EDGES.get(index as usize).copied().flatten(),
             FeatureId::Vertex(_) | FeatureId::Face(_) => None,
         };
         let ends = known.unwrap_or_else(|| {
@@ -461,22 +462,22 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
-        match Part::<D>::named(id) {
+        match CuboidPart::<D>::named(id) {
             Some(part) => part.normal(),
             None => panic!("a cuboid has no feature named {id:?}"),
         }
     }
 
     fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(Part::face_facing(direction), out);
+        self.fill(CuboidPart::face_facing(direction), out);
     }
 
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
-        self.fill(Part::facing(direction, Tilt::of_angle(angle)), out);
+        self.fill(CuboidPart::facing(direction, Tilt::of_angle(angle)), out);
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        Part::facing(direction, Tilt::least()).name()
+        CuboidPart::facing(direction, Tilt::least()).name()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::math::exact::{area_vector, volume};
 use crate::math::{Point, Pose, Real, Vector, unit};
 use crate::shape::error::{finite, or_panic};
 use crate::shape::scale::Scale;
-use crate::shape::solids::tetrahedron_flat::Outline;
+use crate::shape::solids::tetrahedron_flat::FlatOutline;
 use crate::shape::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, Polytope, ScaleError, Shape, ShapeError,
     ShapeHandle, SupportMap,
@@ -47,7 +47,7 @@ pub struct Tetrahedron<N: Real> {
     /// Of one without volume only the names in it are right.
     polytope: Polytope<N, 3>,
     /// What is left of one without volume.
-    flat: Option<Outline<N>>,
+    flat: Option<FlatOutline<N>>,
 }
 
 impl<N: Real> Tetrahedron<N> {
@@ -75,9 +75,9 @@ impl<N: Real> Tetrahedron<N> {
         for (name, corner) in NAMES.into_iter().zip(&corners) {
             finite(name, &corner.coords)?;
         }
-        let extent = Extent::of(&corners);
+        let extent = TetrahedronExtent::of(&corners);
         let polytope = polytope(corners, extent.is_mirrored);
-        let flat = extent.is_flat::<N>().then(|| Outline::of(&corners));
+        let flat = extent.is_flat::<N>().then(|| FlatOutline::of(&corners));
         Ok(Self { corners, polytope, flat })
     }
 
@@ -96,7 +96,7 @@ impl<N: Real> Tetrahedron<N> {
 }
 
 /// How thick four points are, in doubles near 1.
-struct Extent {
+struct TetrahedronExtent {
     /// The fourth corner sees the first three counter-clockwise.
     is_mirrored: bool,
     /// The largest distance of a corner from the first.
@@ -105,7 +105,7 @@ struct Extent {
     height: f64,
 }
 
-impl Extent {
+impl TetrahedronExtent {
     fn of<N: Real>(corners: &[Point<N, 3>; 4]) -> Self {
         let [a, b, c, d] = scaled(corners);
         let (e, f, g) = (b - a, c - a, d - a);

@@ -11,14 +11,14 @@ const STRAIGHT: f64 = 4096.0;
 /// The corners of the outline, counter-clockwise seen from where the normal points; two for a segment,
 /// one for a point.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::shape) struct Outline<N: Real> {
+pub(in crate::shape) struct FlatOutline<N: Real> {
     ring: Vec<u32>,
     points: Vec<Point<N, 3>>,
     /// Of no meaning for a segment or a point.
     normal: Vector<N, 3>,
 }
 
-impl<N: Real> Outline<N> {
+impl<N: Real> FlatOutline<N> {
     pub(in crate::shape) fn of(corners: &[Point<N, 3>; 4]) -> Self {
         let places = scaled(corners);
         let noise = STRAIGHT * N::EPSILON.as_f64();

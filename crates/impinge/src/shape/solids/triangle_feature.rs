@@ -6,7 +6,7 @@ use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
 use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
 
 /// The plane (in two dimensions: the space) that a triangle spans.
-struct Span<N: Real, const D: usize> {
+struct TriangleSpan<N: Real, const D: usize> {
     /// The side that is longest.
     longest: usize,
     /// Unit, along the longest side from its first vertex to its second.
@@ -15,7 +15,7 @@ struct Span<N: Real, const D: usize> {
     rise: Option<Vector<N, D>>,
 }
 
-impl<N: Real, const D: usize> Span<N, D> {
+impl<N: Real, const D: usize> TriangleSpan<N, D> {
     /// `None` if the corners coincide.
     fn of(corners: &[Point<N, D>; 3]) -> Option<Self> {
         let side = |i: usize| corners[(i + 1) % 3] - corners[i];
@@ -99,7 +99,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         tilt: Tilt<N>,
         out: &mut Feature<N, D>,
     ) {
-        let Some(span) = Span::of(self.corners()) else {
+        let Some(span) = TriangleSpan::of(self.corners()) else {
             return out.set_point(vertex_id(0), self.corners()[0]);
         };
         if span.lean_squared(direction).is_some_and(|lean| tilt.admits(lean)) {
@@ -154,7 +154,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 
     /// The side at the support vertex that leans least, and the sine by which it does; of corners on
     /// a line only the longest counts.
-    fn flattest_side(&self, span: &Span<N, D>, direction: &Vector<N, D>) -> (usize, N) {
+    fn flattest_side(&self, span: &TriangleSpan<N, D>, direction: &Vector<N, D>) -> (usize, N) {
         if span.rise.is_none() {
             return (span.longest, span.along.dot(direction).abs());
         }
@@ -169,7 +169,12 @@ impl<N: Real, const D: usize> Triangle<N, D> {
     }
 
     /// The two-sided face: in 3D only.
-    fn fill_polygon(&self, span: &Span<N, D>, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
+    fn fill_polygon(
+        &self,
+        span: &TriangleSpan<N, D>,
+        direction: &Vector<N, D>,
+        out: &mut Feature<N, D>,
+    ) {
         out.clear();
         let ring = self.ring(direction);
         out.id = FeatureId::Face(u32::from(ring[1] == 2));
@@ -194,7 +199,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 
     /// Unit, in the triangle's plane, out of a side; `None` if the corners lie on a line.
     fn side_normal(&self, side: usize) -> Option<Vector<N, D>> {
-        Span::of(self.corners())?.rise?;
+        TriangleSpan::of(self.corners())?.rise?;
         let corners = self.corners();
         let (along, _) = unit(&(corners[(side + 1) % 3] - corners[side]))?;
         let (normal, _) = unit(&without(&(corners[side] - corners[(side + 2) % 3]), &along))?;
@@ -213,7 +218,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
                 sum.or_else(|| outward(index)).map(|(normal, _)| normal)
             }
             FeatureId::Edge(side) | FeatureId::Face(side) => {
-                let along = Span::of(self.corners()).map(|span| span.along);
+                let along = TriangleSpan::of(self.corners()).map(|span| span.along);
                 self.side_normal(side as usize)
                     .or_else(|| along.map(|along| any_perpendicular(&along)))
             }
@@ -244,7 +249,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 impl<N: Real> Triangle<N, 2> {
     /// See [`Shown::of`]; `None` where the corners coincide.
     pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
-        let span = Span::of(self.corners())?;
+        let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
         if Tilt::usual().admits(slope * slope) {
             let ends = self.side_ends(side, direction);
@@ -370,7 +375,7 @@ impl<N: Real> ConvexPolyhedron<N, 2> for Triangle<N, 2> {
     }
 
     fn support_face_toward(&self, direction: &Vector<N, 2>, out: &mut Feature<N, 2>) {
-        let Some(span) = Span::of(self.corners()) else {
+        let Some(span) = TriangleSpan::of(self.corners()) else {
             return out.set_point(vertex_id(0), self.corners()[0]);
         };
         let (side, _) = self.flattest_side(&span, direction);
@@ -408,7 +413,7 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
             return self.thin_normal(id);
         }
         let is_second = is_second_face(id);
-        let span = Span::of(self.corners());
+        let span = TriangleSpan::of(self.corners());
         let along = span.as_ref().map_or_else(|| axis(0), |span| span.along);
         let rise = span.and_then(|span| span.rise).unwrap_or_else(|| any_perpendicular(&along));
         let across = cross(&along, &rise);
@@ -416,7 +421,7 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
     }
 
     fn support_face_toward(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        match Span::of(self.corners()) {
+        match TriangleSpan::of(self.corners()) {
             None => out.set_point(vertex_id(0), self.corners()[0]),
             Some(span) if span.rise.is_none() => self.fill_side(span.longest, direction, out),
             Some(span) => self.fill_polygon(&span, direction, out),

@@ -19,12 +19,12 @@ pub(in crate::shape) struct Bend<N: Real> {
     /// The unit normals on the fronts, and the scalar product of the two.
     fronts: [Vector<N, 3>; 2],
     cosine: N,
-    shape: Shape,
+    shape: BendShape,
 }
 
 /// How an edge looks from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::shape) enum Shape {
+pub(in crate::shape) enum BendShape {
     Flat,
     Ridge,
     Hollow,
@@ -37,11 +37,11 @@ impl<N: Real> Bend<N> {
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: [Vector<N, 3>; 2],
     ) -> Option<Self> {
-        Some(Self::of(Shape::new(corners, &fronts)?, fronts))
+        Some(Self::of(BendShape::new(corners, &fronts)?, fronts))
     }
 
     /// Of two triangles of which it is known how they lie.
-    pub(in crate::shape) fn of(shape: Shape, fronts: [Vector<N, 3>; 2]) -> Self {
+    pub(in crate::shape) fn of(shape: BendShape, fronts: [Vector<N, 3>; 2]) -> Self {
         Self { fronts, cosine: fronts[0].dot(&fronts[1]), shape }
     }
 
@@ -59,16 +59,16 @@ impl<N: Real> Bend<N> {
             return None;
         }
         match (self.shape, is_front) {
-            (Shape::Flat, _) => {
+            (BendShape::Flat, _) => {
                 // Close to the faces' normal and yet not flat it may lean along the edge as well.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
                 let is_level = squared_sine < N::lit(1.0 - CLOSE);
                 let is_leaning = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
                 (is_level || is_leaning).then_some(false)
             }
-            (Shape::Hollow, true) | (Shape::Ridge, false) => Some(false),
-            (Shape::Ridge, true) => self.is_between(normal, [along1, along2]),
-            (Shape::Hollow, false) => self
+            (BendShape::Hollow, true) | (BendShape::Ridge, false) => Some(false),
+            (BendShape::Ridge, true) => self.is_between(normal, [along1, along2]),
+            (BendShape::Hollow, false) => self
                 .is_between(normal, [along1, along2])
                 .filter(|is_between| !(is_one_sided && *is_between)),
         }
@@ -96,7 +96,7 @@ impl<N: Real> Bend<N> {
     }
 }
 
-impl Shape {
+impl BendShape {
     /// As [`Bend::new`].
     pub(in crate::shape) fn new<N: Real>(
         corners: [&[Point<N, 3>; 3]; 2],

@@ -1,8 +1,8 @@
 //! What a solid meets on its way.
 
 use super::QueryFilter;
-use super::ranking::Room;
-use super::search::Probe;
+use super::ranking::RankRange;
+use super::search::WorldProbe;
 use super::shape::around;
 use crate::collide::Placed;
 use crate::math::{Space, Vector, max};
@@ -82,13 +82,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
         let Some(cast) = Cast::new(position, velocity, shape, options) else { return Vec::new() };
-        self.ranked_impacts(&cast, Room::for_all(options.max_time), filter)
+        self.ranked_impacts(&cast, RankRange::for_all(options.max_time), filter)
     }
 
     fn ranked_impacts(
         &self,
         cast: &Cast<'_, N, D>,
-        room: Room<N>,
+        room: RankRange<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
         let found = self.rank(&cast.probe, room, filter, &|body, latest| cast.impact(body, latest));
@@ -98,7 +98,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// A moving solid and what its box asks for.
 struct Cast<'a, N: Space<D>, const D: usize> {
-    probe: Probe<N, D>,
+    probe: WorldProbe<N, D>,
     moving: Moving<'a, N, D>,
     options: ImpactOptions<N>,
 }
@@ -116,7 +116,7 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
         let placed = Placed::of_isometry(position, shape.geometry());
         let is_finite = velocity.iter().all(|x| x.is_finite_number());
         is_finite.then_some(Self {
-            probe: Probe::Cast(reach, *velocity),
+            probe: WorldProbe::Cast(reach, *velocity),
             moving: Moving { placed, velocity: *velocity },
             options: *options,
         })

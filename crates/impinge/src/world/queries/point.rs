@@ -1,7 +1,7 @@
 //! Where a point lies to the objects.
 
-use super::ranking::Room;
-use super::search::Probe;
+use super::ranking::RankRange;
+use super::search::WorldProbe;
 use super::{Neighbor, QueryFilter};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
@@ -95,7 +95,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<Neighbor<'_, N, D, T>> {
-        let room = Room { count, limit: max_distance };
+        let room = RankRange { count, limit: max_distance };
         let Some(probe) = near(point) else { return Vec::new() };
         let found = self
             .rank(&probe, room, filter, &|body, farthest| projection(body, point, true, farthest));
@@ -109,9 +109,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 }
 
 /// What boxes are asked about a point; `None` if it is not finite.
-fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<Probe<N, D>> {
+fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N, D>> {
     let usable = point.iter().all(|x| x.is_finite_number());
-    usable.then(|| Probe::Near(Aabb::at(*point)))
+    usable.then(|| WorldProbe::Near(Aabb::at(*point)))
 }
 
 /// How far an object is from a point, and its nearest point; `None` beyond `farthest`.

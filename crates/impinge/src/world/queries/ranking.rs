@@ -44,12 +44,12 @@ pub(super) trait Rank<N: Real, A> {
 
 /// How many answers are asked for, and up to which key.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Room<N: Real> {
+pub(super) struct RankRange<N: Real> {
     pub(super) count: usize,
     pub(super) limit: N,
 }
 
-impl<N: Real> Room<N> {
+impl<N: Real> RankRange<N> {
     /// All answers with keys up to `limit`.
     pub(super) const fn for_all(limit: N) -> Self {
         Self { count: usize::MAX, limit }
@@ -92,12 +92,12 @@ impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
 
 /// A ranking of one answer, which needs no memory.
 #[derive(Debug)]
-pub(super) struct Best<N: Real, A> {
+pub(super) struct BestOne<N: Real, A> {
     limit: N,
     best: Option<Ranked<N, A>>,
 }
 
-impl<N: Real, A> Best<N, A> {
+impl<N: Real, A> BestOne<N, A> {
     /// Room for an answer with a key up to `limit`; `None` if that is no room.
     pub(super) fn new(limit: N) -> Option<Self> {
         (limit >= N::ZERO).then_some(Self { limit, best: None })
@@ -109,7 +109,7 @@ impl<N: Real, A> Best<N, A> {
     }
 }
 
-impl<N: Real, A> Rank<N, A> for Best<N, A> {
+impl<N: Real, A> Rank<N, A> for BestOne<N, A> {
     fn limit(&self) -> N {
         self.best.as_ref().map_or(self.limit, |best| best.key)
     }
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn one_answer_is_that_of_a_ranking_of_one() {
         for limit in [0.5, 1.0, 2.0, f32::INFINITY] {
-            let mut best = Best::new(limit).expect("room");
+            let mut best = BestOne::new(limit).expect("room");
             for (key, index) in [(3.0, 0), (f32::NAN, 1), (1.0, 4), (2.0, 3), (1.0, 2), (9.0, 5)] {
                 let handle = CollisionObjectHandle::new(index, Generation::of_no_table(0));
                 best.offer(Ranked { key, handle, answer: index });
@@ -185,7 +185,7 @@ mod tests {
                 best.found().map(|best| (best.key, best.answer)).into_iter().collect();
             assert_eq!(found, filled(1, limit), "up to {limit}");
         }
-        assert!(Best::<f32, ()>::new(f32::NAN).is_none(), "no room");
+        assert!(BestOne::<f32, ()>::new(f32::NAN).is_none(), "no room");
     }
 
     #[test]

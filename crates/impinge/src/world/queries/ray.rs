@@ -1,8 +1,8 @@
 //! What a ray meets.
 
 use super::QueryFilter;
-use super::ranking::Room;
-use super::search::Probe;
+use super::ranking::RankRange;
+use super::search::WorldProbe;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::{Ray, RayBatch, RayIntersection};
@@ -27,7 +27,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     {
         let (ray, mut found) = (*ray, Vec::new());
         self.broad_phase.interferences_with_ray(&ray, &mut found);
-        let probe = Probe::Ray(ray);
+        let probe = WorldProbe::Ray(ray);
         self.candidates(found, &|volume| probe.meets(volume), &groups.into())
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
@@ -87,7 +87,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        let found = self.best(&Probe::Ray(*ray), max_time, filter, &|body, latest| {
+        let found = self.best(&WorldProbe::Ray(*ray), max_time, filter, &|body, latest| {
             let hit = cast(body, ray, latest, solid)?;
             Some((hit.toi, hit))
         });
@@ -147,17 +147,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        self.ranked_hits(ray, Room::for_all(max_time), solid, filter)
+        self.ranked_hits(ray, RankRange::for_all(max_time), solid, filter)
     }
 
     fn ranked_hits(
         &self,
         ray: &Ray<N, D>,
-        room: Room<N>,
+        room: RankRange<N>,
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        let found = self.rank(&Probe::Ray(*ray), room, filter, &|body, latest| {
+        let found = self.rank(&WorldProbe::Ray(*ray), room, filter, &|body, latest| {
             let hit = cast(body, ray, latest, solid)?;
             Some((hit.toi, hit))
         });

@@ -1,7 +1,7 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
 use super::QueryFilter;
-use super::ranking::{Best, Rank, Ranked, Ranking, Room};
+use super::ranking::{BestOne, Rank, RankRange, Ranked, Ranking};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::Proposal;
 use crate::bvh::GROUP;
@@ -12,7 +12,7 @@ use crate::world::{CollisionObject, CollisionWorld, WorldBroadPhase};
 
 /// What the boxes are asked; the key of a box is a time or a distance.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Probe<N: Real, const D: usize> {
+pub(super) enum WorldProbe<N: Real, const D: usize> {
     /// When they are entered.
     Ray(Ray<N, D>),
     /// How far they are.
@@ -21,7 +21,7 @@ pub(super) enum Probe<N: Real, const D: usize> {
     Cast(Aabb<N, D>, Vector<N, D>),
 }
 
-impl<N: Space<D>, const D: usize> Probe<N, D> {
+impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
     /// The key of one box, which is never above that of a solid in it; `None` if the solid has none.
     fn key(&self, aabb: &Aabb<N, D>) -> Option<N> {
         match self {
@@ -37,7 +37,12 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
     }
 
     /// The boxes of the broad phase, those of least keys about first.
-    fn visit(&self, broad_phase: &WorldBroadPhase<N, D>, limit: N, visit: &mut Visit<'_, N>) {
+    fn visit(
+        &self,
+        broad_phase: &WorldBroadPhase<N, D>,
+        limit: N,
+        visit: &mut ProposalVisitor<'_, N>,
+    ) {
         match self {
             Self::Ray(ray) => broad_phase.visit_ray_roughly(ray, limit, visit),
             Self::Near(own) => broad_phase.visit_nearest_roughly(own, limit, visit),
@@ -49,13 +54,13 @@ impl<N: Space<D>, const D: usize> Probe<N, D> {
 }
 
 /// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
-type Visit<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
+type ProposalVisitor<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
 /// An object and what was found about it.
-type Found<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A);
+type FoundObject<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A);
 
 /// An object and what was found about it, with the key that it was ranked by.
-pub(super) type Answer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
+pub(super) type QueryAnswer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
 
 /// Gets an object and the largest key that still counts, and returns the key of the object and the
 /// answer; `None` if the object has no key or a larger one.
@@ -65,11 +70,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The best answers, in order, that `measure` gives about objects that the filter allows.
     pub(super) fn rank<A>(
         &self,
-        probe: &Probe<N, D>,
-        room: Room<N>,
+        probe: &WorldProbe<N, D>,
+        room: RankRange<N>,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
-    ) -> Vec<Answer<'_, N, D, T, A>> {
+    ) -> Vec<QueryAnswer<'_, N, D, T, A>> {
         let Some(mut ranking) = Ranking::new(room.count, room.limit) else { return Vec::new() };
         self.rank_into(&mut ranking, probe, filter, measure);
         ranking.into_sorted().into_iter().map(answer).collect()
@@ -78,20 +83,20 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The best of the answers with keys up to `limit`.
     pub(super) fn best<A>(
         &self,
-        probe: &Probe<N, D>,
+        probe: &WorldProbe<N, D>,
         limit: N,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
-    ) -> Option<Answer<'_, N, D, T, A>> {
-        let mut best = Best::new(limit)?;
+    ) -> Option<QueryAnswer<'_, N, D, T, A>> {
+        let mut best = BestOne::new(limit)?;
         self.rank_into(&mut best, probe, filter, measure);
         best.found().map(answer)
     }
 
     fn rank_into<'a, A>(
         &'a self,
-        ranking: &mut impl Rank<N, Found<'a, N, D, T, A>>,
-        probe: &Probe<N, D>,
+        ranking: &mut impl Rank<N, FoundObject<'a, N, D, T, A>>,
+        probe: &WorldProbe<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
     ) {
@@ -162,8 +167,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 }
 
 fn answer<'a, N: Space<D>, const D: usize, T, A>(
-    ranked: Ranked<N, Found<'a, N, D, T, A>>,
-) -> Answer<'a, N, D, T, A> {
+    ranked: Ranked<N, FoundObject<'a, N, D, T, A>>,
+) -> QueryAnswer<'a, N, D, T, A> {
     let (object, answer) = ranked.answer;
     (object, ranked.key, answer)
 }

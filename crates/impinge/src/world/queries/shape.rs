@@ -1,7 +1,7 @@
 //! What lies near a solid, and what it overlaps.
 
-use super::ranking::Room;
-use super::search::Probe;
+use super::ranking::RankRange;
+use super::search::WorldProbe;
 use super::{Neighbor, QueryFilter};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::Placed;
@@ -190,8 +190,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> Vec<Neighbor<'_, N, D, T>> {
         let Some(aabb) = around(position, shape) else { return Vec::new() };
         let placed = Placed::of_isometry(position, shape.geometry());
-        let room = Room { count, limit: max_distance };
-        let found = self.rank(&Probe::Near(aabb), room, filter, &|body, farthest| {
+        let room = RankRange { count, limit: max_distance };
+        let found = self.rank(&WorldProbe::Near(aabb), room, filter, &|body, farthest| {
             let found = separation(&placed, body, farthest)?;
             Some((max(found.distance, N::ZERO), found))
         });

@@ -11,7 +11,7 @@ use crate::shape::FeatureId;
 pub(super) const SLOTS: usize = 24;
 
 /// The slots of one pair.
-pub(super) struct Choice<'a, N: Real, const D: usize, const COUNT: usize> {
+pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
     pub(super) slots: &'a Slots<N, D, COUNT>,
     pub(super) lane: usize,
     /// The slots that hold a candidate, by bits.
@@ -45,14 +45,14 @@ const fn slot_of(code: u32) -> usize {
 }
 
 /// The numbers of the old points, for the slots that have their names.
-struct Kept {
+struct KeptSlots {
     slots: u32,
     /// All of the old points are candidates again, and in the same slots.
     is_still: bool,
     ids: [u32; SLOTS],
 }
 
-impl Kept {
+impl KeptSlots {
     /// Takes over the numbers; no two old points share their names, nor do two slots.
     #[inline(always)]
     fn of<N: Real, const D: usize>(
@@ -105,11 +105,11 @@ impl Iterator for Ones {
     }
 }
 
-impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
+impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates.
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
-        let kept = Kept::of(&raw.points, naming, self.valid);
+        let kept = KeptSlots::of(&raw.points, naming, self.valid);
         let is_full = self.valid.count_ones() as usize <= limit;
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         let deepest = self.deepest(slots, kept.slots);
@@ -134,7 +134,7 @@ impl<N: Real, const D: usize, const COUNT: usize> Choice<'_, N, D, COUNT> {
         &self,
         slots: u32,
         deepest: usize,
-        (kept, naming): (&Kept, &impl Naming),
+        (kept, naming): (&KeptSlots, &impl Naming),
         raw: &mut RawManifold<N, D>,
     ) {
         raw.points.resize(slots.count_ones() as usize, RawPoint::default());

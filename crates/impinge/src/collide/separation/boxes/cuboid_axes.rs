@@ -6,7 +6,7 @@
 use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
 
 /// Two boxes, the second placed in the frame of the first.
-pub(crate) struct Boxes<N: Real> {
+pub(crate) struct BoxPair<N: Real> {
     pub(crate) half1: Vector<N, 3>,
     pub(crate) half2: Vector<N, 3>,
     pub(crate) pose12: Pose<N, 3>,
@@ -31,7 +31,7 @@ pub(crate) struct BoxAxis<N: Real> {
     pub(crate) gap: N,
 }
 
-impl<N: Real> Boxes<N> {
+impl<N: Real> BoxPair<N> {
     /// What arithmetic on these numbers cannot resolve.
     pub(crate) fn noise(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();

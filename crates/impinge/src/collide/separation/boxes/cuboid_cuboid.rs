@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::cuboid_axes::{AxisKind, BoxAxis, Boxes};
+use super::cuboid_axes::{AxisKind, BoxAxis, BoxPair};
 use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::collide::separation::{general, wrong_kinds};
@@ -23,7 +23,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         wrong_kinds(pair)
     };
     let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
-    let boxes = Boxes { half1, half2, pose12: pair.pose12 };
+    let boxes = BoxPair { half1, half2, pose12: pair.pose12 };
     let (best, noise) = (boxes.best_axis(), boxes.noise());
     if best.gap > limit + N::lit(16.0) * noise {
         return None;
@@ -38,17 +38,17 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 }
 
 /// The points where the boxes face each other along an axis.
-fn along<N: Real>(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
+fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     let (normal, distance) = (axis.normal, axis.gap);
     let (point1, point2) = match axis.kind {
         AxisKind::Face1(index) => {
-            let face = ReferenceFace { half: boxes.half1, axis: index, toward: normal[index] };
+            let face = BoxReferenceFace { half: boxes.half1, axis: index, toward: normal[index] };
             let point2 = face.deepest(&boxes.half2, &boxes.pose12, distance);
             (face.onto(&point2), point2)
         }
         AxisKind::Face2(index) => {
             let toward = -boxes.axis2(index).dot(&normal);
-            let face = ReferenceFace { half: boxes.half2, axis: index, toward };
+            let face = BoxReferenceFace { half: boxes.half2, axis: index, toward };
             let point1 = face.deepest(&boxes.half1, &boxes.pose12.inverse(), distance);
             (boxes.pose12.point(&point1), boxes.pose12.point(&face.onto(&point1)))
         }
@@ -59,7 +59,7 @@ fn along<N: Real>(boxes: &Boxes<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
 
 /// The nearest points of the two edges, of given directions, that face each other along `normal`.
 fn between_edges<N: Real>(
-    boxes: &Boxes<N>,
+    boxes: &BoxPair<N>,
     axis1: usize,
     axis2: usize,
     normal: &Vector<N, 3>,
@@ -82,13 +82,13 @@ fn edge_toward<N: Real>(
 }
 
 /// A face of a box, in its own frame: at `axis`, on the side that `toward` has the sign of.
-struct ReferenceFace<N: Real> {
+struct BoxReferenceFace<N: Real> {
     half: Vector<N, 3>,
     axis: usize,
     toward: N,
 }
 
-impl<N: Real> ReferenceFace<N> {
+impl<N: Real> BoxReferenceFace<N> {
     fn sign(&self) -> N {
         if self.toward < N::ZERO { -N::ONE } else { N::ONE }
     }

@@ -56,10 +56,10 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
-type Found<N> = (N, usize, usize, bool);
+type FoundAxis<N> = (N, usize, usize, bool);
 
 /// The larger gap; of equals the one that comes first.
-fn better<N: Real>(one: Found<N>, other: Found<N>) -> Found<N> {
+fn better<N: Real>(one: FoundAxis<N>, other: FoundAxis<N>) -> FoundAxis<N> {
     if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
 }
 

@@ -1,7 +1,7 @@
 //! Eight segments at once against a ball.
 
 use super::super::balls::ball_segment;
-use super::{ChainQuestion, Eight, Links};
+use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, Tiles};
 use crate::math::lanes::{bits, with_lanes};
@@ -53,7 +53,7 @@ fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {
-    let eight = Eight::<V>::of(simd, tiles, question)?;
+    let eight = EightSegments::<V>::of(simd, tiles, question)?;
     let distance = eight.from_middle.sqrt() - V::all(simd, radius);
     let beyond = distance.simd_gt(V::all(simd, question.limit));
     Some((bits(beyond), eight.least()))

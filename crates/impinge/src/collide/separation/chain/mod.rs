@@ -83,7 +83,7 @@ impl<N: Real> ChainQuestion<'_, N> {
 }
 
 /// Eight segments as seen from the origin of the pairs.
-struct Eight<V> {
+struct EightSegments<V> {
     ends: [[V; 2]; 2],
     /// From the first end to the second, and the square of that.
     side: [V; 2],
@@ -92,7 +92,7 @@ struct Eight<V> {
     from_middle: V,
 }
 
-impl<V> Eight<V> {
+impl<V> EightSegments<V> {
     /// `None` if a length is no usual number.
     #[inline(always)]
     fn of<S: Simd, N: Real>(

@@ -1,8 +1,8 @@
 //! Eight segments at once against a polygon of up to eight vertices, inflated or not.
 
-use super::super::polygons::outline::{Outline, Row};
+use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
-use super::{ChainQuestion, Eight, Links};
+use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::packet::LANES;
 use crate::math::lanes::{bits, dot, either, negated, over, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
@@ -24,11 +24,12 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &ChainQuestion<'_, N>,
     links: &mut Links<N>,
 ) -> Option<()> {
-    let solid = Outline::of::<S, V>(simd, &question.solid).filter(|solid| solid.count <= LANES)?;
+    let solid =
+        PolygonOutline::of::<S, V>(simd, &question.solid).filter(|solid| solid.count <= LANES)?;
     let solid = solid.placed::<S, V>(simd, &question.pose12);
     let solid = PolygonExtents::new::<S, V>(simd, solid);
     for (block, tiles) in question.tiles.iter().enumerate() {
-        let eight = Eight::<V>::of(simd, tiles, question)?;
+        let eight = EightSegments::<V>::of(simd, tiles, question)?;
         links.from_middle = min(links.from_middle, eight.least());
         let axes = SegmentAxes::of(simd, &eight, &solid, question.limit);
         let mut within = !axes.beyond & question.lanes_of(block);
@@ -37,7 +38,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             within &= within - 1;
             let [a, b, _] = tiles.corners(lane);
             let segment = Segment::of_finite(a - question.origin, b - question.origin);
-            let own = Outline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
+            let own = PolygonOutline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
             let outlines = [&own, &solid.outline];
             let found = of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
             if found.distance <= question.limit {
@@ -50,7 +51,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 
 /// A polygon in the frame of the segments, and how far it reaches along its own directions.
 struct PolygonExtents<N: Real> {
-    outline: Outline<N>,
+    outline: PolygonOutline<N>,
     size: N,
     reaches: Row<N>,
     tips: [Row<N>; 2],
@@ -61,7 +62,7 @@ struct PolygonExtents<N: Real> {
 
 impl<N: Real> PolygonExtents<N> {
     #[inline(always)]
-    fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: Outline<N>) -> Self {
+    fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
         let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
         let (ways, is_tip) = outline.tips::<S, V>(simd, 0);
         for axis in 0..2 {
@@ -112,7 +113,7 @@ impl<N: Real> SegmentAxes<N> {
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
-        eight: &Eight<V>,
+        eight: &EightSegments<V>,
         solid: &PolygonExtents<N>,
         limit: N,
     ) -> Self {
@@ -149,7 +150,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     [a, b]: [&[V; 2]; 2],
     side: &[V; 2],
     squared: V,
-    solid: &Outline<N>,
+    solid: &PolygonOutline<N>,
 ) -> BestDirection<V> {
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
@@ -173,7 +174,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     directions: &[V; 2],
-    solid: &Outline<N>,
+    solid: &PolygonOutline<N>,
 ) -> (V, V) {
     let (mut low, mut high) = (V::all(simd, N::INFINITY), V::all(simd, -N::INFINITY));
     for vertex in 0..solid.count {

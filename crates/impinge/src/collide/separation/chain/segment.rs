@@ -2,7 +2,7 @@
 
 use super::super::polygons::polygon_polygon;
 use super::super::segments::segment_lanes::SegmentGap;
-use super::{ChainQuestion, Eight, Links};
+use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, Tiles};
 use crate::convex::Separation;
@@ -21,7 +21,7 @@ pub(super) fn links<N: Real>(
 ) -> Option<()> {
     for (block, tiles) in question.tiles.iter().enumerate() {
         let gaps = with_lanes!(level, simd => {
-            Gaps::of::<_, N::Lanes<_>>(simd, tiles, question, core)
+            SegmentGaps::of::<_, N::Lanes<_>>(simd, tiles, question, core)
         })?;
         links.from_middle = min(links.from_middle, gaps.least);
         let lanes = question.lanes_of(block);
@@ -54,7 +54,7 @@ fn alone<N: Real>(
 }
 
 /// What separates eight segments from another, by rows.
-struct Gaps<N> {
+struct SegmentGaps<N> {
     gaps: [N; LANES],
     normals: [[N; LANES]; 2],
     points: [[[N; LANES]; 2]; 2],
@@ -64,7 +64,7 @@ struct Gaps<N> {
     least: N,
 }
 
-impl<N: Real> Gaps<N> {
+impl<N: Real> SegmentGaps<N> {
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -72,7 +72,7 @@ impl<N: Real> Gaps<N> {
         question: &ChainQuestion<'_, N>,
         core: &Segment<N, 2>,
     ) -> Option<Self> {
-        let eight = Eight::<V>::of(simd, tiles, question)?;
+        let eight = EightSegments::<V>::of(simd, tiles, question)?;
         let own: [Point<N, 2>; 2] = [*core.a(), *core.b()];
         let found = if let Kind::Segment(_) = question.solid {
             let own: [[V; 2]; 2] = own.map(|end| spread(simd, &end.coords));

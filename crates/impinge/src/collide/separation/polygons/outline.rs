@@ -20,7 +20,7 @@ pub(in crate::collide::separation) type Row<N> = [N; LANES];
 /// A convex polygon in some frame, inflated by a radius.
 ///
 /// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
-pub(in crate::collide::separation) struct Outline<N: Real> {
+pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
     blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
     /// Of vertices.
     pub(in crate::collide::separation) count: usize,
@@ -35,7 +35,7 @@ pub(in crate::collide::separation) struct OutlineBlock<N> {
     pub(in crate::collide::separation) normals: [Row<N>; 2],
 }
 
-impl<N: Real> Outline<N> {
+impl<N: Real> PolygonOutline<N> {
     /// The outline of a solid in its own frame; `None` of other kinds and of polygons of too many vertices, and
     /// where the length of a side is no usual number.
     #[inline(always)]

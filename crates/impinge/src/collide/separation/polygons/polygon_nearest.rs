@@ -2,7 +2,7 @@
 //! two corners are the nearest, and else each end of the sides next to it against each side of the other, eight
 //! at a time.
 
-use super::outline::{Outline, highest, lane};
+use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
 use crate::collide::separation::segments::segment_lanes::nearest_on_segment;
 use crate::convex::Separation;
@@ -12,7 +12,7 @@ use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
 /// Two outlines and a direction from the first to the second that leaves a gap between them, perhaps below zero.
 pub(in crate::collide::separation) struct Facing<'a, N: Real> {
-    outlines: [&'a Outline<N>; 2],
+    outlines: [&'a PolygonOutline<N>; 2],
     axis: Axis<N>,
     /// The vertex of each that is farthest toward the other.
     tops: [usize; 2],
@@ -24,7 +24,7 @@ impl<'a, N: Real> Facing<'a, N> {
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
-        outlines: [&'a Outline<N>; 2],
+        outlines: [&'a PolygonOutline<N>; 2],
         axis: &Axis<N>,
         noise: N,
     ) -> Self {
@@ -180,7 +180,7 @@ impl<'a, N: Real> Facing<'a, N> {
 
 /// A vertex between the one before and the one after.
 #[inline(always)]
-fn around<N: Real>(outline: &Outline<N>, vertex: usize) -> [Point<N, 2>; 3] {
+fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 3] {
     [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
 }
 

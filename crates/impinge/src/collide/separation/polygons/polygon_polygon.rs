@@ -11,7 +11,7 @@
 //! is not usual is left to the [general algorithm](crate::collide::separation::general): very many vertices, sides whose squared length
 //! is no number, and nearest points that do not meet the best axis.
 
-use super::outline::{LANES, Outline, highest, lane};
+use super::outline::{LANES, PolygonOutline, highest, lane};
 use super::polygon_nearest::Facing;
 use crate::collide::Pair;
 use crate::collide::separation::boxes::rectangle_axes::Rectangles;
@@ -89,8 +89,10 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     known: Option<Axis<N>>,
     limit: N,
 ) -> OutlineResult<N> {
-    let Some(own) = Outline::of::<S, V>(simd, &pair.first) else { return OutlineResult::Undecided };
-    let Some(other) = Outline::of::<S, V>(simd, &pair.second) else {
+    let Some(own) = PolygonOutline::of::<S, V>(simd, &pair.first) else {
+        return OutlineResult::Undecided;
+    };
+    let Some(other) = PolygonOutline::of::<S, V>(simd, &pair.second) else {
         return OutlineResult::Undecided;
     };
     let other = other.placed::<S, V>(simd, &pair.pose12);
@@ -127,7 +129,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    outlines: [&Outline<N>; 2],
+    outlines: [&PolygonOutline<N>; 2],
     best: &Axis<N>,
     noise: N,
 ) -> Option<Separation<N, 2>> {
@@ -141,8 +143,8 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
 #[inline(always)]
 fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    own: &Outline<N>,
-    other: &Outline<N>,
+    own: &PolygonOutline<N>,
+    other: &PolygonOutline<N>,
 ) -> Axis<N> {
     if own.is_point() && other.is_point() {
         let between = other.at(0) - own.at(0);
@@ -159,8 +161,8 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    own: &Outline<N>,
-    other: &Outline<N>,
+    own: &PolygonOutline<N>,
+    other: &PolygonOutline<N>,
 ) -> Axis<N> {
     let mut best = Axis { gap: -N::INFINITY, normal: Vector::<N, 2>::zeros() };
     if own.is_point() {
@@ -182,7 +184,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    [own, other]: [&Outline<N>; 2],
+    [own, other]: [&PolygonOutline<N>; 2],
     mut best: Axis<N>,
 ) -> Axis<N> {
     if let Some(tip) = best_tip_of_one::<S, N, V>(simd, own, other)
@@ -202,8 +204,8 @@ fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    own: &Outline<N>,
-    other: &Outline<N>,
+    own: &PolygonOutline<N>,
+    other: &PolygonOutline<N>,
 ) -> Option<Axis<N>> {
     let mut best: Option<Axis<N>> = None;
     let none = V::all(simd, -N::INFINITY);

@@ -1,7 +1,7 @@
 //! The place of a chord that is nearest to a cylinder or a cone, or deepest inside.
 
 use super::profile::Profile;
-use super::{Hull, Place, still};
+use super::{NearestHull, RevolvedPlace, still};
 use crate::math::{Real, Vector, max, min};
 
 /// Cap on the points looked at, about four of which are needed.
@@ -76,7 +76,7 @@ impl<N: Real> Profile<N> {
         &self,
         ends: [Vector<N, 3>; 2],
         falls: bool,
-    ) -> Option<(Hull<N>, Place<N>)> {
+    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
         let mut search = ChordSearch::new(ends, falls)?;
         let mut share = search.start();
         for _ in 0..STEPS {
@@ -85,13 +85,13 @@ impl<N: Real> Profile<N> {
             let is_end =
                 share <= N::ZERO && slope >= N::ZERO || share >= N::ONE && slope <= N::ZERO;
             if is_end {
-                return Some((Hull::Point(seen.point), Place::of(self, &seen)));
+                return Some((NearestHull::Point(seen.point), RevolvedPlace::of(self, &seen)));
             }
             let is_level = slope.abs() <= still::<N>() * search.length;
             if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {
                 return Some((
-                    Hull::Chord(ends),
-                    Place::across(self, &seen, &(search.along / search.length))?,
+                    NearestHull::Chord(ends),
+                    RevolvedPlace::across(self, &seen, &(search.along / search.length))?,
                 ));
             }
             search.note(share, slope);

@@ -45,7 +45,7 @@ pub(in crate::collide::separation) enum RevolvedResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
     /// In the frame of the first solid, or that of the second.
-    Found(Found<N>, bool),
+    Found(RevolvedFound<N>, bool),
     Undecided,
 }
 
@@ -85,14 +85,14 @@ impl<N: Real> RevolvedResult<N> {
 
 /// An answer in the frame of one solid, from it to the other, in units of the pair.
 #[derive(Clone, Copy)]
-pub(in crate::collide::separation) struct Found<N: Real> {
+pub(in crate::collide::separation) struct RevolvedFound<N: Real> {
     pub(in crate::collide::separation) distance: N,
     pub(in crate::collide::separation) normal: Vector<N, 3>,
     /// A point of the other solid; that of this one is across from it.
     pub(in crate::collide::separation) on_other: Vector<N, 3>,
 }
 
-impl<N: Real> Found<N> {
+impl<N: Real> RevolvedFound<N> {
     fn restored(&self, scale: N) -> Separation<N, 3> {
         let on_own = self.on_other - self.normal * self.distance;
         Separation {
@@ -123,7 +123,7 @@ struct CylinderView<N: Real> {
 /// A direction from one solid to the other: how far it parts them, and the answer if that is it.
 struct Tried<N: Real> {
     height: N,
-    found: Option<Found<N>>,
+    found: Option<RevolvedFound<N>>,
 }
 
 /// A direction that is looked for when it is its turn.
@@ -188,7 +188,7 @@ impl<N: Real> CylinderView<N> {
         } else {
             min(room, self.own.half) >= -height - noise()
         };
-        let found = Found { distance: height, normal, on_other: point };
+        let found = RevolvedFound { distance: height, normal, on_other: point };
         Tried { height, found: is_above.then_some(found) }
     }
 
@@ -250,7 +250,7 @@ impl<N: Real> CylinderView<N> {
         let most = min(entry + room2, min(away, self.own.radius));
         let is_proved = height > N::ZERO || least <= most + noise();
         let on_other = self.center + self.axis * at_other - normal * self.other.radius;
-        let found = Found { distance: height, normal, on_other };
+        let found = RevolvedFound { distance: height, normal, on_other };
         Some(Tried { height, found: (is_between && is_proved).then_some(found) })
     }
 
@@ -266,7 +266,7 @@ impl<N: Real> CylinderView<N> {
         } else {
             min(room, self.own.radius) >= -height - noise()
         };
-        let found = Found { distance: height, normal: lifted(&normal), on_other: point };
+        let found = RevolvedFound { distance: height, normal: lifted(&normal), on_other: point };
         Some(Tried { height, found: is_beside.then_some(found) })
     }
 
@@ -338,7 +338,7 @@ impl<N: Real> CylinderView<N> {
                 return None;
             }
             if slope.norm_squared() <= noise::<N>() * noise() {
-                let found = Found { distance: height, normal, on_other: other.point };
+                let found = RevolvedFound { distance: height, normal, on_other: other.point };
                 return Some(Tried { height, found: Some(found) });
             }
             normal = unit(&(normal + step(&normal, &slope, height, &[own, other])?))?.0;

@@ -1,17 +1,17 @@
 //! Overlaps out of which a face of the flat solid or a cap of the round one leads.
 
-use super::{FlatCore, Found, Hull, Meeting, Place, still};
+use super::{FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, RevolvedPlace, still};
 use crate::math::{Real, Vector};
 
-impl<N: Real> Meeting<'_, N> {
+impl<N: Real> RevolvedMeeting<'_, N> {
     /// The answer along the normal of the face or cap that the solids reach least below, if balls prove it.
-    pub(super) fn by_face(&self) -> Option<Found<N>> {
+    pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
     /// Along the normal of a face of the flat solid, which holds the ball about the point that is deepest below.
-    fn by_own_face(&self) -> Option<Found<N>> {
-        let mut best: Option<(N, Place<N>)> = None;
+    fn by_own_face(&self) -> Option<RevolvedFound<N>> {
+        let mut best: Option<(N, RevolvedPlace<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
             let outward = -self.pose12.rotation.tr_mul(normal);
             let nearest = self.profile.round.support(&outward);
@@ -19,7 +19,7 @@ impl<N: Real> Meeting<'_, N> {
             let height = normal.dot(&self.shift) - offset * self.shrink - level;
             if best.as_ref().is_none_or(|(most, _)| height > *most) {
                 let point = nearest + outward * height;
-                best = Some((height, Place { point, nearest, outward, level }));
+                best = Some((height, RevolvedPlace { point, nearest, outward, level }));
             }
         };
         match self.flat {
@@ -41,10 +41,10 @@ impl<N: Real> Meeting<'_, N> {
     }
 
     /// Along the normal of a cap, below which the ball about the lowest vertex is in the round solid.
-    fn by_cap(&self) -> Option<Found<N>> {
+    fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));
-            let (_, place): (Hull<N>, _) = self.at_point(vertex);
+            let (_, place): (NearestHull<N>, _) = self.at_point(vertex);
             let low = self.lowest(&place.outward);
             let is_lowest = place.outward.dot(&(place.point - low)) <= still();
             let height = place.outward.dot(&low) - place.level;

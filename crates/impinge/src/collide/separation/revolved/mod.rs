@@ -19,8 +19,8 @@ mod rounds;
 #[cfg(test)]
 mod tests;
 
-use self::cylinder_cylinder::{Found, RevolvedResult};
-use self::profile::{Part, Profile, Seen};
+use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
+use self::profile::{Profile, ProfilePart, ProfileView};
 use super::flat_core::FlatCore;
 use super::general;
 use super::hulls::{noise, out_of_reach};
@@ -76,7 +76,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     let beyond = out_of_reach(&units, limit + map1.rounding());
     let result = match FlatCore::of(pair.first) {
         Some(flat) => {
-            Meeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
+            RevolvedMeeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
         }
         None => {
             let first = Profile::new(Round::new(&pair.first, units.shrink)?);
@@ -89,12 +89,12 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
 }
 
 /// The result where the answer, if there is one, is in the frame of the second solid.
-fn seen_from_second<N: Real>(found: Option<Found<N>>) -> RevolvedResult<N> {
+fn seen_from_second<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
 /// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
-struct Meeting<'a, N: Real> {
+struct RevolvedMeeting<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
     pose12: &'a Pose<N, 3>,
     shift: Vector<N, 3>,
@@ -104,7 +104,7 @@ struct Meeting<'a, N: Real> {
 
 /// A point of the flat solid with the direction along which it is nearest to the round one.
 #[derive(Clone, Copy)]
-struct Place<N: Real> {
+struct RevolvedPlace<N: Real> {
     point: Vector<N, 3>,
     /// That of the round one.
     nearest: Vector<N, 3>,
@@ -115,13 +115,13 @@ struct Place<N: Real> {
 
 /// The points over which a place is the nearest; no more than are needed.
 #[derive(Clone, Copy)]
-enum Hull<N: Real> {
+enum NearestHull<N: Real> {
     Point(Vector<N, 3>),
     Chord([Vector<N, 3>; 2]),
     Triangle,
 }
 
-impl<N: Real> Meeting<'_, N> {
+impl<N: Real> RevolvedMeeting<'_, N> {
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.seen_from(middle).outward);
@@ -150,28 +150,35 @@ impl<N: Real> Meeting<'_, N> {
         self.placed(&self.flat.core_support(&toward).coords)
     }
 
-    fn at_point(&self, point: Vector<N, 3>) -> (Hull<N>, Place<N>) {
-        (Hull::Point(point), Place::of(&self.profile, &self.profile.seen_from(point)))
+    fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
+        (
+            NearestHull::Point(point),
+            RevolvedPlace::of(&self.profile, &self.profile.seen_from(point)),
+        )
     }
 
     /// The nearest place over a hull and one more vertex, which is lower than all of it.
     fn nearer(
         &self,
-        hull: &Hull<N>,
-        place: &Place<N>,
+        hull: &NearestHull<N>,
+        place: &RevolvedPlace<N>,
         low: Vector<N, 3>,
-    ) -> Option<(Hull<N>, Place<N>)> {
+    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
         match hull {
-            Hull::Point(point) => self.profile.along([*point, low], true),
-            Hull::Chord([a, b]) => self.over([*a, *b, low], place),
+            NearestHull::Point(point) => self.profile.along([*point, low], true),
+            NearestHull::Chord([a, b]) => self.over([*a, *b, low], place),
             // No more than a chord and a triangle are ever searched: the place stands for its triangle.
-            Hull::Triangle => self.profile.along([place.point, low], true),
+            NearestHull::Triangle => self.profile.along([place.point, low], true),
         }
     }
 
     /// The nearest place of a triangle with a last corner that is lower than the given place, the nearest of the
     /// opposite side.
-    fn over(&self, [a, b, c]: [Vector<N, 3>; 3], place: &Place<N>) -> Option<(Hull<N>, Place<N>)> {
+    fn over(
+        &self,
+        [a, b, c]: [Vector<N, 3>; 3],
+        place: &RevolvedPlace<N>,
+    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
         let across = cross(&(b - a), &(c - a));
         let (turned, area) = unit(&across).filter(|(_, area)| *area > noise())?;
         let outward = if turned.dot(&place.outward) < N::ZERO { -turned } else { turned };
@@ -190,9 +197,12 @@ impl<N: Real> Meeting<'_, N> {
         let sides = [over(&b, &c), over(&c, &a), over(&a, &b)];
         if sides.iter().all(|&side| side >= room) {
             let is_proved = height > N::ZERO || self.holds(&nearest, -height);
-            return is_proved.then_some((Hull::Triangle, Place { point, nearest, outward, level }));
+            return is_proved.then_some((
+                NearestHull::Triangle,
+                RevolvedPlace { point, nearest, outward, level },
+            ));
         }
-        let mut best: Option<(Hull<N>, Place<N>)> = None;
+        let mut best: Option<(NearestHull<N>, RevolvedPlace<N>)> = None;
         for (chord, other) in [([b, c], a), ([a, c], b)] {
             let Some((hull, found)) = self.profile.along(chord, false) else { continue };
             let is_least = found.outward.dot(&(found.point - other)) <= still();
@@ -224,18 +234,18 @@ impl<N: Real> Meeting<'_, N> {
     }
 }
 
-impl<N: Real> Place<N> {
+impl<N: Real> RevolvedPlace<N> {
     /// Of a point that is on a corner, but for rounding, the direction may be none that the corner is farthest along:
     /// the level tells.
-    fn of(profile: &Profile<N>, seen: &Seen<N>) -> Self {
+    fn of(profile: &Profile<N>, seen: &ProfileView<N>) -> Self {
         let level = profile.level(&seen.outward);
         Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
     }
 
     /// Where a way, a unit vector, is about level, with a direction that is across it to the last bits.
-    fn across(profile: &Profile<N>, seen: &Seen<N>, along: &Vector<N, 3>) -> Option<Self> {
+    fn across(profile: &Profile<N>, seen: &ProfileView<N>, along: &Vector<N, 3>) -> Option<Self> {
         let by_rim = match seen.part {
-            Part::Rim => unit(&cross(along, &seen.around())),
+            ProfilePart::Rim => unit(&cross(along, &seen.around())),
             _ => None,
         };
         let outward = match by_rim {
@@ -264,10 +274,10 @@ impl<N: Real> Place<N> {
     }
 
     /// The answer, if the two points lie across from each other as far apart as supporting planes.
-    fn proved(&self, height: N) -> Option<Found<N>> {
+    fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
         let is_across = aside.norm_squared() <= noise::<N>() * noise();
-        let found = Found { distance: height, normal: self.outward, on_other: self.point };
+        let found = RevolvedFound { distance: height, normal: self.outward, on_other: self.point };
         is_across.then_some(found)
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Profile<N: Real> {
 
 /// The part of the outline that a point is nearest to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Part {
+pub(super) enum ProfilePart {
     Cap,
     Side,
     Rim,
@@ -28,13 +28,13 @@ pub(super) enum Part {
 
 /// A point, and what it sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen<N: Real> {
+pub(super) struct ProfileView<N: Real> {
     pub(super) point: Vector<N, 3>,
     /// Negative inside.
     pub(super) distance: N,
     /// Unit, out of the solid, along which the distance is measured.
     pub(super) outward: Vector<N, 3>,
-    pub(super) part: Part,
+    pub(super) part: ProfilePart,
     /// How far the point is from the axis, and the unit vector that leads there, as (x, z).
     aside: N,
     away: Vector<N, 2>,
@@ -57,7 +57,7 @@ impl<N: Real> Profile<N> {
     }
 
     /// What a point sees.
-    pub(super) fn seen_from(&self, point: Vector<N, 3>) -> Seen<N> {
+    pub(super) fn seen_from(&self, point: Vector<N, 3>) -> ProfileView<N> {
         let fallback = (Vector::<N, 2>::x(), N::ZERO);
         let (away, aside) = unit(&radial(&point)).unwrap_or(fallback);
         let (part, distance, offset) = if self.round.is_cone {
@@ -66,52 +66,56 @@ impl<N: Real> Profile<N> {
             self.of_cylinder(aside, point.y)
         };
         let normal = match part {
-            Part::Cap | Part::Side => offset,
-            Part::Rim | Part::Apex => offset / distance,
+            ProfilePart::Cap | ProfilePart::Side => offset,
+            ProfilePart::Rim | ProfilePart::Apex => offset / distance,
         };
         let outward = Vector::<N, 3>::new(away.x * normal.x, normal.y, away.y * normal.x);
-        Seen { point, distance, outward, part, aside, away, offset }
+        ProfileView { point, distance, outward, part, aside, away, offset }
     }
 
-    fn of_cylinder(&self, x: N, y: N) -> (Part, N, Vector<N, 2>) {
+    fn of_cylinder(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let up = if y < N::ZERO { -N::ONE } else { N::ONE };
         let (beside, above) = (x - self.round.radius, y.abs() - self.round.half);
         if beside > N::ZERO && above > N::ZERO {
-            return self.corner(Part::Rim, Vector::<N, 2>::new(beside, above * up));
+            return self.corner(ProfilePart::Rim, Vector::<N, 2>::new(beside, above * up));
         }
         if beside > above {
-            (Part::Side, beside, Vector::<N, 2>::x())
+            (ProfilePart::Side, beside, Vector::<N, 2>::x())
         } else {
-            (Part::Cap, above, Vector::<N, 2>::y() * up)
+            (ProfilePart::Cap, above, Vector::<N, 2>::y() * up)
         }
     }
 
-    fn of_cone(&self, x: N, y: N) -> (Part, N, Vector<N, 2>) {
+    fn of_cone(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let from_rim = Vector::<N, 2>::new(x - self.round.radius, y + self.round.half);
         let (below, above) = (-from_rim.y, self.slant.dot(&from_rim));
         let along = cross2(&self.slant, &from_rim);
         let is_beside = along >= N::ZERO && along <= self.length;
         if above > N::ZERO && along > self.length {
-            return self.corner(Part::Apex, Vector::<N, 2>::new(x, y - self.round.half));
+            return self.corner(ProfilePart::Apex, Vector::<N, 2>::new(x, y - self.round.half));
         }
         if above > N::ZERO && is_beside || above > below && below <= N::ZERO && above <= N::ZERO {
-            return (Part::Side, above, self.slant);
+            return (ProfilePart::Side, above, self.slant);
         }
         if from_rim.x <= N::ZERO {
-            return (Part::Cap, below, -Vector::<N, 2>::y());
+            return (ProfilePart::Cap, below, -Vector::<N, 2>::y());
         }
-        self.corner(Part::Rim, from_rim)
+        self.corner(ProfilePart::Rim, from_rim)
     }
 
     /// A corner of the outline that is nearest to a point this far from it; what is too near to be squared is on
     /// the side.
-    fn corner(&self, part: Part, offset: Vector<N, 2>) -> (Part, N, Vector<N, 2>) {
+    fn corner(&self, part: ProfilePart, offset: Vector<N, 2>) -> (ProfilePart, N, Vector<N, 2>) {
         let length = offset.norm();
-        if length > N::ZERO { (part, length, offset) } else { (Part::Side, N::ZERO, self.slant) }
+        if length > N::ZERO {
+            (part, length, offset)
+        } else {
+            (ProfilePart::Side, N::ZERO, self.slant)
+        }
     }
 }
 
-impl<N: Real> Seen<N> {
+impl<N: Real> ProfileView<N> {
     /// The point of the surface that is nearest.
     pub(super) fn nearest(&self) -> Vector<N, 3> {
         self.point - self.outward * self.distance
@@ -145,15 +149,17 @@ impl<N: Real> Seen<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
         match self.part {
-            Part::Cap => None,
+            ProfilePart::Cap => None,
             // The distance from the axis is a hyperbola, whose slope has to be `rise`.
-            Part::Side => {
+            ProfilePart::Side => {
                 let rise = -up * self.offset.y / self.offset.x;
                 let left = across - rise * rise;
                 (left > N::ZERO)
                     .then(|| (rise * turn.abs() / left.sqrt() - out) * self.aside / across)
             }
-            Part::Rim | Part::Apex => Some(-self.pull().dot(along) / self.bend(along)),
+            ProfilePart::Rim | ProfilePart::Apex => {
+                Some(-self.pull().dot(along) / self.bend(along))
+            }
         }
     }
 
@@ -161,8 +167,8 @@ impl<N: Real> Seen<N> {
     /// the smoother of the two.
     pub(super) fn pull(&self) -> Vector<N, 3> {
         match self.part {
-            Part::Cap | Part::Side => self.outward,
-            Part::Rim | Part::Apex => self.outward * self.distance,
+            ProfilePart::Cap | ProfilePart::Side => self.outward,
+            ProfilePart::Rim | ProfilePart::Apex => self.outward * self.distance,
         }
     }
 
@@ -171,10 +177,12 @@ impl<N: Real> Seen<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let turned = turn * turn;
         match self.part {
-            Part::Cap => N::ZERO,
-            Part::Side => turned * self.offset.x / self.aside,
-            Part::Rim => out * out + along.y * along.y + turned * (self.offset.x / self.aside),
-            Part::Apex => out * out + along.y * along.y + turned,
+            ProfilePart::Cap => N::ZERO,
+            ProfilePart::Side => turned * self.offset.x / self.aside,
+            ProfilePart::Rim => {
+                out * out + along.y * along.y + turned * (self.offset.x / self.aside)
+            }
+            ProfilePart::Apex => out * out + along.y * along.y + turned,
         }
     }
 }

@@ -6,7 +6,7 @@
 //! depth: each in one of the solids.
 
 use super::profile::Profile;
-use super::{Found, Place, RevolvedResult, noise, seen_from_second, still};
+use super::{RevolvedFound, RevolvedPlace, RevolvedResult, noise, seen_from_second, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
@@ -73,11 +73,11 @@ impl<N: Real> RoundView<N> {
     }
 
     /// The place of the apex, or that of a rim which is nearest, of that which a point is on.
-    fn at_corner(&self, low: &Vector<N, 3>) -> Option<Place<N>> {
+    fn at_corner(&self, low: &Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
         if is_up && round.is_cone {
-            return Some(Place::of(&self.own, &self.own.seen_from(*low)));
+            return Some(RevolvedPlace::of(&self.own, &self.own.seen_from(*low)));
         }
         let end = if is_up { round.half } else { -round.half };
         let middle = self.center + self.axis * end;
@@ -93,7 +93,7 @@ impl<N: Real> RoundView<N> {
     }
 
     /// The nearest place of a rim about a point, near a direction from there.
-    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<Place<N>> {
+    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
             let seen = self.own.seen_from(middle + out * radius);
@@ -102,7 +102,7 @@ impl<N: Real> RoundView<N> {
             let bend = seen.bend(&around) * radius - pull.dot(&out);
             let is_level = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
             if is_level {
-                return Place::across(&self.own, &seen, &around);
+                return RevolvedPlace::across(&self.own, &seen, &around);
             }
             out = if bend > N::ZERO {
                 let turn = max(min(-slope / bend, N::HALF), -N::HALF);
@@ -115,7 +115,7 @@ impl<N: Real> RoundView<N> {
     }
 
     /// The side of each on that of the other.
-    fn sides(&self) -> Option<Found<N>> {
+    fn sides(&self) -> Option<RevolvedFound<N>> {
         let (lean, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
         if squared <= N::lit(16.0) * N::EPSILON {
@@ -141,7 +141,7 @@ impl<N: Real> RoundView<N> {
     }
 
     /// The nearest points of the two lines of sides that face each other along a direction.
-    fn between_sides(&self, outward: Vector<N, 3>) -> Option<Place<N>> {
+    fn between_sides(&self, outward: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());
             Some([Point::from(*ends.first()?), Point::from(*ends.get(1)?)])
@@ -151,11 +151,11 @@ impl<N: Real> RoundView<N> {
         let other = other.map(|end| Point::from(self.center + self.rotation * end.coords));
         let (nearest, point) = nearest_of_segments(&own, &other);
         let level = self.own.level(&outward);
-        Some(Place { point: point.coords, nearest: nearest.coords, outward, level })
+        Some(RevolvedPlace { point: point.coords, nearest: nearest.coords, outward, level })
     }
 
     /// Two balls halfway between the points, one in each solid, add up to the depth.
-    fn is_deepest(&self, found: &Found<N>) -> bool {
+    fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
         let own = self.own.seen_from(center).distance;
         let other = self.other.seen_from(self.rotation.tr_mul(&(center - self.center))).distance;

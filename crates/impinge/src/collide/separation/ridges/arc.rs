@@ -17,12 +17,12 @@ const STEPS: usize = 256;
 
 /// The height of a point along the unit vectors of a circle: `base + toward · u`.
 #[derive(Clone, Copy)]
-pub(super) struct Line<N: Real> {
+pub(super) struct RidgeLine<N: Real> {
     pub(super) base: N,
     pub(super) toward: Vector<N, 2>,
 }
 
-impl<N: Real> Line<N> {
+impl<N: Real> RidgeLine<N> {
     fn at(&self, u: &Vector<N, 2>) -> N {
         self.base + self.toward.dot(u)
     }
@@ -40,7 +40,7 @@ impl<N: Real> Line<N> {
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
-    pub(super) lines: [Line<N>; 2],
+    pub(super) lines: [RidgeLine<N>; 2],
 }
 
 impl<N: Real> Arc<N> {
@@ -67,7 +67,7 @@ impl<N: Real> Arc<N> {
     }
 
     /// Where a line is lowest on the arc, and how low; of an end the direction halfway stands for it.
-    fn least_of(&self, line: &Line<N>) -> (Vector<N, 2>, N) {
+    fn least_of(&self, line: &RidgeLine<N>) -> (Vector<N, 2>, N) {
         let halfway = unit(&(self.ends[0] + self.ends[1]));
         let ends = min(line.at(&self.ends[0]), line.at(&self.ends[1]));
         match line.bottom() {
@@ -118,7 +118,7 @@ pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
 }
 
 /// A search along arcs.
-pub(super) struct Search<N: Real> {
+pub(super) struct ArcSearch<N: Real> {
     /// The least depth so far, of this or another search.
     pub(super) least: N,
     /// Where it is, if it was found here.
@@ -127,12 +127,12 @@ pub(super) struct Search<N: Real> {
     gap: N,
 }
 
-impl<N: Real> Search<N> {
+impl<N: Real> ArcSearch<N> {
     pub(super) fn new(least: N, gap: N) -> Self {
         Self { least, best: None, gap }
     }
 
-    pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &Line<N>) {
+    pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &RidgeLine<N>) {
         let depth = highest.at(u);
         if depth < self.least {
             (self.least, self.best) = (depth, Some(*u));
@@ -144,7 +144,7 @@ impl<N: Real> Search<N> {
     pub(super) fn run(
         &mut self,
         arc: Arc<N>,
-        highest: impl Fn(&Vector<N, 2>) -> Line<N>,
+        highest: impl Fn(&Vector<N, 2>) -> RidgeLine<N>,
     ) -> Option<()> {
         let mut open = SmallVec::<[Arc<N>; 16]>::from_slice(&[arc]);
         for _ in 0..STEPS {

@@ -24,7 +24,7 @@ mod round;
 
 use smallvec::SmallVec;
 
-use self::arc::{Arc, Line, Search};
+use self::arc::{Arc, ArcSearch, RidgeLine};
 use self::flat::Flat;
 pub(super) use self::round::Round;
 use super::flat_core::FlatCore;
@@ -171,14 +171,17 @@ impl<N: Real> DepthSearch<'_, N> {
         }
         let line = |point: &Vector<N, 3>| {
             let away = point - vertex;
-            Line { base: N::ZERO, toward: Vector::<N, 2>::new(away.dot(&from), away.dot(&across)) }
+            RidgeLine {
+                base: N::ZERO,
+                toward: Vector::<N, 2>::new(away.dot(&from), away.dot(&across)),
+            }
         };
         let arc = Arc {
             ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
             lines: ends.map(|end| line(&end)),
         };
         let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
-        let mut search = Search::new(self.least, gap);
+        let mut search = ArcSearch::new(self.least, gap);
         search.run(arc, |u| line(&round.support(&lift(u))))?;
         if let Some(u) = search.best {
             self.note(search.least, DepthFeature::Edge(edge), lift(&u));
@@ -195,10 +198,10 @@ impl<N: Real> DepthSearch<'_, N> {
         let line = |u: &Vector<N, 2>| {
             let vertex = flat.vertices[flat.lowest(&lift(u))];
             let toward = Vector::<N, 2>::new(vertex.x, vertex.z) * -slope.aside;
-            Line { base: slope.reach - slope.along * vertex.y, toward }
+            RidgeLine { base: slope.reach - slope.along * vertex.y, toward }
         };
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
-        let mut search = Search::new(self.least, gap);
+        let mut search = ArcSearch::new(self.least, gap);
         let starts = [x, y, -x, -y];
         let lines = starts.map(|u| line(&u));
         (0..4).for_each(|index| search.note(&starts[index], &lines[index]));

@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use smallvec::SmallVec;
 
-use super::pyramid::{Block, Pyramid, Span};
-use super::question::Probe;
+use super::pyramid::{HeightSpan, Pyramid, PyramidBlock};
+use super::question::FieldProbe;
 use crate::math::{Point, Real, max, min};
 
 /// Heights in rows and columns, and where the rows and columns lie. In 2D there is one row.
@@ -47,12 +47,12 @@ pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
 
 /// A box: the least and the greatest x, y and z. In 2D z is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent<N: Real> {
+pub(super) struct GridExtent<N: Real> {
     pub(super) low: [N; 3],
     pub(super) high: [N; 3],
 }
 
-impl<N: Real> Extent<N> {
+impl<N: Real> GridExtent<N> {
     /// The box between two points.
     pub(super) fn between(a: [N; 3], b: [N; 3]) -> Self {
         let (mut low, mut high) = (a, b);
@@ -77,13 +77,13 @@ impl<N: Real> Extent<N> {
 }
 
 /// A field as the search sees it: cells of a grid, each with a few parts.
-pub(super) trait Cells<N: Real> {
+pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;
     /// The unscaled heights of what is left of a cell.
-    fn cell_span(&self, row: usize, column: usize) -> Span<N>;
+    fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N>;
     /// The parts that are left of a cell and their boxes.
-    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, Extent<N>); 2]>;
+    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, GridExtent<N>); 2]>;
 }
 
 impl<N: Real> Grid<N> {
@@ -100,7 +100,12 @@ impl<N: Real> Grid<N> {
     }
 
     /// The box of a block; `None` if it is all holes.
-    fn extent(&self, block: Block, cells: [usize; 2], span: Span<N>) -> Option<Extent<N>> {
+    fn extent(
+        &self,
+        block: PyramidBlock,
+        cells: [usize; 2],
+        span: HeightSpan<N>,
+    ) -> Option<GridExtent<N>> {
         if span[0] > span[1] {
             return None;
         }
@@ -112,12 +117,12 @@ impl<N: Real> Grid<N> {
         // Rounding keeps the order of products, so the scaled span is that of the scaled heights.
         let [low, high] = span.map(|height| height * self.y_scale);
         let near = [self.xs[column], low, self.zs[row]];
-        Some(Extent::between(near, [self.xs[last_column], high, self.zs[last_row]]))
+        Some(GridExtent::between(near, [self.xs[last_column], high, self.zs[last_row]]))
     }
 }
 
 /// The box of all cells: x and z reach over the holes; `None` if all are holes.
-pub(super) fn whole<N: Real>(field: &impl Cells<N>) -> Option<Extent<N>> {
+pub(super) fn whole<N: Real>(field: &impl GridCells<N>) -> Option<GridExtent<N>> {
     let pyramid = field.pyramid();
     let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));
     field.grid().extent(pyramid.top(), pyramid.cells(), span)
@@ -134,19 +139,19 @@ fn min_index(a: usize, b: usize) -> usize {
 /// Goes down the pyramid, at each block to the child of the least key first. The stack has three
 /// blocks at most for each level.
 pub(super) fn search<N: Real>(
-    field: &impl Cells<N>,
+    field: &impl GridCells<N>,
     limit: N,
-    key: impl Fn(&Extent<N>) -> Option<N>,
+    key: impl Fn(&GridExtent<N>) -> Option<N>,
     mut visit: impl FnMut(u32, N) -> N,
 ) {
     let (grid, pyramid) = (field.grid(), field.pyramid());
     let cell_span = |row, column| field.cell_span(row, column);
-    let key_of = |block: Block| {
+    let key_of = |block: PyramidBlock| {
         let span = pyramid.span(block, &cell_span);
         key(&grid.extent(block, pyramid.cells(), span)?)
     };
     let mut lowest = limit;
-    let mut stack: SmallVec<[(N, Block); 40]> = SmallVec::new();
+    let mut stack: SmallVec<[(N, PyramidBlock); 40]> = SmallVec::new();
     stack.extend(key_of(pyramid.top()).map(|key| (key, pyramid.top())));
     while let Some((bound, block)) = stack.pop() {
         let is_within = bound <= lowest;
@@ -175,8 +180,8 @@ pub(super) fn search<N: Real>(
 /// The lines of the grid tell which cells lie under the probe. Few are looked at one by one; many are
 /// found by going down the pyramid, which passes over what lies higher or lower.
 pub(super) fn overlapping<N: Real>(
-    field: &impl Cells<N>,
-    probe: &Probe<N>,
+    field: &impl GridCells<N>,
+    probe: &FieldProbe<N>,
     mut visit: impl FnMut(u32),
 ) {
     let ([low_x, _, low_z], [high_x, _, high_z]) = probe.corners();
@@ -215,7 +220,12 @@ fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
 }
 
 /// Adds a block to those from `base` on, which are sorted so that the least key comes last.
-fn push_sorted<N: Real>(stack: &mut SmallVec<[(N, Block); 40]>, base: usize, key: N, block: Block) {
+fn push_sorted<N: Real>(
+    stack: &mut SmallVec<[(N, PyramidBlock); 40]>,
+    base: usize,
+    key: N,
+    block: PyramidBlock,
+) {
     let place = (base..stack.len()).find(|&at| stack[at].0 <= key).unwrap_or(stack.len());
     stack.insert(place, (key, block));
 }

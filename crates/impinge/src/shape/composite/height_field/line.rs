@@ -2,8 +2,8 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::grid::{Cells, Extent, Grid, whole};
-use super::pyramid::{Pyramid, Span, merged, no_span};
+use super::grid::{Grid, GridCells, GridExtent, whole};
+use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
 use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
@@ -178,12 +178,12 @@ impl<N: Real> HeightField<N, 2> {
 }
 
 /// The unscaled heights of a cell.
-fn step_span<N: Real>(grid: &Grid<N>, cell: usize) -> Span<N> {
+fn step_span<N: Real>(grid: &Grid<N>, cell: usize) -> HeightSpan<N> {
     let [a, b] = [grid.heights[cell], grid.heights[cell + 1]];
     merged([a, a], [b, b])
 }
 
-impl<N: Real> Cells<N> for HeightField<N, 2> {
+impl<N: Real> GridCells<N> for HeightField<N, 2> {
     fn grid(&self) -> &Grid<N> {
         &self.grid
     }
@@ -192,15 +192,15 @@ impl<N: Real> Cells<N> for HeightField<N, 2> {
         &self.pyramid
     }
 
-    fn cell_span(&self, _: usize, cell: usize) -> Span<N> {
+    fn cell_span(&self, _: usize, cell: usize) -> HeightSpan<N> {
         if self.marks.is_hole(cell, 0) { no_span() } else { step_span(&self.grid, cell) }
     }
 
-    fn parts(&self, _: usize, cell: usize) -> SmallVec<[(u32, Extent<N>); 2]> {
+    fn parts(&self, _: usize, cell: usize) -> SmallVec<[(u32, GridExtent<N>); 2]> {
         if self.marks.is_hole(cell, 0) {
             return SmallVec::new();
         }
-        let extent = Extent::between(self.grid.at(0, cell), self.grid.at(0, cell + 1));
+        let extent = GridExtent::between(self.grid.at(0, cell), self.grid.at(0, cell + 1));
         smallvec![(u32::try_from(cell).expect("32 bits number the segments"), extent)]
     }
 }
@@ -264,7 +264,7 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
     /// Around all that is left; a field of nothing but holes is the origin.
     fn local_aabb(&self) -> Aabb<N, 2> {
         match whole(self) {
-            Some(Extent { low, high }) => {
+            Some(GridExtent { low, high }) => {
                 Aabb::new(Point::<N, 2>::new(low[0], low[1]), Point::<N, 2>::new(high[0], high[1]))
             }
             None => Aabb::around(Point::origin(), Vector::<N, 2>::zeros()),

@@ -3,14 +3,14 @@
 use crate::math::{Real, max, min};
 
 /// The least and the greatest height; infinity and minus infinity of nothing.
-pub(super) type Span<N> = [N; 2];
+pub(super) type HeightSpan<N> = [N; 2];
 
 /// Nothing: a cell that is a hole.
-pub(super) fn no_span<N: Real>() -> Span<N> {
+pub(super) fn no_span<N: Real>() -> HeightSpan<N> {
     [N::INFINITY, -N::INFINITY]
 }
 
-pub(super) fn merged<N: Real>(a: Span<N>, b: Span<N>) -> Span<N> {
+pub(super) fn merged<N: Real>(a: HeightSpan<N>, b: HeightSpan<N>) -> HeightSpan<N> {
     [min(a[0], b[0]), max(a[1], b[1])]
 }
 
@@ -23,26 +23,26 @@ pub(super) struct Pyramid<N: Real> {
     /// How many rows and columns of cells there are: one at least.
     cells: [usize; 2],
     /// The first holds blocks of 2 × 2 cells, the last one block.
-    levels: Vec<Level<N>>,
+    levels: Vec<PyramidLevel<N>>,
 }
 
 #[derive(Clone, Debug)]
-struct Level<N: Real> {
+struct PyramidLevel<N: Real> {
     columns: usize,
     /// Row by row.
-    spans: Vec<Span<N>>,
+    spans: Vec<HeightSpan<N>>,
 }
 
 /// A block: level 0 is that of the cells. It has the cells of the rows and columns from
 /// `row << level` and `column << level` on, `1 << level` of each where there are so many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Block {
+pub(super) struct PyramidBlock {
     pub(super) level: usize,
     pub(super) row: usize,
     pub(super) column: usize,
 }
 
-impl Block {
+impl PyramidBlock {
     /// The blocks one level below; some may lie beyond the far ends.
     fn children(self) -> [Self; 4] {
         [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| Self {
@@ -55,7 +55,10 @@ impl Block {
 
 impl<N: Real> Pyramid<N> {
     /// Over rows and columns of cells, one of each at least.
-    pub(super) fn new(cells: [usize; 2], cell_span: impl Fn(usize, usize) -> Span<N>) -> Self {
+    pub(super) fn new(
+        cells: [usize; 2],
+        cell_span: impl Fn(usize, usize) -> HeightSpan<N>,
+    ) -> Self {
         let mut pyramid = Self { cells, levels: Vec::new() };
         let [mut rows, mut columns] = cells;
         while rows > 1 || columns > 1 {
@@ -64,10 +67,12 @@ impl<N: Real> Pyramid<N> {
             let mut spans = Vec::with_capacity(rows * columns);
             for row in 0..rows {
                 for column in 0..columns {
-                    spans.push(pyramid.span_of_children(Block { level, row, column }, &cell_span));
+                    spans.push(
+                        pyramid.span_of_children(PyramidBlock { level, row, column }, &cell_span),
+                    );
                 }
             }
-            pyramid.levels.push(Level { columns, spans });
+            pyramid.levels.push(PyramidLevel { columns, spans });
         }
         pyramid
     }
@@ -83,8 +88,8 @@ impl<N: Real> Pyramid<N> {
     }
 
     /// The block of all cells.
-    pub(super) const fn top(&self) -> Block {
-        Block { level: self.levels.len(), row: 0, column: 0 }
+    pub(super) const fn top(&self) -> PyramidBlock {
+        PyramidBlock { level: self.levels.len(), row: 0, column: 0 }
     }
 
     /// How many rows and columns of cells there are.
@@ -93,7 +98,7 @@ impl<N: Real> Pyramid<N> {
     }
 
     /// The blocks one level below.
-    pub(super) fn children(&self, block: Block) -> impl Iterator<Item = Block> {
+    pub(super) fn children(&self, block: PyramidBlock) -> impl Iterator<Item = PyramidBlock> {
         let [rows, columns] = self.cells;
         let children = block.children().into_iter();
         children.filter(move |child| {
@@ -104,9 +109,9 @@ impl<N: Real> Pyramid<N> {
     /// The heights of a block.
     pub(super) fn span(
         &self,
-        block: Block,
-        cell_span: &impl Fn(usize, usize) -> Span<N>,
-    ) -> Span<N> {
+        block: PyramidBlock,
+        cell_span: &impl Fn(usize, usize) -> HeightSpan<N>,
+    ) -> HeightSpan<N> {
         let Some(above_cells) = block.level.checked_sub(1) else {
             return cell_span(block.row, block.column);
         };
@@ -119,10 +124,10 @@ impl<N: Real> Pyramid<N> {
         &mut self,
         row: usize,
         column: usize,
-        cell_span: impl Fn(usize, usize) -> Span<N>,
+        cell_span: impl Fn(usize, usize) -> HeightSpan<N>,
     ) {
         for level in 1..=self.levels.len() {
-            let block = Block { level, row: row >> level, column: column >> level };
+            let block = PyramidBlock { level, row: row >> level, column: column >> level };
             let span = self.span_of_children(block, &cell_span);
             let level = &mut self.levels[level - 1];
             level.spans[block.row * level.columns + block.column] = span;
@@ -131,9 +136,9 @@ impl<N: Real> Pyramid<N> {
 
     fn span_of_children(
         &self,
-        block: Block,
-        cell_span: &impl Fn(usize, usize) -> Span<N>,
-    ) -> Span<N> {
+        block: PyramidBlock,
+        cell_span: &impl Fn(usize, usize) -> HeightSpan<N>,
+    ) -> HeightSpan<N> {
         let spans = self.children(block).map(|child| self.span(child, cell_span));
         spans.fold(no_span(), merged)
     }

@@ -1,13 +1,13 @@
 //! What a search asks of a box: does it meet another, how far away is it, when is it met.
 
-use super::grid::Extent;
+use super::grid::GridExtent;
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, Vector, max};
 
 /// A box that searches, at rest or moving; faces may be infinite.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Probe<N: Real> {
-    own: Extent<N>,
+pub(super) struct FieldProbe<N: Real> {
+    own: GridExtent<N>,
 }
 
 /// Distances and times are lowered by this many epsilons of themselves, so that they are below the
@@ -16,11 +16,11 @@ pub(super) struct Probe<N: Real> {
 /// test of its triangles takes it for.
 const ROUNDING: f64 = 16.0;
 
-impl<N: Real> Probe<N> {
+impl<N: Real> FieldProbe<N> {
     /// The box with the coordinates of `aabb`, and zero where there are no more. `None` if it has no
     /// finite point.
     pub(super) fn new<const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
-        let mut own = Extent { low: [N::ZERO; 3], high: [N::ZERO; 3] };
+        let mut own = GridExtent { low: [N::ZERO; 3], high: [N::ZERO; 3] };
         for axis in 0..D {
             own.low[axis] = aabb.mins()[axis];
             own.high[axis] = aabb.maxs()[axis];
@@ -36,7 +36,7 @@ impl<N: Real> Probe<N> {
     }
 
     /// Zero if the boxes meet.
-    pub(super) fn overlap(&self, other: &Extent<N>) -> Option<N> {
+    pub(super) fn overlap(&self, other: &GridExtent<N>) -> Option<N> {
         let meets = (0..3).all(|axis| {
             self.own.low[axis] <= other.high[axis] && other.low[axis] <= self.own.high[axis]
         });
@@ -44,7 +44,7 @@ impl<N: Real> Probe<N> {
     }
 
     /// A lower bound of the distance.
-    pub(super) fn distance(&self, other: &Extent<N>) -> Option<N> {
+    pub(super) fn distance(&self, other: &GridExtent<N>) -> Option<N> {
         let mut gap = Vector::<N, 3>::zeros();
         for axis in 0..3 {
             let below = max(other.low[axis] - self.own.high[axis], N::ZERO);
@@ -62,7 +62,7 @@ impl<N: Real> Probe<N> {
     /// `None` if it does not.
     ///
     /// Slabs (Kay and Kajiya 1986), widened by the rounding of the times (Ize 2013).
-    pub(super) fn time(&self, velocity: &[N; 3], other: &Extent<N>) -> Option<N> {
+    pub(super) fn time(&self, velocity: &[N; 3], other: &GridExtent<N>) -> Option<N> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for (axis, &speed) in velocity.iter().enumerate() {
             let (to_low, to_high) =

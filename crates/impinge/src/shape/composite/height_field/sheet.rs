@@ -2,9 +2,9 @@
 
 use smallvec::SmallVec;
 
-use super::grid::{Cells, Extent, Grid, whole};
+use super::grid::{Grid, GridCells, GridExtent, whole};
 use super::marks::{Diagonal, Diagonals, Marks};
-use super::pyramid::{Pyramid, Span, merged, no_span};
+use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
 use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
@@ -322,7 +322,7 @@ impl<N: Real> HeightField<N, 3> {
 }
 
 /// The unscaled heights of a whole cell.
-fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> Span<N> {
+fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> HeightSpan<N> {
     let above = row * grid.columns + column;
     let below = above + grid.columns;
     let [a, b] = [grid.heights[above], grid.heights[above + 1]];
@@ -350,7 +350,7 @@ fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     Some(max(min(height, high), low))
 }
 
-impl<N: Real> Cells<N> for HeightField<N, 3> {
+impl<N: Real> GridCells<N> for HeightField<N, 3> {
     fn grid(&self) -> &Grid<N> {
         &self.grid
     }
@@ -359,7 +359,7 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
         &self.pyramid
     }
 
-    fn cell_span(&self, row: usize, column: usize) -> Span<N> {
+    fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N> {
         let is_hole = [0, 1].map(|k| self.is_hole_in(row, column, k));
         if is_hole == [false, false] {
             return square_span(&self.grid, row, column);
@@ -370,7 +370,7 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
         heights.map(|height| [height, height]).fold(no_span(), merged)
     }
 
-    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, Extent<N>); 2]> {
+    fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, GridExtent<N>); 2]> {
         let cell = row * self.pyramid.cells()[1] + column;
         let mut parts = SmallVec::new();
         for (k, number) in [(0, 0), (1, 1)] {
@@ -378,7 +378,7 @@ impl<N: Real> Cells<N> for HeightField<N, 3> {
                 let corners = self.corners_in(row, column, k);
                 let points = corners.map(|[row, column]| self.grid.at(row, column));
                 let first = u32::try_from(2 * cell).expect("32 bits number the triangles");
-                parts.push((first + number, Extent::around(&points)));
+                parts.push((first + number, GridExtent::around(&points)));
             }
         }
         parts

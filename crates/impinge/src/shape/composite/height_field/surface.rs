@@ -13,7 +13,7 @@ use crate::shape::{FeatureId, Sidedness, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
-        let own = Face::of(self, self.corners(part));
+        let own = FieldFace::of(self, self.corners(part));
         self.face_admits(&own, &mut Beside::unknown(), feature, normal)
     }
 
@@ -23,7 +23,7 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         feature: FeatureId,
         [first, second]: [&Vector<N, 3>; 2],
     ) -> [bool; 2] {
-        let (own, mut beside) = (Face::of(self, self.corners(part)), Beside::unknown());
+        let (own, mut beside) = (FieldFace::of(self, self.corners(part)), Beside::unknown());
         let is_first = self.face_admits(&own, &mut beside, feature, first);
         [is_first, !is_first && self.face_admits(&own, &mut beside, feature, second)]
     }
@@ -48,14 +48,14 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
 }
 
 /// A triangle of a field.
-struct Face<N: Real> {
+struct FieldFace<N: Real> {
     corners: [GridPoint; 3],
     points: [Point<N, 3>; 3],
     /// The unit normal on the front; zero without area.
     front: Vector<N, 3>,
 }
 
-impl<N: Real> Face<N> {
+impl<N: Real> FieldFace<N> {
     fn of(field: &HeightField<N, 3>, corners: [GridPoint; 3]) -> Self {
         let points = field.points_of(&corners);
         Self { corners, points, front: normal_of(&points) }
@@ -84,14 +84,14 @@ impl<N: Real> Beside<N> {
 struct Fold<N: Real> {
     ends: [GridPoint; 2],
     /// The triangle across, and how the two lie, if that is plain.
-    other: Option<Face<N>>,
+    other: Option<FieldFace<N>>,
     bend: Option<Bend<N>>,
 }
 
 impl<N: Real> Fold<N> {
-    fn at(field: &HeightField<N, 3>, own: &Face<N>, side: usize) -> Self {
+    fn at(field: &HeightField<N, 3>, own: &FieldFace<N>, side: usize) -> Self {
         let ends = [own.corners[side % 3], own.corners[(side + 1) % 3]];
-        let other = field.across(&own.corners, ends).map(|corners| Face::of(field, corners));
+        let other = field.across(&own.corners, ends).map(|corners| FieldFace::of(field, corners));
         let bend = other
             .as_ref()
             .and_then(|other| Bend::new([&own.points, &other.points], [own.front, other.front]));
@@ -156,7 +156,7 @@ impl<N: Real> HeightField<N, 3> {
     /// Whether a triangle has a normal at a feature; what lies beside it is looked up once.
     fn face_admits(
         &self,
-        own: &Face<N>,
+        own: &FieldFace<N>,
         beside: &mut Beside<N>,
         feature: FeatureId,
         normal: &Vector<N, 3>,
@@ -181,7 +181,7 @@ impl<N: Real> HeightField<N, 3> {
 
     fn edge_admits(
         &self,
-        own: &Face<N>,
+        own: &FieldFace<N>,
         fold: &Fold<N>,
         side: usize,
         normal: &Vector<N, 3>,
@@ -203,7 +203,7 @@ impl<N: Real> HeightField<N, 3> {
 
     fn vertex_admits(
         &self,
-        own: &Face<N>,
+        own: &FieldFace<N>,
         star: &mut Option<Star<N>>,
         corner: usize,
         normal: &Vector<N, 3>,

@@ -3,9 +3,9 @@
 use core::fmt;
 
 use super::HeightField;
-use super::grid::{Cells, overlapping, search};
+use super::grid::{GridCells, overlapping, search};
 use super::pyramid::Pyramid;
-use super::question::{Probe, lifted};
+use super::question::{FieldProbe, lifted};
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, Space, Vector};
 
@@ -15,35 +15,36 @@ pub(crate) struct FieldTable<N: Real, const D: usize> {
     /// The pyramid over the cells as they are.
     pub(super) pyramid: fn(&HeightField<N, D>) -> Pyramid<N>,
     pub(super) overlapping: OverlappingFn<N, D>,
-    pub(super) nearest: InOrderFn<N, D, Aabb<N, D>>,
+    pub(super) nearest: FieldOrderFn<N, D, Aabb<N, D>>,
     /// Of a box and its velocity.
-    pub(super) cast: InOrderFn<N, D, (Aabb<N, D>, Vector<N, D>)>,
+    pub(super) cast: FieldOrderFn<N, D, (Aabb<N, D>, Vector<N, D>)>,
 }
 
 type OverlappingFn<N, const D: usize> = fn(&HeightField<N, D>, &Aabb<N, D>, &mut dyn FnMut(u32));
-type InOrderFn<N, const D: usize, Q> = fn(&HeightField<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
+type FieldOrderFn<N, const D: usize, Q> =
+    fn(&HeightField<N, D>, &Q, N, &mut dyn FnMut(u32, N) -> N);
 
 /// The functions of a dimension that has height fields.
 const fn of_cells<N: Real, const D: usize>() -> FieldTable<N, D>
 where
-    HeightField<N, D>: Cells<N>,
+    HeightField<N, D>: GridCells<N>,
 {
     FieldTable {
         pyramid: |field| {
             Pyramid::new(field.pyramid().cells(), |row, column| field.cell_span(row, column))
         },
         overlapping: |field, aabb, visit| {
-            if let Some(probe) = Probe::new(aabb) {
+            if let Some(probe) = FieldProbe::new(aabb) {
                 overlapping(field, &probe, visit);
             }
         },
         nearest: |field, aabb, limit, visit| {
-            if let Some(probe) = Probe::new(aabb) {
+            if let Some(probe) = FieldProbe::new(aabb) {
                 search(field, limit, |extent| probe.distance(extent), visit);
             }
         },
         cast: |field, (aabb, velocity), limit, visit| {
-            if let (Some(probe), Some(velocity)) = (Probe::new(aabb), lifted(velocity)) {
+            if let (Some(probe), Some(velocity)) = (FieldProbe::new(aabb), lifted(velocity)) {
                 search(field, limit, |extent| probe.time(&velocity, extent), visit);
             }
         },

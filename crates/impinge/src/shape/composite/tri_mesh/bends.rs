@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU16, Ordering};
 
-use crate::shape::surface::bend::Shape;
+use crate::shape::surface::bend::BendShape;
 
 /// Bits for each side.
 const BITS: usize = 4;
@@ -13,7 +13,7 @@ const UNCLEAR: u16 = 4;
 const PLAIN: u16 = 1 << 12;
 const NOT_PLAIN: u16 = 1 << 13;
 
-/// For each triangle and side what [`Shape`] it has, and which triangles are plain to see as such.
+/// For each triangle and side what [`BendShape`] it has, and which triangles are plain to see as such.
 ///
 /// What is kept is a function of the mesh: it does not matter who asks first, nor that of two who write at
 /// one time only one is heard.
@@ -42,8 +42,8 @@ impl Bends {
         &self,
         triangle: u32,
         side: usize,
-        find: impl FnOnce() -> Option<Shape>,
-    ) -> Option<Shape> {
+        find: impl FnOnce() -> Option<BendShape>,
+    ) -> Option<BendShape> {
         let kept = &self.sides[triangle as usize];
         let (all, shift) = (kept.load(Ordering::Relaxed), side * BITS);
         match all >> shift & 7 {
@@ -52,9 +52,9 @@ impl Bends {
                 kept.store(all | code(found) << shift, Ordering::Relaxed);
                 found
             }
-            1 => Some(Shape::Flat),
-            2 => Some(Shape::Ridge),
-            3 => Some(Shape::Hollow),
+            1 => Some(BendShape::Flat),
+            2 => Some(BendShape::Ridge),
+            3 => Some(BendShape::Hollow),
             _ => None,
         }
     }
@@ -84,11 +84,11 @@ impl Clone for Bends {
     }
 }
 
-const fn code(found: Option<Shape>) -> u16 {
+const fn code(found: Option<BendShape>) -> u16 {
     match found {
-        Some(Shape::Flat) => 1,
-        Some(Shape::Ridge) => 2,
-        Some(Shape::Hollow) => 3,
+        Some(BendShape::Flat) => 1,
+        Some(BendShape::Ridge) => 2,
+        Some(BendShape::Hollow) => 3,
         None => UNCLEAR,
     }
 }
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn each_side_is_found_once() {
         let mut bends = Bends::new(2);
-        let all = [Some(Shape::Flat), Some(Shape::Ridge), Some(Shape::Hollow), None];
+        let all = [Some(BendShape::Flat), Some(BendShape::Ridge), Some(BendShape::Hollow), None];
         for (at, shape) in all.into_iter().cycle().take(6).enumerate() {
             let (triangle, side) = (u32::from(at > 2), at % 3);
             assert_eq!(bends.at(triangle, side, || shape), shape, "as found");

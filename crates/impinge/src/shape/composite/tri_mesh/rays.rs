@@ -10,7 +10,7 @@ use crate::shape::{Part, PartSearch, PartSolid, Triangle};
 
 /// What is done with each part along a ray; see
 /// [`CompositeShape::parts_along`](crate::shape::CompositeShape::parts_along).
-type Visit<'a, N, const D: usize> = &'a mut dyn FnMut(u32, Part<'_, N, D>) -> N;
+type HitVisitor<'a, N, const D: usize> = &'a mut dyn FnMut(u32, Part<'_, N, D>) -> N;
 
 /// Where a ray starts, in the frame of the mesh, with all that rounding makes of the place; and when it
 /// ends.
@@ -23,7 +23,7 @@ pub(super) struct RayBounds<'a, N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// Finds the parts by their boxes alone.
-    pub(super) fn boxes_along(&self, bounds: &RayBounds<'_, N, D>, visit: Visit<'_, N, D>) {
+    pub(super) fn boxes_along(&self, bounds: &RayBounds<'_, N, D>, visit: HitVisitor<'_, N, D>) {
         let RayBounds { ray, around, limit } = *bounds;
         self.tree.cast(around, &ray.dir, limit, &mut |index, _| {
             visit(index, triangle_part(&self.corners(index)))
@@ -54,7 +54,11 @@ impl<N: Real> TriMesh<N, 3> {
     ///
     /// The box of a part is looked at last: where areas underflow their signs say nothing, nor do those
     /// of the test that decides.
-    pub(super) fn triangles_along(&self, bounds: &RayBounds<'_, N, 3>, visit: Visit<'_, N, 3>) {
+    pub(super) fn triangles_along(
+        &self,
+        bounds: &RayBounds<'_, N, 3>,
+        visit: HitVisitor<'_, N, 3>,
+    ) {
         let RayBounds { ray, around, limit } = *bounds;
         if ray.dir.iter().all(|&x| x == N::ZERO) {
             return self.boxes_along(bounds, visit);

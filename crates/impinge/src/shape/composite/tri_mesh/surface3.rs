@@ -5,7 +5,7 @@ use super::around::noise;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::FeatureId;
 use crate::shape::solids::segment::length_of;
-use crate::shape::surface::bend::{Bend, Shape};
+use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
 
 /// The unit normal on the side that sees the corners counter-clockwise; zero without area.
@@ -102,7 +102,7 @@ impl<N: Real> TriMesh<N, 3> {
     fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);
-        let find = || Shape::new([&self.corners(part), &self.corners(other)], &fronts);
+        let find = || BendShape::new([&self.corners(part), &self.corners(other)], &fronts);
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 

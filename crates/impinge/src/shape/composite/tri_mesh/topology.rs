@@ -49,11 +49,11 @@ pub(super) struct Topology {
 
 /// A side that has a joint for its lower end: the other end, whose side it is and which, and whether
 /// it leads away from the joint.
-type Side = (u32, u32, u8, bool);
+type TopologySide = (u32, u32, u8, bool);
 
 /// All sides with two ends, by their lower ends, and by joint where its sides end.
-fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<Side>, Vec<usize>) {
-    let each = |visit: &mut dyn FnMut(u32, Side)| {
+fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
+    let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {
             let [a, b, c] = triangle.map(|vertex| joints.of(vertex));
             for (side, [from, to]) in (0..).zip([[a, b], [b, c], [c, a]]) {
@@ -120,7 +120,7 @@ impl Topology {
 
 /// Tells each triangle of a side about the others. They are in ascending order, one without area
 /// perhaps twice.
-fn link(group: &[Side], across: &mut [[u32; 3]]) {
+fn link(group: &[TopologySide], across: &mut [[u32; 3]]) {
     for &(_, own, side, _) in group {
         let mut others = group.iter().map(|&(_, index, ..)| index).filter(|&index| index != own);
         let first = others.next();

@@ -21,7 +21,7 @@ pub(super) struct BestSide<V, M> {
 }
 
 /// The side of one box that leaves the larger gap.
-struct Side<V, M> {
+struct AxisSide<V, M> {
     gap: V,
     is_y: M,
     /// The other box is on the positive side of the axis.
@@ -69,7 +69,7 @@ impl<V> Boxes<V, 2> {
 
     /// The best side of each box; of equal gaps the one that comes first in the box's outline.
     #[inline(always)]
-    fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (Side<V, M>, Side<V, M>)
+    fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
@@ -103,7 +103,7 @@ fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     gaps: [V; 2],
     is_y: M,
     is_positive: [M; 2],
-) -> Side<V, M> {
+) -> AxisSide<V, M> {
     let gap = is_y.select(gaps[1], gaps[0]);
-    Side { gap, is_y, is_positive: either_mask(is_y, is_positive[1], is_positive[0]) }
+    AxisSide { gap, is_y, is_positive: either_mask(is_y, is_positive[1], is_positive[0]) }
 }

@@ -4,10 +4,10 @@ mod axis;
 mod names;
 mod sides;
 
-use self::names::Names;
-use self::sides::Sides;
+use self::names::SideNames;
+use self::sides::BoxSides;
 use super::admit::{Admission, Limits, Slots};
-use super::choose::Choice;
+use super::choose::SlotChoice;
 use super::masks::turned;
 use super::{Inputs, LANES};
 use crate::collide::batch::{Batch, PairQuestion};
@@ -104,7 +104,7 @@ impl<N: Real> EightSides<N> {
         if is_asked == 0 {
             return;
         }
-        let sides = Sides::meeting(simd, &boxes, &axis);
+        let sides = BoxSides::meeting(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
         let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
         self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
@@ -143,13 +143,13 @@ impl<N: Real> EightSides<N> {
 
     #[inline(always)]
     fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
-        let names = Names { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };
         let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
         if is_apart {
             raw.points.clear();
         } else if is_built {
             let slots = u32::from(self.filled[lane]);
-            let choice = Choice {
+            let choice = SlotChoice {
                 slots: &self.slots,
                 lane,
                 valid: slots & 15,

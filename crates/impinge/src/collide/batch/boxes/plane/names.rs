@@ -7,10 +7,10 @@ use crate::math::Real;
 use crate::shape::FeatureId;
 
 /// A side, the end on the negative side of the axis along it, the other end.
-type Parts = [FeatureId; 3];
+type PartNames = [FeatureId; 3];
 
 /// The sides of a box by their axis, plus twice whether they are on its positive side.
-static SIDES: [Parts; 4] = [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
+static SIDES: [PartNames; 4] = [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
 
 /// The vertex with these positive coordinates: along the axis, and along the other one.
 const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
@@ -22,13 +22,13 @@ const fn side(axis: usize, is_positive: bool) -> FeatureId {
     FeatureId::Face(2 * (axis == 1) as u32 + !is_positive as u32)
 }
 
-const fn parts(axis: usize, is_positive: bool) -> Parts {
+const fn parts(axis: usize, is_positive: bool) -> PartNames {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
 }
 
 /// The part of these that has a name.
 #[inline(always)]
-fn part(parts: &Parts, id: FeatureId) -> Option<usize> {
+fn part(parts: &PartNames, id: FeatureId) -> Option<usize> {
     let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);
     (id == parts[end]).then_some(end)
 }
@@ -36,7 +36,7 @@ fn part(parts: &Parts, id: FeatureId) -> Option<usize> {
 /// How the slots of one pair are named: from the bits of the sides (`EightSides::sides`), and two bits for
 /// each slot that say whether it is at the first end of the other side or the second.
 #[derive(Clone, Copy)]
-pub(super) struct Names {
+pub(super) struct SideNames {
     pub(super) sides: u8,
     pub(super) at_ends: u8,
 }
@@ -48,7 +48,7 @@ const AT_END_AT: u32 = 5;
 const SIDES_AT: u32 = 7;
 const MARK: u32 = 1 << 31;
 
-impl Names {
+impl SideNames {
     /// The side that a slot is beside (0), or its first or second end.
     #[inline(always)]
     const fn at_end(self, slot: usize) -> u8 {
@@ -56,12 +56,12 @@ impl Names {
     }
 
     #[inline(always)]
-    fn below(self) -> &'static Parts {
+    fn below(self) -> &'static PartNames {
         &SIDES[usize::from(self.sides & 3)]
     }
 
     #[inline(always)]
-    fn above(self) -> &'static Parts {
+    fn above(self) -> &'static PartNames {
         &SIDES[usize::from(self.sides >> 2 & 3)]
     }
 
@@ -72,7 +72,7 @@ impl Names {
     }
 }
 
-impl Naming for Names {
+impl Naming for SideNames {
     #[inline(always)]
     fn features(&self, slot: usize) -> [FeatureId; 2] {
         let (own, other) = (usize::from(slot & 1 == 1) + 1, usize::from(self.at_end(slot)));

@@ -14,7 +14,7 @@ use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
 /// A side of a box, and the side of the other above it, in the frame of the first of these.
-pub(super) struct Sides<V, M> {
+pub(super) struct BoxSides<V, M> {
     /// The axis across the lower side is the second; the side is on its positive side.
     pub(super) is_y: M,
     pub(super) is_upward: M,
@@ -45,7 +45,7 @@ struct End<V> {
 }
 
 /// An end of one side as the other side sees it.
-struct Candidate<V, M> {
+struct SideCandidate<V, M> {
     end: End<V>,
     is_inside: M,
     /// At the first end of the other side, at the second.
@@ -58,7 +58,7 @@ fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
     is_y.select(v[1], v[0])
 }
 
-impl<V, M> Sides<V, M> {
+impl<V, M> BoxSides<V, M> {
     /// The sides that meet along the axes.
     #[inline(always)]
     pub(super) fn meeting<S: Simd, N: Real>(
@@ -167,7 +167,7 @@ impl<V, M> Sides<V, M> {
 
     /// An end of the upper side as the lower one sees it.
     #[inline(always)]
-    fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> Candidate<V, M>
+    fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
@@ -178,7 +178,7 @@ impl<V, M> Sides<V, M> {
 
     /// An end of the lower side as the upper one sees it.
     #[inline(always)]
-    fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> Candidate<V, M>
+    fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
@@ -198,7 +198,7 @@ impl<V, M> Sides<V, M> {
         simd: S,
         end: End<V>,
         (along, length): (V, V),
-    ) -> Candidate<V, M>
+    ) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
@@ -207,7 +207,7 @@ impl<V, M> Sides<V, M> {
         let is_inside = !(along.simd_lt(-slack) | along.simd_gt(length + slack));
         let at_second = along.simd_ge(length - self.tolerance);
         let at_first = along.simd_le(self.tolerance) & !at_second;
-        Candidate { end, is_inside, at_end: [at_first, at_second] }
+        SideCandidate { end, is_inside, at_end: [at_first, at_second] }
     }
 }
 

@@ -6,8 +6,8 @@
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::super::choose::SLOTS;
-use super::faces::{Faces, cross};
-use super::shown::Shown;
+use super::faces::{FacesInLanes, cross};
+use super::shown::ShownFaces;
 use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
@@ -34,7 +34,7 @@ impl Corners {
 }
 
 /// A corner as the other face sees it.
-struct Place<V, M> {
+struct CornerPlace<V, M> {
     flat: [V; 2],
     height: V,
     is_inside: M,
@@ -55,9 +55,9 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
 /// The clipping of eight pairs under way; `PARTIAL` if one of the faces leans too far.
 pub(super) struct Clip<'a, S, N: Real, V, M, const PARTIAL: bool> {
     simd: S,
-    faces: &'a Faces<V, M>,
+    faces: &'a FacesInLanes<V, M>,
     /// What is shown of the rectangle, and of the parallelogram.
-    shown: [Shown<M>; 2],
+    shown: [ShownFaces<M>; 2],
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS>,
     corners: &'a mut Corners,
@@ -73,7 +73,7 @@ where
     #[inline(always)]
     pub(super) fn new(
         simd: S,
-        faces: &'a Faces<V, M>,
+        faces: &'a FacesInLanes<V, M>,
         limits: &Limits<V>,
         slots: &'a mut Slots<N, 3, SLOTS>,
         corners: &'a mut Corners,
@@ -117,7 +117,7 @@ where
 
     /// A corner of the parallelogram as the rectangle sees it; edges that cross have none.
     #[inline(always)]
-    fn above(&self, corner: usize) -> Place<V, M> {
+    fn above(&self, corner: usize) -> CornerPlace<V, M> {
         let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
@@ -130,7 +130,7 @@ where
 
     /// A corner of the rectangle as the parallelogram sees it.
     #[inline(always)]
-    fn below(&self, corner: usize) -> Place<V, M> {
+    fn below(&self, corner: usize) -> CornerPlace<V, M> {
         let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
@@ -156,9 +156,9 @@ where
         (flat, height): ([V; 2], V),
         inside: [V; 2],
         coordinates: [V; 2],
-    ) -> Place<V, M> {
+    ) -> CornerPlace<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
-        Place {
+        CornerPlace {
             flat,
             height,
             is_inside: !inside[0].smaller(inside[1]).simd_lt(-tolerance),
@@ -168,7 +168,7 @@ where
     }
 
     #[inline(always)]
-    fn corner(&mut self, slot: usize, place: &Place<V, M>) {
+    fn corner(&mut self, slot: usize, place: &CornerPlace<V, M>) {
         for axis in 0..2 {
             self.corners.at_end[axis][slot] = bits(place.at_end[axis]);
             self.corners.beyond[axis][slot] = bits(place.beyond[axis]);
@@ -227,8 +227,8 @@ where
 /// Leaves out corners of the rectangle that are corners of the parallelogram, which are there already.
 #[inline(always)]
 fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
-    above: &[Place<V, M>; 4],
-    below: &mut [Place<V, M>; 4],
+    above: &[CornerPlace<V, M>; 4],
+    below: &mut [CornerPlace<V, M>; 4],
 ) {
     for (lower, lower_signs) in below.iter_mut().zip(SIGNS) {
         let at_corner = lower.is_inside & lower.at_end[0] & lower.at_end[1];
@@ -245,7 +245,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
 
 /// The signs of a place's coordinates are these.
 #[inline(always)]
-fn is_at<S: Simd, V, M: SimdMask<S>>(place: &Place<V, M>, signs: [bool; 2]) -> M {
+fn is_at<S: Simd, V, M: SimdMask<S>>(place: &CornerPlace<V, M>, signs: [bool; 2]) -> M {
     let [x, y] = place.beyond;
     (if signs[0] { x } else { !x }) & (if signs[1] { y } else { !y })
 }

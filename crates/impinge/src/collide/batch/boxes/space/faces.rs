@@ -3,13 +3,13 @@
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
-use super::shown::Shown;
+use super::shown::ShownFaces;
 use crate::math::lanes::{by_axis, dot, either, lit, negated, norm, seen_from};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
 /// A face of a box, and the face of the other above it, in the frame of the first of these.
-pub(super) struct Faces<V, M> {
+pub(super) struct FacesInLanes<V, M> {
     /// The rectangle is the second box's.
     pub(super) is_second: M,
     /// It is, and the normal is not its own.
@@ -133,7 +133,7 @@ fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     toward: &[V; 3],
 ) -> M {
     let [_, u, v] = in_turn(&largest(toward), toward);
-    Shown::is_all(simd, [u, v])
+    ShownFaces::is_all(simd, [u, v])
 }
 
 /// The axis that each lane names, of three, times a length.
@@ -155,7 +155,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
     a[0] * b[1] - a[1] * b[0]
 }
 
-impl<V, M> Faces<V, M> {
+impl<V, M> FacesInLanes<V, M> {
     /// The faces that meet along the axes.
     #[inline(always)]
     pub(super) fn meeting<S: Simd, N: Real>(
@@ -207,7 +207,8 @@ impl<V, M> Faces<V, M> {
             is_m,
             is_positive,
             leans_above: [f1, f2],
-            is_whole: Shown::is_all(simd, [toward[1], toward[2]]) & Shown::is_all(simd, [f1, f2]),
+            is_whole: ShownFaces::is_all(simd, [toward[1], toward[2]])
+                & ShownFaces::is_all(simd, [f1, f2]),
             center,
             arms: [arm1, arm2],
             height,
@@ -221,13 +222,13 @@ impl<V, M> Faces<V, M> {
 
     /// What the rectangle shows of itself, and the parallelogram.
     #[inline(always)]
-    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [Shown<M>; 2]
+    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [ShownFaces<M>; 2]
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
     {
-        let below = Shown::of(simd, self.is_w[1], self.leans);
-        [below, Shown::of(simd, self.is_m[1], self.leans_above)]
+        let below = ShownFaces::of(simd, self.is_w[1], self.leans);
+        [below, ShownFaces::of(simd, self.is_m[1], self.leans_above)]
     }
 
     /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as

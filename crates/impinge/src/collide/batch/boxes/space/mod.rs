@@ -7,10 +7,10 @@ mod names;
 mod shown;
 
 use self::clip::{Clip, Corners};
-use self::faces::Faces;
-use self::names::{Names, Side, parts_at};
+use self::faces::FacesInLanes;
+use self::names::{BoxPairNames, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
-use super::choose::{Choice, SLOTS};
+use super::choose::{SLOTS, SlotChoice};
 use super::masks::turned;
 use super::{Boxes, Inputs, LANES};
 use crate::collide::batch::{Batch, PairQuestion};
@@ -106,7 +106,7 @@ impl<N: Real> EightFaces<N> {
         if is_asked == 0 {
             return;
         }
-        let faces = Faces::meeting(simd, &boxes, &axis);
+        let faces = FacesInLanes::meeting(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
         let is_found = if bits(!faces.is_whole) & is_asked == 0 {
@@ -157,7 +157,7 @@ impl<N: Real> EightFaces<N> {
         &mut self,
         simd: S,
         boxes: &Boxes<V, 3>,
-        faces: &Faces<V, V::Mask>,
+        faces: &FacesInLanes<V, V::Mask>,
         limits: &Limits<V>,
     ) -> V::Mask {
         let (slots, corners) = (&mut self.slots, &mut self.corners);
@@ -174,9 +174,9 @@ impl<N: Real> EightFaces<N> {
     #[inline(always)]
     fn choose(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
-        let sides = Sides::of(bits);
+        let sides = FaceSides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
-        let choice = Choice {
+        let choice = SlotChoice {
             slots: &self.slots,
             lane,
             valid: columns.slots(0, lane),
@@ -184,26 +184,26 @@ impl<N: Real> EightFaces<N> {
             gap: self.gap[lane],
             tolerance: self.tolerance[lane],
         };
-        choice.settle(&Names::new(&sides, bits, parts), max_points.max(1), raw);
+        choice.settle(&BoxPairNames::new(&sides, bits, parts), max_points.max(1), raw);
         let [x, y, z] = &self.normal;
         raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
     }
 }
 
 /// The faces of one pair.
-struct Sides {
-    rectangle: Side,
-    parallelogram: Side,
+struct FaceSides {
+    rectangle: FaceSide,
+    parallelogram: FaceSide,
     is_second: bool,
 }
 
-impl Sides {
+impl FaceSides {
     /// From the bits of `EightFaces::sides`.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
         let side =
-            |bits: u8| Side { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
+            |bits: u8| FaceSide { axis: AXES[usize::from(bits & 3)], is_positive: bits & 4 != 0 };
         Self { rectangle: side(bits), parallelogram: side(bits >> 3), is_second: bits & 64 != 0 }
     }
 }

@@ -1,7 +1,7 @@
 //! Names of the slots of one pair, and the slots of names.
 
 use super::super::choose::{Naming, SLOTS};
-use super::Sides;
+use super::FaceSides;
 use super::clip::{CORNERS, SIGNS};
 use crate::collide::RawPoint;
 use crate::math::Real;
@@ -167,7 +167,7 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
 const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// How the slots of one pair are named.
-pub(super) struct Names {
+pub(super) struct BoxPairNames {
     rectangle: &'static FaceNames,
     parallelogram: &'static FaceNames,
     is_second: bool,
@@ -185,10 +185,10 @@ const MARK: u32 = 1 << 31;
 /// The bits of the two parts.
 const PAIR_BITS: u32 = 127;
 
-impl Names {
+impl BoxPairNames {
     /// From the two faces, as bits too.
     #[inline(always)]
-    pub(super) fn new(sides: &Sides, bits: u8, parts: u64) -> Self {
+    pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
@@ -196,7 +196,7 @@ impl Names {
         let below = parts & 0xffff_ffff;
         let corners = own + 9 * below + (parts - below);
         pairs[..CORNERS].copy_from_slice(&corners.to_le_bytes());
-        let names = |side: Side| &FACES[side.axis][usize::from(side.is_positive)];
+        let names = |side: FaceSide| &FACES[side.axis][usize::from(side.is_positive)];
         Self {
             rectangle: names(sides.rectangle),
             parallelogram: names(sides.parallelogram),
@@ -207,7 +207,7 @@ impl Names {
     }
 }
 
-impl Names {
+impl BoxPairNames {
     /// The two parts that bear these names, as one number.
     #[inline(always)]
     fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
@@ -218,7 +218,7 @@ impl Names {
     }
 }
 
-impl Naming for Names {
+impl Naming for BoxPairNames {
     #[inline(always)]
     fn features(&self, slot: usize) -> [FeatureId; 2] {
         let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];
@@ -252,7 +252,7 @@ impl Naming for Names {
 
 /// A face of a box.
 #[derive(Clone, Copy)]
-pub(super) struct Side {
+pub(super) struct FaceSide {
     pub(super) axis: usize,
     pub(super) is_positive: bool,
 }

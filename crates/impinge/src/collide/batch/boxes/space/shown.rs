@@ -10,12 +10,12 @@ use crate::shape::FACING_SINE_SQUARED;
 /// The part of a face: by its axes, the lanes where it ranges along the axis, and those where the end
 /// that it is confined to elsewhere is on the positive side.
 #[derive(Clone, Copy)]
-pub(super) struct Shown<M> {
+pub(super) struct ShownFaces<M> {
     is_free: [M; 2],
     is_positive: [M; 2],
 }
 
-impl<M> Shown<M> {
+impl<M> ShownFaces<M> {
     /// By the components of a unit vector on the axes after that of the face; `is_middle` are the lanes
     /// where that is the second axis of the box.
     #[inline(always)]
