@@ -48,7 +48,7 @@
 //! * The same calls give the same bits, on every run, machine and number of threads. Pairs, events
 //!   and answers come in order of the handles.
 //! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the error;
-//!   either way nothing was changed. To ask for a part, corner or height that there is not panics as
+//!   either way nothing was changed. To ask for a part, corner or height that does not exist panics as
 //!   it does for a slice.
 //!
 //! # Features

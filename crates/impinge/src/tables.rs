@@ -9,6 +9,7 @@ use core::fmt;
 
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
+use crate::collide::far::{Apart, are_beyond};
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
 use crate::collide::packet::{GapVisitor, TiledParts};
 use crate::collide::parts::Between;
@@ -31,7 +32,6 @@ use crate::narrow_phase::{
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, is_crossed, nearest_part};
-use crate::query::far::{Apart, are_beyond};
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::{
@@ -48,7 +48,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) gaps: GapsFn<N, D>,
     /// Brings the contacts of a convex solid and a chain of segments, or of a ball and a surface, up to date;
-    /// answers false where that is left to the general way.
+    /// returns false where the generic path must do it.
     pub(crate) update_quickly: QuickFn<N, D>,
     /// Its distance, and any that is not positive of solids that overlap clearly.
     pub(crate) distance: DistanceFn<N, D>,

@@ -12,7 +12,7 @@ const AT_ONCE: usize = 16;
 
 /// What becomes of pairs in an update; packed pairs, ascending.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Verdict {
+pub(super) struct PairEvents {
     /// The pairs that begin.
     starting: Vec<u64>,
     /// The pairs that end.
@@ -43,23 +43,23 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.still.refit();
         let mut found = core::mem::take(&mut self.found);
         self.find_changes(&mut found);
-        self.judge(&mut found, filter);
+        self.filter(&mut found, filter);
         // From here on no foreign code runs until everything is consistent.
         self.commit_and_settle(&found.ended);
         self.recent.note(found.began.len().max(found.ended.len()));
         self.found = found;
-        let events = core::mem::take(&mut self.verdict.events);
+        let events = core::mem::take(&mut self.pair_events.events);
         for &(key, started) in &events {
             let (a, b) = unpack(key);
             callback(a, b, started);
         }
-        self.verdict.events = events;
+        self.pair_events.events = events;
     }
 
     /// Decides about the pairs that began; those to be asked about again that are refused now join
     /// the ended ones. Alters no pair.
-    fn judge(&mut self, found: &mut Changes, filter: &mut dyn FnMut(u32, u32) -> bool) {
-        self.verdict.starting.clear();
+    fn filter(&mut self, found: &mut Changes, filter: &mut dyn FnMut(u32, u32) -> bool) {
+        self.pair_events.starting.clear();
         found.began.sort_unstable();
         debug_assert!(found.began.is_sorted_by(|a, b| a < b), "every pair begins once");
         for &key in &found.began {
@@ -67,7 +67,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             let is_again = (self.marks[a as usize] | self.marks[b as usize]) & AGAIN != 0;
             let is_present = is_again && self.pairs.index_of(a, b).is_some();
             match (is_present, filter(a, b)) {
-                (false, true) => self.verdict.starting.push(key),
+                (false, true) => self.pair_events.starting.push(key),
                 (true, false) => found.ended.push(key),
                 _ => {}
             }
@@ -85,8 +85,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         for &u in &self.unbounded {
             self.changes_of_unbounded(u, found);
         }
-        let strayed = self.moving.strayed().chain(self.still.strayed());
-        for a in strayed.chain(self.searched.iter().copied()) {
+        let escaped = self.moving.escaped().chain(self.still.escaped());
+        for a in escaped.chain(self.searched.iter().copied()) {
             self.parted_from(a, &mut found.ended);
         }
     }
@@ -135,9 +135,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// other.
     fn commit_and_settle(&mut self, ended: &[u64]) {
         let mut pairs = core::mem::take(&mut self.pairs);
-        let mut verdict = core::mem::take(&mut self.verdict);
+        let mut pair_events = core::mem::take(&mut self.pair_events);
         let is_large = self.homes.len() >= PARALLEL_FROM;
-        let mut commit = || verdict.commit(&mut pairs, ended);
+        let mut commit = || pair_events.commit(&mut pairs, ended);
         let mut settle = || {
             self.settle();
             self.keep_order();
@@ -148,7 +148,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             commit();
             settle();
         }
-        (self.pairs, self.verdict) = (pairs, verdict);
+        (self.pairs, self.pair_events) = (pairs, pair_events);
     }
 
     /// Declares the present boxes those of before.
@@ -174,7 +174,7 @@ fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
     }
 }
 
-impl Verdict {
+impl PairEvents {
     /// Gives back the memory of lists that have been short for some time.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.starting);

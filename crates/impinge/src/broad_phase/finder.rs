@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::BroadPhaseError;
-use super::events::Verdict;
+use super::events::PairEvents;
 use super::sieve::{KeptBounds, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
@@ -79,7 +79,7 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// Memory for an update.
     pub(super) resting: Vec<u32>,
     pub(super) found: Changes,
-    pub(super) verdict: Verdict,
+    pub(super) pair_events: PairEvents,
     pub(super) lanes: Lanes,
     /// Updates so far; wraps.
     pub(super) clock: u32,
@@ -134,7 +134,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             searched: Vec::new(),
             resting: Vec::new(),
             found: Changes::default(),
-            verdict: Verdict::default(),
+            pair_events: PairEvents::default(),
             lanes,
             clock: 0,
             cursor: 0,
@@ -371,7 +371,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         look.trim(&mut self.resting);
         look.trim(&mut self.found.began);
         look.trim(&mut self.found.ended);
-        self.verdict.give_back(look);
+        self.pair_events.give_back(look);
         look.fit(&mut self.exact);
         look.fit(&mut self.loose);
         look.fit(&mut self.homes);

@@ -46,7 +46,7 @@ impl<const D: usize> Tree<D> {
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
-            // False of NaN: what is not finite ends the search.
+            // False of NaN: and infinity end the search.
             let is_farther = far > reach.best + reach.tolerance;
             if !is_farther {
                 break;

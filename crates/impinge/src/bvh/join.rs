@@ -105,7 +105,7 @@ impl<const D: usize> Joiner<D> {
     }
 
     /// Appends the pairs within the tree that began or ended, each once, in no particular (but
-    /// always the same) order. Of those that ended, some of [`Tree::strayed`] objects may be
+    /// always the same) order. Of those that ended, some of [`Tree::escaped`] objects may be
     /// missing. The tree must be refitted.
     pub fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
@@ -393,7 +393,7 @@ impl<'a, const D: usize> JoinBoxes<'a, D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// The box around an object now and before, unless it strayed.
+    /// The box around an object now and before, unless it escaped its fat AABB.
     #[inline]
     pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);

@@ -32,7 +32,7 @@ impl<const D: usize> Tree<D> {
     }
 
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
-        self.strayed.clear();
+        self.escaped.clear();
         if !self.touched.is_empty() || self.is_restructured {
             self.order_touched();
             let mut dirty = core::mem::take(&mut self.dirty);
@@ -98,7 +98,7 @@ impl<const D: usize> Tree<D> {
         let is_stale = self.is_stale;
         let source = RefitSource { before, ids, changed, by_id, is_stale, lanes: self.lanes };
         let leaves = Leaves { first: 0, blocks: leaves, bounds, reach };
-        leaves.refit(&source, blocks, &mut self.strayed);
+        leaves.refit(&source, blocks, &mut self.escaped);
     }
 
     /// Walks up from the listed leaf blocks.
@@ -147,7 +147,7 @@ impl<const D: usize> Tree<D> {
             self.touched = dirty;
         }
         self.touched.clear();
-        self.strayed.clear();
+        self.escaped.clear();
         self.changed = 0;
         if !remembers {
             (self.before, self.remembers) = (Vec::new(), false);
@@ -175,22 +175,22 @@ struct RefitSource<'a, const D: usize> {
 }
 
 impl<const D: usize> Leaves<'_, D> {
-    /// Refits the listed blocks, ascending, which are all in this run. Appends those that strayed.
-    fn refit(mut self, source: &RefitSource<'_, D>, listed: &[u32], strayed: &mut Vec<u32>) {
+    /// Refits the listed blocks, ascending, which are all in this run. Appends those whose objects escaped their fat AABBs.
+    fn refit(mut self, source: &RefitSource<'_, D>, listed: &[u32], escaped: &mut Vec<u32>) {
         #[cfg(feature = "parallel")]
         if listed.len() > PARALLEL_LEAVES && rayon::current_num_threads() > 1 {
             let (near, far) = listed.split_at(listed.len() / 2);
             let (left, right) = self.split(far[0] as usize);
             let mut beyond = Vec::new();
             rayon::join(
-                || left.refit(source, near, strayed),
+                || left.refit(source, near, escaped),
                 || right.refit(source, far, &mut beyond),
             );
-            return strayed.append(&mut beyond);
+            return escaped.append(&mut beyond);
         }
         with_kernel!(source.lanes, kernel => {
             for &block in listed {
-                self.refit_block(kernel, source, block, strayed);
+                self.refit_block(kernel, source, block, escaped);
             }
         });
     }
@@ -201,7 +201,7 @@ impl<const D: usize> Leaves<'_, D> {
         kernel: K,
         source: &RefitSource<'_, D>,
         block: u32,
-        strayed: &mut Vec<u32>,
+        escaped: &mut Vec<u32>,
     ) {
         let (at, block) = (block as usize - self.first, block as usize);
         let changed = source.changed[block];
@@ -216,7 +216,7 @@ impl<const D: usize> Leaves<'_, D> {
             if both.half_surface() <= STRAYED * now.half_surface() {
                 self.reach[at] = both;
             } else {
-                strayed.push(small(block));
+                escaped.push(small(block));
             }
         }
     }

@@ -131,11 +131,11 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Notes the same of all changed objects of blocks that strayed.
+    /// Notes the same of all changed objects of blocks that were escaped.
     pub(super) fn note_strayed(&mut self) {
         if !self.schedule.snapshot.is_empty() {
             let mut late = core::mem::take(&mut self.schedule.late);
-            late.extend(self.strayed());
+            late.extend(self.escaped());
             self.schedule.late = late;
         }
     }

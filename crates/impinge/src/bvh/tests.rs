@@ -126,7 +126,7 @@ fn check_changes<const D: usize>(
     (first, second): (&Twin<D>, &Twin<D>),
 ) -> (usize, usize) {
     let expected = differences(first, second);
-    let strayed: Vec<u32> = first.tree.strayed().chain(second.tree.strayed()).collect();
+    let escaped: Vec<u32> = first.tree.escaped().chain(second.tree.escaped()).collect();
     let counts = (found.began.len(), found.ended.len());
     let ended = sorted(found.ended);
     assert!(sorted(found.began) == expected.began, "began");
@@ -134,7 +134,7 @@ fn check_changes<const D: usize>(
     assert!(ended.iter().all(|key| expected.ended.binary_search(key).is_ok()), "ended in truth");
     for key in expected.ended.iter().filter(|key| ended.binary_search(key).is_err()) {
         let (a, b) = unpack(*key);
-        assert!(strayed.contains(&a) || strayed.contains(&b), "({a}, {b}) ended unnoticed");
+        assert!(escaped.contains(&a) || escaped.contains(&b), "({a}, {b}) ended unnoticed");
     }
     counts
 }

@@ -81,8 +81,8 @@ pub struct Tree<const D: usize> {
     /// Leaf blocks written to since the last [`Self::settle`], and the same as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
-    /// Leaf blocks whose reach leaves out what was before; see [`Self::strayed`].
-    pub(super) strayed: Vec<u32>,
+    /// Leaf blocks whose reach leaves out what was before; see [`Self::escaped`].
+    pub(super) escaped: Vec<u32>,
     /// Memory for objects on the move from slot to slot.
     pub(super) loads: Vec<Load<D>>,
     /// Memory for lists of blocks.
@@ -124,7 +124,7 @@ impl<const D: usize> Tree<D> {
             live: 0,
             touched: Vec::new(),
             is_touched: Vec::new(),
-            strayed: Vec::new(),
+            escaped: Vec::new(),
             loads: Vec::new(),
             dirty: Vec::new(),
             changed: 0,
@@ -421,7 +421,7 @@ impl<const D: usize> Tree<D> {
         self.shape_layers();
         self.slots.clear();
         self.touched.clear();
-        self.strayed.clear();
+        self.escaped.clear();
         self.schedule = Schedule::default();
         (self.end, self.live, self.changed) = (0, 0, 0);
         (self.is_restructured, self.is_stale) = (false, false);
@@ -467,12 +467,12 @@ impl<const D: usize> Tree<D> {
     /// Changed objects (by id) of whose pairs the [`super::Joiner`] need not have reported those
     /// that ended: objects that were elsewhere before, and their changed neighbours. As of the last
     /// refit.
-    pub fn strayed(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];
             let lanes = (0..LANES).filter(move |lane| mask >> lane & 1 == 1);
             lanes.map(move |lane| self.ids[block as usize * LANES + lane])
         };
-        self.strayed.iter().flat_map(changed)
+        self.escaped.iter().flat_map(changed)
     }
 }

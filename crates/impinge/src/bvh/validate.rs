@@ -99,14 +99,14 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// A join's bounds hold what is and, but for blocks that strayed, what was.
+    /// A join's bounds hold what is and, but for blocks whose objects escaped their fat AABBs, what was.
     fn validate_reach(&self) -> Result<(), String> {
         for (block, reach) in self.layers[0].reach.iter().enumerate() {
-            let has_strayed = self.strayed.iter().any(|&other| other as usize == block);
+            let has_left = self.escaped.iter().any(|&other| other as usize == block);
             let now = bounds_of(&self.layers[0].blocks[block]);
             let before = bounds_of(&self.was()[block]);
             let holds = |inner: &Bounds<D>| *inner == Bounds::EMPTY || reach.contains(inner);
-            if !(holds(&now) && (has_strayed || holds(&before))) {
+            if !(holds(&now) && (has_left || holds(&before))) {
                 return Err(format!("the reach {reach:?} of block {block} leaves boxes out"));
             }
         }

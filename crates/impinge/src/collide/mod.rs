@@ -12,6 +12,7 @@
 //!   normals filtered by the surface, and their points merged into patches.
 
 pub(crate) mod batch;
+pub(crate) mod far;
 pub(crate) mod manifold;
 pub(crate) mod mesh;
 pub(crate) mod packet;

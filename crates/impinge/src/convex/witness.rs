@@ -105,7 +105,7 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
 ///
 /// Along a surface that is curved a point may be moved: it leaves the surface by the square of the
 /// way only. At an edge it may not. A supporting plane halfway between the normal and the side that
-/// lies aside tells which is which.
+/// lies aside decides which is which.
 fn share<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

@@ -173,7 +173,7 @@ mod tests {
     fn volumes_are_positive_in_front() {
         let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(P3::from);
         assert_eq!(volume(&a, &b, &c, &P3::new(0.25, 0.25, 3.0)), 3.0, "above");
-        assert_eq!(volume(&a, &b, &c, &P3::new(7.0, -4.0, 0.0)), 0.0, "in the plane");
+        assert_eq!(volume(&a, &b, &c, &P3::new(7.0, -4.0, 0.0)), 0.0, "in 2D");
         assert_eq!(volume_exact([&a, &b, &c], &P3::new(0.25, 0.25, 3.0)), 3.0, "exactly");
         let tiny = volume(&a, &b, &c, &P3::new(0.1, 0.7, -1e-60));
         assert!(tiny < 0.0 && tiny > -1.1e-60, "{tiny} just below");

@@ -40,7 +40,7 @@ pub(super) fn update_due<N: Space<D>, const D: usize>(
             *slot = place;
             count += 1;
         }
-        glance(rows, table, &next[..count]);
+        prefetch(rows, table, &next[..count]);
         next[..count].iter().for_each(|&place| update(rows, place));
         if count < PAIRS {
             return;
@@ -49,7 +49,7 @@ pub(super) fn update_due<N: Space<D>, const D: usize>(
 }
 
 /// Reads a number of each place that the updates of some pairs will read. Changes nothing.
-fn glance<N: Space<D>, const D: usize>(
+fn prefetch<N: Space<D>, const D: usize>(
     rows: &CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
     places: &[usize],
@@ -57,7 +57,7 @@ fn glance<N: Space<D>, const D: usize>(
     let mut seen = N::ZERO;
     for &place in places {
         let [one, other] = rows.keys[place].map(|index| solid(table.shape(index).geometry()));
-        seen = max(seen, max(rows.states[place].state.glance(), max(one, other)));
+        seen = max(seen, max(rows.states[place].state.prefetch(), max(one, other)));
     }
     core::hint::black_box(seen);
 }

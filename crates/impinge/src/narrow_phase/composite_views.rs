@@ -59,7 +59,7 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
             flags &= flags - 1;
             let (key, entry) = (self.group.keys()[place], &self.group.states()[place]);
             let home = self.table.pose(entry.state.home(key));
-            seen = max(seen, max(entry.state.glance(), home.translation[0]));
+            seen = max(seen, max(entry.state.prefetch(), home.translation[0]));
         }
         core::hint::black_box(seen);
     }

@@ -5,7 +5,7 @@ use crate::generation::Generation;
 /// The name of a collision object; it never comes to mean another object of its world.
 ///
 /// Only the world that gave it accepts it: another world refuses it like a stale one, also where both
-/// were filled alike. (Worlds are told apart by a tag of 16 bits, which is used again after 65535
+/// were filled alike. (Worlds are distinguished by a tag of 16 bits, which is used again after 65535
 /// other worlds.) Handles of two worlds are never equal; [`CollisionWorld::counterpart`] translates
 /// them, and those that were deserialized, which belong to no world: the serialized form is the index
 /// and the generation.

@@ -4,9 +4,9 @@
 use core::fmt;
 
 use super::{CollisionObjectHandle, GeometricQueryType};
+use crate::collide::far::ReachBounds;
 use crate::math::{Pose, Real, Space};
 use crate::memory::Look;
-use crate::query::far::ReachBounds;
 use crate::shape::ShapeHandle;
 
 /// The row of an object that has none.

@@ -1,6 +1,7 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
 
 use super::group::PairKey;
+use crate::collide::far::{Apart, ReachBounds};
 use crate::collide::pair::is_swapped;
 use crate::collide::parts::Between;
 use crate::collide::{
@@ -8,7 +9,6 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::far::{Apart, ReachBounds};
 use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
@@ -286,8 +286,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 impl<N: Real, const D: usize> CompositeState<N, D> {
     /// A number of each place in memory that an update reads first, of no meaning: reading it brings them near.
     #[inline]
-    pub(super) fn glance(&self) -> N {
-        self.contacts.glance()
+    pub(super) fn prefetch(&self) -> N {
+        self.contacts.prefetch()
     }
 
     /// Of the two objects of the pair, that in whose frame the contacts are kept.

@@ -8,7 +8,7 @@ use crate::math::{Real, Vector};
 pub const MIN_SUBDIVISIONS: u32 = 3;
 
 /// The greatest number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below what
-/// an `f32` tells apart, and the vertices of every surface can be numbered in 32 bits.
+/// an `f32` distinguishes, and the vertices of every surface can be numbered in 32 bits.
 pub const MAX_SUBDIVISIONS: u32 = 1 << 14;
 
 /// The number of parts that stands for the number asked for.

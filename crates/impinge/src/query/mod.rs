@@ -4,7 +4,6 @@ mod closest_points;
 pub(crate) mod composite;
 mod contact;
 mod distance;
-pub(crate) mod far;
 mod impact;
 mod kinematic;
 mod manifold;

@@ -53,7 +53,7 @@ pub enum ShapeError {
         /// The index of the point.
         index: usize,
     },
-    /// A face of a solid names a point that there is not.
+    /// A face of a solid names a point that does not exist.
     NoSuchPoint {
         /// The index of the face.
         face: usize,

@@ -299,7 +299,7 @@ fn triangles_without_area_are_segments_and_points() {
         Point::<f64, 2>::new(3.0, 3.0),
     );
     let feature = faces(&line, &Vector::<f64, 2>::new(-1.0, 1.0).normalize());
-    let normal = feature.normal.expect("a side in the plane");
+    let normal = feature.normal.expect("a side in 2D");
     assert!(normal.x < 0.0 && normal.y > 0.0, "towards the direction: {feature:?}");
 }
 

@@ -46,7 +46,7 @@ impl<N: Real> ConvexHull<N> {
     /// ```
     ///
     /// # Errors
-    /// If a face has fewer than three corners or names a point that there is not; if a side is not one of
+    /// If a face has fewer than three corners or names a point that does not exist; if a side is not one of
     /// two faces; if a face is not on the hull, as of solids that are not convex; and as
     /// [`Self::try_from_points`].
     pub fn try_new<F: AsRef<[u32]>>(

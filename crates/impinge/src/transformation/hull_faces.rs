@@ -183,7 +183,7 @@ impl<'a> Merger<'a> {
         ring.iter().map(|corner| corner.vertex).collect()
     }
 
-    /// Takes in the facet beyond a side, if it lies in the plane of the seed and the face stays
+    /// Takes in the facet beyond a side, if it is coplanar with the seed and the face stays
     /// convex.
     fn take_beyond(&mut self, seed: u32, ring: &mut Vec<HullCorner>, position: usize) -> bool {
         let (from, beyond) = (ring[position].vertex, ring[position].beyond);

@@ -37,7 +37,7 @@ pub(super) struct HullSurface<'a> {
     searches: u32,
 }
 
-/// A side of a facet in sight beyond which lies one out of sight.
+/// A side of a visible facet beyond which lies an invisible one.
 #[derive(Clone, Copy)]
 struct HorizonSide {
     from: u32,

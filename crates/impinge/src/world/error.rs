@@ -22,7 +22,7 @@ use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// The handle names no object of the world: the object was removed, or belongs to another world.
+    /// The handle is stale or unknown: the object was removed, or belongs to another world.
     StaleHandle(CollisionObjectHandle),
     /// The handle occurs twice among those to remove.
     RepeatedHandle(CollisionObjectHandle),
@@ -52,7 +52,9 @@ pub enum WorldError {
 impl fmt::Display for WorldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::StaleHandle(handle) => write!(f, "{handle:?} names no object of this world"),
+            Self::StaleHandle(handle) => {
+                write!(f, "{handle:?} is stale, or a handle of another world")
+            }
             Self::RepeatedHandle(handle) => write!(f, "{handle:?} is to be removed twice"),
             Self::Position { handle: Some(handle), value } => {
                 write!(f, "a number of the position for {handle:?} is {value}")

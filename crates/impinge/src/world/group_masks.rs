@@ -71,7 +71,7 @@ impl CollisionGroups {
     }
 }
 
-/// Groups as masks: bit `g` is group `g`, for 0 to 29. The bits 30 and 31 name groups that there are not.
+/// Groups as masks: bit `g` is group `g`, for 0 to 29. The bits 30 and 31 name groups that do not exist.
 impl CollisionGroups {
     /// The mask of all groups, 0 to 29.
     pub const ALL: u32 = ALL_GROUPS;

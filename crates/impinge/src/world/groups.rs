@@ -59,7 +59,7 @@ impl From<CollisionGroups> for Spelled {
 #[cfg(feature = "serde")]
 impl From<Spelled> for CollisionGroups {
     fn from(spelled: Spelled) -> Self {
-        // Bits of groups that there are not mean nothing.
+        // Bits of groups that do not exist mean nothing.
         let [membership, whitelist, blacklist] =
             [spelled.membership, spelled.whitelist, spelled.blacklist]
                 .map(|mask| mask & ALL_GROUPS);

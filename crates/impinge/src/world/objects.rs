@@ -49,7 +49,7 @@ struct Slot {
     place: u32,
 }
 
-/// The place of an object that there is not.
+/// The index that stands for no object.
 const NOWHERE: u32 = u32::MAX;
 
 /// What the user says about a new object.

@@ -212,7 +212,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// The pairs that something is to be said of, sorted.
+    /// The pairs with events, sorted.
     fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);

@@ -91,7 +91,7 @@ pub(super) struct EightContacts<N: Real, const D: usize> {
     pub(super) distances: [[N; LANES]; 2],
     /// Lengths up to this are rounding errors, where there are two contacts.
     pub(super) tolerance: [N; LANES],
-    /// Eight masks that tell what the points lie on, then a byte for each pair; what the bits mean is up to the
+    /// Eight masks that encode what the points lie on, then a byte for each pair; what the bits mean is up to the
     /// form. Where there are two contacts, four are of the first.
     pub(super) parts: [u8; LANES],
     /// The lanes that are too far apart, those that have a contact, and those that have two. The others are

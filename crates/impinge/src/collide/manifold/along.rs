@@ -125,7 +125,7 @@ pub(crate) fn on_face3<N: Real>(
         lowest = min(candidate.distance, lowest);
     }
     if let Some(nearest) = nearest {
-        // Infinite where there is none; what is no number is not near.
+        // Infinite where there is none; NaN is not near.
         let is_reached = lowest <= nearest + tolerance;
         if !is_reached {
             return false;

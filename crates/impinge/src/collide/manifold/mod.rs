@@ -135,7 +135,7 @@ pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     [u, v]
 }
 
-/// The direction along the line of contact in 2D, and zero for the second that there is not.
+/// The direction along the line of contact in 2D, and zero for the second, which does not exist.
 #[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
@@ -248,7 +248,7 @@ fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) ->
 }
 
 /// Of candidates whose distance is the smallest but for rounding, at most `limit`, one that the previous
-/// manifold held, then the deepest: its index. `what` tells of each whether it was held, and its distance.
+/// manifold held, then the deepest: its index. `what` returns of each whether it was held, and its distance.
 #[inline]
 pub(in crate::collide) fn deepest_of<N: Real>(
     count: usize,

@@ -1,4 +1,4 @@
-//! The supporting feature of a solid in space as a ring of corners, seen along the normal of a frame.
+//! The supporting feature of a 3D solid as a ring of corners, seen along the normal of a frame.
 //!
 //! A point has one corner, a segment two and one side, a face three or more and as many sides. Corners lie in
 //! blocks of eight lanes, of which nearly all rings need one. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).

@@ -1,4 +1,4 @@
-//! The contacts of a ball and a surface of triangles in 3D: the general way, which defines them, with what
+//! The contacts of a ball and a surface of triangles in 3D: the generic path, which defines them, with what
 //! all triangles have in common worked out once, and nothing made of those that others hide.
 
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 16.0;
 /// Most of these cost no more than a look at whether their box meets the ball's.
 const MAX_ROOMY: usize = 5 * LANES;
 
-/// Brings the contacts of a ball and a surface up to date; answers false where that is left to the general way,
+/// Brings the contacts of a ball and a surface up to date; returns false where the generic path must do it,
 /// as of all other solids.
 pub(crate) fn update_on_surface<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
@@ -72,7 +72,7 @@ struct SeenTriangle<N: Real> {
 }
 
 impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
-    /// `None` of other solids, and of what is no surface.
+    /// `None` of other solids, and of composites that are no surface.
     fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();

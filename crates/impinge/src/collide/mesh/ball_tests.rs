@@ -1,4 +1,4 @@
-//! Contacts of balls, boxes and hulls on surfaces, step after step: those of balls against the general way, which
+//! Contacts of balls, boxes and hulls on surfaces, step after step: those of balls against the generic path, which
 //! defines them, and all against the contact that a query finds.
 
 use super::CompositeContacts;

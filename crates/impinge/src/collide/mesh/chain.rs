@@ -1,4 +1,4 @@
-//! The contacts of a convex solid and a chain of segments in 2D: the general way, which defines them,
+//! The contacts of a convex solid and a chain of segments in 2D: the generic path, which defines them,
 //! with what all segments have in common worked out once, and nothing made of those beyond reach.
 
 use super::cull::relative_slack;
@@ -32,7 +32,7 @@ const ROUNDING: f64 = 16.0;
 const MAX_SEARCHED: usize = 8;
 
 /// Brings the contacts of a convex solid and a chain up to date; answers false where that is left to the
-/// general way.
+/// generic path.
 pub(crate) fn update_chain<N: Real>(
     contacts: &mut CompositeContacts<N, 2>,
     between: &Between<'_, N, 2>,
@@ -132,7 +132,7 @@ struct ChainLink<'c, 'b, 'a, N: Real> {
 }
 
 impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
-    /// `None` of solids that are not treated here, and of what is no surface.
+    /// `None` of solids that have no kernel here, and of composites that are no surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
         let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
@@ -258,7 +258,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 }
 
 impl<N: Real> ChainLink<'_, '_, '_, N> {
-    /// Finds the contact of the segment, if there is one; `None` where that is left to the general way.
+    /// Finds the contact of the segment, if there is one; `None` where that is left to the generic path.
     fn find(
         &self,
         part_contacts: &mut PartContacts<N, 2>,

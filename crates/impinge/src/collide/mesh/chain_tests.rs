@@ -1,4 +1,4 @@
-//! Contacts of chains against the general way, which defines them: the same bits, step after step.
+//! Contacts of chains against the generic path, which defines them: the same bits, step after step.
 
 use super::chain::update_chain;
 use super::{

@@ -130,7 +130,7 @@ impl<'a, N: Space<D>, const D: usize> CullProbe<'a, N, D> {
         }
         let length = toward.norm();
         let slack = relative_slack::<N>() * (farthest.sqrt() + self.size);
-        // Written so that what is no number bounds nothing, nor what has lost digits by being small.
+        // NaN bounds nothing, nor what has lost digits by being small.
         let is_bound = length > slack && least > least_length();
         if !is_bound {
             return Bound { from_middle: N::ZERO, is_beyond: false };

@@ -85,11 +85,11 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 
     /// A number of each place in memory that an update reads first, of no meaning.
     #[inline]
-    pub(crate) fn glance(&self) -> N {
+    pub(crate) fn prefetch(&self) -> N {
         let patch = self.patches.first();
         let point = patch.and_then(|patch| patch.points.first());
         let normal = patch.map_or(N::ZERO, |patch| patch.normal[0]);
-        max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.glance())
+        max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.prefetch())
     }
 
     /// The manifolds.
@@ -358,7 +358,7 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
     limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
 }
 
-/// Contacts are mostly found without the general way: of balls and surfaces, and of chains.
+/// Contacts mostly have a kernel of their own: of balls and surfaces, and of chains.
 fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));

@@ -31,7 +31,7 @@ pub(crate) fn over3<N: Real>(
     let longest = max(lengths[0], max(lengths[1], lengths[2]));
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
-    // Written so that what is no number is not certain.
+    // False for NaN, which is not certain.
     let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
     if !is_plain {
         return None;

@@ -59,7 +59,7 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 impl<N: Real, const D: usize> PartCache<N, D> {
     /// A number of the first corner that is kept, of no meaning.
     #[inline]
-    pub(super) fn glance(&self) -> N {
+    pub(super) fn prefetch(&self) -> N {
         self.tiles.first().map_or(N::ZERO, |tiles| tiles.corners[0][0][0])
     }
 }
@@ -145,7 +145,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.parts
     }
 
-    /// The corners of all parts by eights; empty if they are not kept.
+    /// The corners of all parts in packets of eight; empty if they are not kept.
     pub(super) fn tiles(&self) -> &[Tiles<N, D>] {
         &self.tiles
     }

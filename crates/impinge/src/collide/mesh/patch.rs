@@ -88,7 +88,7 @@ fn merge_one<N: Real, const D: usize>(
     ids: &mut PairIds,
 ) {
     let mut raw = merging.points[piece.points.start];
-    // Written so that what is no number is not near.
+    // False for NaN, which is not near.
     let is_near = raw.distance <= merging.request.prediction;
     if !is_near {
         return patches.clear();

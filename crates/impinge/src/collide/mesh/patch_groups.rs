@@ -1,6 +1,6 @@
 //! Which pieces make one patch: those with one normal in one plane.
 //!
-//! On rough ground each piece has a normal of its own, and is a patch. Elsewhere pieces are taken deepest first,
+//! On rough terrain each piece has a normal of its own, and is a patch. Elsewhere pieces are taken deepest first,
 //! and each is compared with the deepest piece of the patches before whose normals may be the same. The normals
 //! of many pieces lie in cells along one axis, so that few are compared.
 

@@ -42,7 +42,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         Self { origin, size: highest, slabs: smallvec![slab] }
     }
 
-    /// Of a part of the first shape (0) or the second (1); none of what is not given by its corners.
+    /// Of a part of the first shape (0) or the second (1); none of parts without corners.
     pub(crate) fn of_part(
         between: &Between<'_, N, D>,
         which: usize,

@@ -317,7 +317,7 @@ mod tests {
             })
             .collect();
         let (found, overlapping) = found(&solids, &poses, way_in_space);
-        assert!(found * 2 > overlapping, "{found} of {overlapping} in space");
+        assert!(found * 2 > overlapping, "{found} of {overlapping} in 3D");
     }
 
     fn plane<N: Real>(size: f64) {
@@ -338,7 +338,7 @@ mod tests {
             .map(Pose::from_translation)
             .collect();
         let (found, overlapping) = found(&solids, &poses, way_in_plane);
-        assert!(found * 2 > overlapping, "{found} of {overlapping} in the plane");
+        assert!(found * 2 > overlapping, "{found} of {overlapping} in 2D");
     }
 
     type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];

@@ -73,7 +73,7 @@ mod tests {
         let d = Vector::<f64, 3>::new(0.6, 0.0, 0.8);
         assert_eq!(perpendicular_to(&d), Vector::<f64, 3>::new(0.0, 1.0, 0.0), "the idle axis");
         let flat = Vector::<f64, 2>::new(0.0, -1.0);
-        assert_eq!(perpendicular_to(&flat), Vector::<f64, 2>::new(1.0, 0.0), "in the plane");
+        assert_eq!(perpendicular_to(&flat), Vector::<f64, 2>::new(1.0, 0.0), "in 2D");
         let v = made_perpendicular(&Vector::<f64, 3>::new(5.0, 1e-6, 0.0), &first_axis());
         assert_eq!(v, Some(Vector::<f64, 3>::new(0.0, 1.0, 0.0)), "the small part survives");
         assert_eq!(made_perpendicular(&first_axis::<f64, 3>(), &first_axis()), None, "parallel");

@@ -31,7 +31,7 @@ impl<N: Real> Table2<N> {
         let gx: Algorithm<N, 2> = parts::separation;
         let __: Algorithm<N, 2> = flipped;
         // Columns as rows: ball, segment, capsule, triangle, cuboid, polytope, cylinder, cone
-        // (neither occurs in the plane), ellipsoid, tapered capsule, rounded, support map, plane,
+        // (neither occurs in 2D), ellipsoid, tapered capsule, rounded, support map, plane,
         // composite.
         [
             [bb, bs, bs, b3, bc, bh, gg, gg, be, bt, rr, gg, gp, gx],

@@ -1,10 +1,10 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
+use crate::collide::far::Apart;
 use crate::collide::pair::{Ordered, Placed};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
-use crate::query::far::Apart;
 use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.

@@ -18,7 +18,7 @@ pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
 
 use super::composite::{PartArrival, first_arrival};
-use super::far::Apart;
+use crate::collide::far::Apart;
 use crate::collide::pair::{Ordered, Pair, Placed, order};
 use crate::collide::parts::Between;
 use crate::math::{
@@ -432,7 +432,7 @@ fn are_parted<N: Real, const D: usize>(
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
-/// Of two that nothing else tells apart: the first comes after the second by its velocity.
+/// Of two that nothing else distinguishes: the first comes after the second by its velocity.
 fn is_later<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,

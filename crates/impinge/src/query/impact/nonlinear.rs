@@ -72,12 +72,12 @@ const PARTS_WAY: f64 = 1.0 / 32.0;
 /// use impinge::dim2::shape::{Ball, Cuboid};
 /// use std::f64::consts::FRAC_PI_2;
 ///
-/// // A rod turns by a quarter per second; a ball lies a quarter turn ahead of it, less its radius.
-/// let (rod, ball) = (Cuboid::new(Vector::new(2.0, 0.0)), Ball::new(0.5));
+/// // A bar turns by a quarter per second; a ball lies a quarter turn ahead of it, less its radius.
+/// let (bar, ball) = (Cuboid::new(Vector::new(2.0, 0.0)), Ball::new(0.5));
 /// let turns = ConstantVelocities::<f64>::new(Isometry::identity(), Vector::zeros(), FRAC_PI_2);
 /// let stays = ConstantVelocities::<f64>::still(Isometry::translation(0.0, 1.0));
 /// let options = ImpactOptions::new().with_max_time(1.0);
-/// let found = nonlinear_time_of_impact(&turns, &rod, &stays, &ball, &options);
+/// let found = nonlinear_time_of_impact(&turns, &bar, &stays, &ball, &options);
 /// // Seen from the origin the ball is half of a sixth of a turn wide: it is hit after 60 degrees.
 /// assert!((found.expect("it is in the way").toi - 2.0 / 3.0).abs() < 1e-12);
 /// ```

@@ -85,7 +85,7 @@ struct Advance<'a, N: Real, const D: usize> {
 
 impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Moves the point to the supporting plane between it and the solid, again and again, until it
-    /// is as near as distances can be told apart; `None` once it moves away from such a plane.
+    /// is as near as distances can be distinguished; `None` once it moves away from such a plane.
     ///
     /// The planes are those of the idea of G. van den Bergen, "Ray Casting against General Convex
     /// Objects with Application to Continuous Collision Detection" (2004), found afresh each time:

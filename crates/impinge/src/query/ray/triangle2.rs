@@ -75,7 +75,7 @@ fn crossing<N: Real>(
     Crossing::new(from.t + (to.t - from.t) * fraction, normal, FeatureId::Face(number))
 }
 
-/// The span, with the times exchanged where rounding has exchanged them: the sides are told apart by
+/// The span, with the times exchanged where rounding has exchanged them: the sides are distinguished by
 /// the way they lead, and the times by themselves.
 fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2> {
     let (first, last) = (min(enter.t, leave.t), max(enter.t, leave.t));

@@ -30,7 +30,7 @@ pub enum MeshError {
         /// The index of the vertex.
         vertex: usize,
     },
-    /// A part names a vertex that there is not.
+    /// A part names a vertex that does not exist.
     NoSuchVertex {
         /// The index of the part.
         part: usize,

@@ -115,7 +115,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// The union of segments given by two vertices each, in any order.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a segment names a vertex that there is not, there is no
+    /// If a coordinate is not finite, a segment names a vertex that does not exist, there is no
     /// segment, or 32 bits cannot number the ends.
     pub fn try_new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Result<Self, MeshError> {
         check_vertices(&vertices)?;

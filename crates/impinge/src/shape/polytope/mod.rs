@@ -72,7 +72,7 @@ pub(in crate::shape) const LANES: usize = 8;
 /// How many vertices code without vectors looks at: they fit in one register everywhere.
 pub(in crate::shape) const QUARTET: usize = 4;
 
-/// Vertices by eights; those of a small solid within it.
+/// Vertices in packets of eight; those of a small solid within it.
 type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
 /// Vertices by fours, likewise.
 type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;

@@ -5,10 +5,9 @@ use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::error::{finite, or_panic, size};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
-use crate::shape::tilt::Tilt;
 use crate::shape::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
-    ShapeHandle, Shown, SupportMap,
+    ShapeHandle, Shown, SupportMap, tilt::Tilt,
 };
 
 /// The points whose coordinate on each axis is within the half extent of zero.

@@ -14,10 +14,10 @@ use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeHandle};
 /// use impinge::dim3::query::PointQuery;
 /// use impinge::dim3::shape::Plane;
 ///
-/// let ground = Plane::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
+/// let floor = Plane::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
 /// let above = Point::new(7.0, 2.0, -3.0);
-/// assert_eq!(ground.distance_to_point(&Isometry::identity(), &above, true), 2.0);
-/// assert!(ground.contains_point(&Isometry::identity(), &Point::new(0.0, -9.0, 0.0)));
+/// assert_eq!(floor.distance_to_point(&Isometry::identity(), &above, true), 2.0);
+/// assert!(floor.contains_point(&Isometry::identity(), &Point::new(0.0, -9.0, 0.0)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane<N: Real, const D: usize> {

@@ -305,7 +305,7 @@ impl<N: Real> Triangle<N, 3> {
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&ways[0], &ways[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
-        // Written so that what is no number is thin.
+        // NaN counts as thin.
         let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
         if !is_wide {
             return None;

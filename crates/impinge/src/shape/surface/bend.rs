@@ -103,7 +103,7 @@ impl BendShape {
         fronts: &[Vector<N, 3>; 2],
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
-        // Written so that what is no number is not plain.
+        // False for NaN, which is not plain.
         let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
         if !is_plain {
             return None;

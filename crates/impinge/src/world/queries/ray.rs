@@ -97,7 +97,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that
     /// `batch.rays[i]` meets first and where, to the bit. The caller keeps the places from frame to frame.
     ///
-    /// On the calling thread, whatever the features: a world may hold what is not to be shared. Those
+    /// On the calling thread, whatever the features: a world may hold data that cannot be shared. Those
     /// that can be shared may be asked from several threads, each with a share of the rays.
     ///
     /// ```

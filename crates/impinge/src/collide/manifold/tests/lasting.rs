@@ -60,8 +60,8 @@ fn on_box<N: Scene<D>, const D: usize>(reach: f64) -> usize {
 
 #[test]
 fn a_sliding_box_keeps_its_names() {
-    assert_eq!([on_plane::<f32, 2>(), on_plane::<f64, 2>()], [2; 2], "two corners in the plane");
-    assert_eq!([on_plane::<f32, 3>(), on_plane::<f64, 3>()], [4; 2], "four corners in space");
+    assert_eq!([on_plane::<f32, 2>(), on_plane::<f64, 2>()], [2; 2], "two corners in 2D");
+    assert_eq!([on_plane::<f32, 3>(), on_plane::<f64, 3>()], [4; 2], "four corners in 3D");
     assert_eq!([on_box::<f32, 2>(4.0), on_box::<f64, 3>(4.0)], [2, 4], "on a large box");
 }
 

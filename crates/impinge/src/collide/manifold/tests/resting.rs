@@ -110,7 +110,7 @@ fn round_solids_rest() {
         let capsule = Rest { solid: &capsule, height: 0.25 - sunk, turn: lying };
         assert_eq!(capsule.counts(&wish), [2; 2], "a lying capsule");
         let flat = Rest { solid: &flat_capsule, height: 0.25 - sunk, turn: lying };
-        assert_eq!(flat.counts(&wish), [2; 2], "a lying capsule in the plane");
+        assert_eq!(flat.counts(&wish), [2; 2], "a lying capsule in 2D");
         let ball3 = Rest::<3> { solid: &ball, height: 0.5 - sunk, turn: [0.0; 3] };
         assert_eq!(ball3.counts(&wish), [1; 2], "a ball");
         let ball2 = Rest::<2> { solid: &ball, height: 0.5 - sunk, turn: [0.0; 3] };
@@ -141,7 +141,7 @@ fn ellipsoids_tapered_capsules_and_rounded_boxes_rest() {
         let club = Rest { solid: &club, height: middle - sunk, turn: lying };
         assert_eq!(club.counts(&wish), [2; 2], "a club");
         let flat = Rest { solid: &flat_club, height: middle - sunk, turn: lying };
-        assert_eq!(flat.counts(&wish), [2; 2], "a club in the plane");
+        assert_eq!(flat.counts(&wish), [2; 2], "a club in 2D");
     }
 }
 

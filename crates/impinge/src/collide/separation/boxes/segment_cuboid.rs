@@ -322,7 +322,7 @@ impl<N: Real> LocalBox<'_, N> {
             (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].map(|at| (axis, at)));
         for (axis, side) in sides {
             let share = (side - from[axis]) / along[axis];
-            // Written so that what is no number is passed over.
+            // NaN counts as passed over.
             if share > low.0 && share < high.0 {
                 let slope = slope(share);
                 let end = if slope < N::ZERO { &mut low } else { &mut high };

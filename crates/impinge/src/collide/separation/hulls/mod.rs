@@ -43,7 +43,7 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 ///
 /// Of equal faces those of the first solid come before those of the second, in their order, and all
 /// before edges; of equal pairs of edges that of the lower indices counts. Cost: the product of the
-/// numbers of vertices and faces, by eights; thin triangles, flat boxes and larger hulls fall back to the
+/// numbers of vertices and faces, in packets of eight; thin triangles, flat boxes and larger hulls fall back to the
 /// general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {

@@ -22,7 +22,7 @@ use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, max_component, mi
 
 /// The separation of a segment or capsule from a triangle or a convex hull.
 ///
-/// Cost: linear in the numbers of faces and edges, by eights. Thin triangles, large hulls and what is not
+/// Cost: linear in the numbers of faces and edges, in packets of eight. Thin triangles, large hulls and what is not
 /// proved fall back to the general algorithm.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,

@@ -55,7 +55,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     separation_of_outlines(pair, limit)
 }
 
-/// [`separation`] of what is not two segments that are known to be apart.
+/// [`separation`] of pairs but two segments that are known to be apart.
 pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,

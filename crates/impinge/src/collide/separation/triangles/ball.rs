@@ -25,7 +25,7 @@ const CORNER: f64 = 3.0;
 const ROUNDING: f64 = 128.0;
 /// A height of more than so many rounding units of all coordinates is no rounding.
 const HEIGHT: f64 = 64.0;
-/// What hides a triangle is looked for among so many eights before and after its own.
+/// What hides a triangle is looked for among so many packets before and after its own.
 const MAX_APART: usize = 8;
 
 /// A ball among triangles.
@@ -267,7 +267,7 @@ impl<V> TrianglePacket<V> {
             & self.area.simd_lt(V::all(simd, N::MAX * N::EPSILON))
     }
 
-    /// Which side or corner the middle is beside, and by how much: what is not positive says nothing.
+    /// Which side or corner the middle is beside, and by how much: numbers that are not positive say nothing.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
     where

@@ -35,7 +35,7 @@ fn noise<N: Real>() -> N {
 
 /// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
 /// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
-/// that are not treated here. The limit is the `prediction` and what turning adds to it.
+/// that have no kernel here. The limit is the `prediction` and what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledParts<'_, N, 3>,
     solid: Kind<'_, N, 3>,

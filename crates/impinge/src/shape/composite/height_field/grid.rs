@@ -177,7 +177,7 @@ pub(super) fn search<N: Real>(
 
 /// Calls `visit` with the parts whose box meets the probe, each once.
 ///
-/// The lines of the grid tell which cells lie under the probe. Few are looked at one by one; many are
+/// The lines of the grid determine which cells lie under the probe. Few are looked at one by one; many are
 /// found by going down the pyramid, which passes over what lies higher or lower.
 pub(super) fn overlapping<N: Real>(
     field: &impl GridCells<N>,

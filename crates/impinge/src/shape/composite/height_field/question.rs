@@ -83,7 +83,7 @@ impl<N: Real> FieldProbe<N> {
     }
 }
 
-/// A velocity with zero for the axes that there are not; `None` if it is not finite.
+/// A velocity with zero for the axes beyond the last; `None` if it is not finite.
 pub(super) fn lifted<N: Real, const D: usize>(velocity: &Vector<N, D>) -> Option<[N; 3]> {
     let mut lifted = [N::ZERO; 3];
     for axis in 0..D {

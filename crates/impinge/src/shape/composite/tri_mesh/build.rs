@@ -26,7 +26,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// triangle, and triangles may have no area.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a triangle names a vertex that there is not, there is no
+    /// If a coordinate is not finite, a triangle names a vertex that does not exist, there is no
     /// triangle, or 32 bits cannot number the corners.
     pub fn try_new(
         vertices: Vec<Point<N, D>>,

@@ -50,7 +50,7 @@ impl FaceNames {
     }
 }
 
-/// Where a feature stands in a list by kind and number; beyond it for what is no part of a box.
+/// Where a feature stands in a list by kind and number; beyond it for features of other solids.
 #[inline(always)]
 const fn index_of(id: FeatureId) -> usize {
     let (kind, number) = match id {
