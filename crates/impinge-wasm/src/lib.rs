@@ -5,10 +5,10 @@
 //! alone, by which `compare.mjs` reads them in Node.
 
 #[macro_use]
-#[path = "../../impinge/tests/it/scene_stage/runs.rs"]
+#[path = "../../impinge/tests/it/support/scene_stage/runs.rs"]
 mod runs;
 mod answers;
-#[path = "../../impinge/tests/it/scene_stage/mod.rs"]
+#[path = "../../impinge/tests/it/support/scene_stage/mod.rs"]
 mod scene_stage;
 
 use std::sync::OnceLock;

@@ -10,9 +10,9 @@
 //! `IMPINGE_BLESS=1 cargo test -p impinge --test determinism` and commit it.
 
 #[macro_use]
-#[path = "it/scene_stage/runs.rs"]
+#[path = "it/support/scene_stage/runs.rs"]
 mod runs;
-#[path = "it/scene_stage/mod.rs"]
+#[path = "it/support/scene_stage/mod.rs"]
 mod scene_stage;
 
 use std::collections::BTreeMap;

@@ -1,0 +1,241 @@
+//! Two worlds play the same scene: the usual one, and one whose phases and algorithms are exchanged
+//! on the way. Both must say the same at every step, also at that of an exchange.
+
+use std::collections::BTreeMap;
+
+use impinge_scenes::{
+    Scene, SceneQuery, SceneShape, mixed_shapes, sparse_drift, spawn_and_despawn,
+};
+
+use super::brute_force::BruteForce;
+use super::dim::broad_phase::DBVTBroadPhase;
+use super::dim::events::{ContactEvent, Proximity};
+use super::dim::math::{DIM, Real};
+use super::dim::narrow_phase::DefaultNarrowPhase;
+use super::dim::query::ContactId;
+use super::generators::Policy;
+use super::plain_narrow_phase::PlainNarrowPhase;
+use crate::support::scene_stage::{Play, Player, World, assert_views_agree};
+
+/// The indices of the handles, which are the same in both worlds.
+type Key = (usize, usize);
+
+/// What is exchanged before the update of a step.
+#[derive(Clone, Copy, Debug)]
+enum Exchange {
+    Algorithms(Policy),
+    Narrow,
+    Broad,
+    Both,
+    Back,
+}
+
+impl Exchange {
+    fn apply<N: Play<DIM>>(self, world: &mut World<N, DIM>) {
+        if let Self::Algorithms(policy) = self {
+            let narrow = DefaultNarrowPhase::with_dispatchers(Box::new(policy), Box::new(policy));
+            return world.set_narrow_phase(Box::new(narrow));
+        }
+        match self {
+            Self::Narrow | Self::Both => {
+                world.set_narrow_phase(Box::new(PlainNarrowPhase::<N>::default()));
+            }
+            Self::Back => world.set_narrow_phase(Box::new(DefaultNarrowPhase::new())),
+            Self::Broad | Self::Algorithms(_) => {}
+        }
+        match self {
+            Self::Broad | Self::Both => world.set_broad_phase(Box::new(BruteForce::new())),
+            Self::Back => world.set_broad_phase(Box::new(DBVTBroadPhase::new(N::lit(0.25)))),
+            Self::Narrow | Self::Algorithms(_) => {}
+        }
+    }
+}
+
+/// The pairs that have contacts, with the largest depth of each.
+fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
+    assert_views_agree(world);
+    let pairs = world.contact_manifolds().map(|(a, b, manifold)| {
+        let deepest = manifold.deepest_contact().expect("not empty");
+        ((a.handle().uid(), b.handle().uid()), deepest.contact.depth.as_f64())
+    });
+    pairs.collect()
+}
+
+/// The pairs that began (`true`) and ended.
+fn told<N: Real>(world: &World<N, DIM>) -> Vec<(Key, bool)> {
+    let key = |event: &ContactEvent| {
+        let (a, b) = event.handles();
+        ((a.uid(), b.uid()), matches!(event, ContactEvent::Started(..)))
+    };
+    world.contact_events().iter().map(key).collect()
+}
+
+fn nearness<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, Proximity> {
+    let pairs = world
+        .proximity_pairs()
+        .map(|(a, b, pair)| ((a.handle().uid(), b.handle().uid()), pair.proximity()));
+    pairs.filter(|(_, proximity)| *proximity != Proximity::Disjoint).collect()
+}
+
+struct Twins<N: Play<DIM>> {
+    usual: Player<N, DIM>,
+    other: Player<N, DIM>,
+    /// The pair that each name has stood for.
+    names: BTreeMap<ContactId, Key>,
+    events: usize,
+}
+
+impl<N: Play<DIM>> Twins<N> {
+    fn new(scene: &Scene<DIM>) -> Self {
+        let player = || Player::new(scene.clone(), 1.0);
+        Self { usual: player(), other: player(), names: BTreeMap::new(), events: 0 }
+    }
+
+    fn step(&mut self, exchange: Option<Exchange>) {
+        self.usual.step();
+        self.other.apply();
+        exchange.into_iter().for_each(|exchange| exchange.apply(&mut self.other.world));
+        self.other.update();
+        let names = self.other.world.contact_manifolds().flat_map(|(a, b, manifold)| {
+            let key = (a.handle().uid(), b.handle().uid());
+            manifold.contacts().iter().map(move |tracked| (tracked.id, key))
+        });
+        for (name, key) in names {
+            assert_eq!(*self.names.entry(name).or_insert(key), key, "{name:?} is given twice");
+        }
+    }
+
+    /// Both worlds say the same.
+    fn compare(&mut self, place: &str) {
+        let (usual, other) = (&self.usual.world, &self.other.world);
+        other.validate().expect("the parts agree");
+        assert_eq!(told(usual), told(other), "{place}");
+        // In words: the handles of two worlds differ, and read alike.
+        let near = [usual, other].map(|world| format!("{:?}", world.proximity_events()));
+        assert_eq!(near[0], near[1], "{place}");
+        assert_eq!(nearness(usual), nearness(other), "{place}");
+        let (depths, others) = (touching(usual), touching(other));
+        assert!(depths.keys().eq(others.keys()), "{place}: the same pairs touch");
+        for ((key, a), b) in depths.iter().zip(others.values()) {
+            assert!((a - b).abs() <= 64.0 * N::EPSILON.as_f64() * 20.0, "{place}: {key:?} {a} {b}");
+        }
+        self.events += usual.contact_events().len() + usual.proximity_events().len();
+    }
+}
+
+/// Plays on with an exchange every few steps.
+fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
+    let plan = [
+        Exchange::Algorithms(Policy::Balls),
+        Exchange::Broad,
+        Exchange::Narrow,
+        Exchange::Back,
+        Exchange::Both,
+        Exchange::Algorithms(Policy::Balls),
+        Exchange::Back,
+        Exchange::Back,
+    ];
+    let mut twins = Twins::<N>::new(scene);
+    for (round, exchange) in plan.into_iter().enumerate() {
+        for step in 0..5 {
+            twins.step((step == 2).then_some(exchange));
+            twins.compare(&format!("{}, round {round} {exchange:?}, step {step}", scene.name));
+        }
+    }
+    assert!(twins.events > 60, "{} events", twins.events);
+}
+
+/// The sparse drift as balls, every fifth of which asks for proximity.
+fn balls() -> Scene<DIM> {
+    let mut scene = sparse_drift::<DIM>(150);
+    for (index, object) in scene.objects.iter_mut().enumerate() {
+        object.shape = SceneShape::Ball { radius: 0.7 };
+        if index.is_multiple_of(5) {
+            object.query = SceneQuery::Proximity { margin: 0.0625 };
+        }
+    }
+    scene
+}
+
+#[test]
+fn phases_are_exchanged_without_false_or_lost_events() {
+    exchanges::<f32>(&balls());
+    exchanges::<f64>(&balls());
+    exchanges::<f32>(&mixed_shapes(100));
+    exchanges::<f64>(&mixed_shapes(100));
+    exchanges::<f32>(&spawn_and_despawn(200));
+    exchanges::<f64>(&spawn_and_despawn(200));
+}
+
+/// Without algorithms all that was ends, once; with them again, all that is begins, once.
+fn pairs_without_algorithm<N: Play<DIM>>() {
+    let mut twins = Twins::<N>::new(&balls());
+    for step in 0..12 {
+        let exchange = match step {
+            4 => Some(Exchange::Algorithms(Policy::Nothing)),
+            8 => Some(Exchange::Algorithms(Policy::Balls)),
+            _ => None,
+        };
+        let before = touching(&twins.usual.world);
+        let near_before = nearness(&twins.usual.world);
+        twins.step(exchange);
+        let (usual, other) = (&twins.usual.world, &twins.other.world);
+        let expected: Vec<(Key, bool)> = match step {
+            4 => before.keys().map(|&key| (key, false)).collect(),
+            8 => touching(usual).keys().map(|&key| (key, true)).collect(),
+            5..8 => Vec::new(),
+            _ => told(usual),
+        };
+        assert_eq!(told(other), expected, "step {step}");
+        let changes = match step {
+            4 => near_before.len(),
+            8 => nearness(usual).len(),
+            5..8 => 0,
+            _ => usual.proximity_events().len(),
+        };
+        assert_eq!(other.proximity_events().len(), changes, "step {step}");
+        if (4..8).contains(&step) {
+            assert!(expected.len() > 5 || step > 4, "some ended");
+            assert_eq!((touching(other).len(), nearness(other).len()), (0, 0), "nothing is known");
+            assert_eq!(other.contact_pairs().count(), 0, "no algorithm, no pair to look at");
+        }
+    }
+}
+
+/// Algorithms that answer that they cannot treat two solids: these do not interact.
+fn pairs_that_are_refused<N: Play<DIM>>() {
+    let mut scene = balls();
+    for (object, other) in scene.objects.iter_mut().zip(sparse_drift::<DIM>(150).objects).step_by(3)
+    {
+        object.shape = other.shape;
+    }
+    let is_ball = |index: usize| matches!(scene.objects[index].shape, SceneShape::Ball { .. });
+    let mut twins = Twins::<N>::new(&scene);
+    let mut balls = 0;
+    for step in 0..10 {
+        let only = Exchange::Algorithms(Policy::OnlyBalls);
+        twins.step((step == 0).then_some(only));
+        let expected: Vec<_> = twins
+            .usual
+            .world
+            .contact_manifolds()
+            .filter(|(a, b, _)| is_ball(*a.data()) && is_ball(*b.data()))
+            .map(|(a, b, _)| (a.handle().uid(), b.handle().uid()))
+            .collect();
+        assert!(touching(&twins.other.world).keys().eq(&expected), "balls only, step {step}");
+        let near = nearness(&twins.other.world);
+        let known = nearness(&twins.usual.world);
+        assert!(near.iter().all(|(key, near)| known.get(key) == Some(near)), "balls only");
+        assert!(near.len() < known.len(), "others are not near: their detectors refuse");
+        balls += expected.len();
+    }
+    assert!(balls > 5, "{balls} pairs of balls");
+}
+
+#[test]
+fn pairs_need_an_algorithm() {
+    pairs_without_algorithm::<f32>();
+    pairs_without_algorithm::<f64>();
+    pairs_that_are_refused::<f32>();
+    pairs_that_are_refused::<f64>();
+}

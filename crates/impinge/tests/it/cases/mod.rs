@@ -1,0 +1,12 @@
+//! What once was wrong.
+
+mod angular_prediction;
+mod boxes_without_numbers;
+mod children_beside_meshes;
+mod flat_cones;
+mod flat_outlines;
+mod height_fields;
+mod manifolds;
+mod overlooked_overlap;
+mod sweeps;
+mod touching;

@@ -1,0 +1,126 @@
+//! Solids that slide over flat floors of many pieces see the normal of the floor and nothing else.
+
+use crate::support::slides;
+
+use impinge::math::na::{Translation3, UnitQuaternion};
+use impinge::math::{Isometry3, Real, Space, Vector};
+use impinge::shape::Shape;
+use slides::{Expected, PATTERNS, Random, field, grid, lowest, slide, solids3};
+
+/// How a floor lies in the world.
+fn frames<N: Real>() -> Vec<Isometry3<N>> {
+    let lit = |x: f64| N::lit(x);
+    let axis = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(lit(x), lit(y), lit(z));
+    vec![
+        Isometry3::identity(),
+        Isometry3::from_parts(
+            Translation3::from(axis(3.0, -40.0, 11.0)),
+            UnitQuaternion::from_scaled_axis(axis(0.7, -1.3, 0.4)),
+        ),
+    ]
+}
+
+/// Orientations of a solid on the floor: at rest on a face, turned about the vertical, tilted a
+/// little, thrown.
+fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
+    let axes = [
+        [0.0, 0.0, 0.0],
+        [0.0, 0.7, 0.0],
+        [std::f64::consts::FRAC_PI_2, 0.0, 0.0],
+        [0.02, 0.3, -0.01],
+        [0.4, 1.0, 0.3],
+        [1.0, -2.0, 0.5],
+    ];
+    let turn = |axis: [f64; 3]| UnitQuaternion::from_scaled_axis(Vector::from(axis.map(N::lit)));
+    axes.into_iter().map(turn).collect()
+}
+
+/// Slides all solids over a floor around `center`, in directions all around.
+fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
+    floor: &dyn Shape<N, 3>,
+    center: [f64; 3],
+    (depth, seed): (f64, u64),
+    label: &str,
+) {
+    let mut random = Random::new(seed);
+    for (name, solid) in solids3::<N>() {
+        for (at, turn) in turns::<N>().into_iter().enumerate() {
+            for frame in frames::<N>() {
+                let angle = N::lit(random.unit() * 3.2);
+                let (sine, cosine) = angle.sine_cosine();
+                let direction = Vector::<N, 3>::new(cosine, N::ZERO, sine);
+                let start = [random.unit() * 0.3, random.unit() * 0.3];
+                let turned = Isometry3::from_parts(Translation3::identity(), turn);
+                let height = -lowest(solid.as_ref(), &turned) - N::lit(depth);
+                let way = (0..30).map(|step| {
+                    let along = direction * N::lit(f64::from(step) * 0.083 - 1.2);
+                    let base = Vector::<N, 3>::new(
+                        N::lit(center[0] + start[0]),
+                        height + N::lit(center[1]),
+                        N::lit(center[2] + start[1]),
+                    );
+                    frame * Isometry3::from_parts(Translation3::from(base + along), turn)
+                });
+                let up = frame.rotation * Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO);
+                let size = N::lit(64.0 + center.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+                let expected = Expected {
+                    normal: up,
+                    normal_tolerance: N::lit(1e-6),
+                    depth: N::lit(depth),
+                    // Of curved solids distances are found to 2⁻⁴⁰ of the size.
+                    depth_tolerance: N::lit(1e-11) + N::lit(16.0) * N::EPSILON * size,
+                    manifolds: 1,
+                };
+                let name = format!("{label}: {name}, turn {at}, depth {depth}");
+                slide(&name, (&frame, floor), solid.as_ref(), way, &expected);
+            }
+        }
+    }
+}
+
+fn over_meshes<N: Real + Space<3, Isometry = Isometry3<N>>>(depth: f64) {
+    for (at, pattern) in PATTERNS.into_iter().enumerate() {
+        let floor = grid::<N>(24, 0.5, [0.0; 3], pattern, |_, _| 0.0);
+        slide_all::<N>(&floor, [0.0; 3], (depth, at as u64), &format!("{pattern:?}"));
+    }
+}
+
+#[test]
+fn solids_slide_over_meshes_in_single_precision() {
+    over_meshes::<f32>(0.01);
+}
+
+#[test]
+fn solids_slide_over_meshes_in_double_precision() {
+    over_meshes::<f64>(0.01);
+}
+
+#[test]
+fn solids_hover_over_meshes() {
+    over_meshes::<f64>(-0.01);
+    over_meshes::<f32>(-0.01);
+}
+
+#[test]
+fn solids_touch_meshes() {
+    over_meshes::<f64>(0.0);
+    over_meshes::<f32>(0.0);
+}
+
+#[test]
+fn solids_slide_far_from_the_meshes_origin() {
+    let center = [1000.0, 50.0, -3000.0];
+    for pattern in PATTERNS {
+        let floor = grid::<f32>(24, 0.5, center, pattern, |_, _| 0.0);
+        slide_all::<f32>(&floor, center, (0.01, 5), &format!("far {pattern:?}"));
+        let floor = grid::<f64>(24, 0.5, center, pattern, |_, _| 0.0);
+        slide_all::<f64>(&floor, center, (0.01, 5), &format!("far {pattern:?}"));
+    }
+}
+
+#[test]
+fn solids_slide_over_height_fields() {
+    slide_all::<f32>(&field::<f32>(24, 0.5), [0.0; 3], (0.01, 8), "field");
+    slide_all::<f64>(&field::<f64>(24, 0.5), [0.0; 3], (0.01, 8), "field");
+    slide_all::<f32>(&field::<f32>(24, 0.5), [0.0; 3], (-0.01, 8), "field");
+}

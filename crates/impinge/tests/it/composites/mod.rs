@@ -1,0 +1,17 @@
+//! Compounds, meshes, lines and fields.
+
+mod closed_meshes;
+mod composite_contacts;
+mod composite_distance;
+mod composite_impact;
+mod composite_laws;
+mod composite_points;
+mod composite_rays;
+mod composite_worlds;
+mod compounds;
+mod height_field_seams;
+mod height_fields;
+mod internal_edges;
+mod internal_edges_of_lines;
+mod meshes;
+mod thin_triangles;

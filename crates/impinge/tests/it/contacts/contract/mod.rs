@@ -1,0 +1,197 @@
+//! The contract of contacts (`ARCHITECTURE.md`), asked of every two kinds of convex solids, where users meet
+//! it: `contact`, a generator alone, and worlds of 1, 7, 8, 9 and 20 pairs of these kinds. Each pair of kinds is
+//! in twenty scenes: apart within the prediction, touching, shallow, deep and one in the other; aligned, nearly
+//! so, and turned anyhow; some of them with sizes of zero, or far from the origin, or of unlike sizes; with and
+//! without an angular prediction; with predictions that are exactly the distance, or a little less; and each
+//! also a millionth and a million times as large.
+//!
+//! What is judged by numbers is judged by the reference, and by no other path of the library: the depths of all that
+//! has no curved faces, and of all of the plane; of the rest, whose normals the reference has to search, one scene in
+//! five, the others by what their normals separate and by where their points are. The area that points span is asked
+//! for in `case_manifolds.rs`.
+
+use crate::contacts::contact_points::{forms, turns};
+
+mod answers;
+mod laws;
+mod report;
+mod scene;
+mod tolerances;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use answers::{Batch, Lone, Points};
+use forms::{PLANE, SPACE, plane, space};
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{AbstractRotation, Isometry, Real, Space};
+use impinge_reference::precise;
+use laws::{Judge, are_same, kept};
+use report::Report;
+use scene::{SCENES, Scene, Stage};
+use tolerances::is_known;
+use turns::{turns2, turns3};
+
+/// How many pairs of a world there are: part of a batch, one but for one, a batch, and one more.
+const BATCHES: [usize; 4] = [1, 7, 8, 9];
+
+/// How many times twenty scenes of each two kinds are asked: once, or as often as the variable
+/// `IMPINGE_CONTRACT` says.
+fn rounds() -> u64 {
+    let asked = std::env::var("IMPINGE_CONTRACT").ok();
+    asked.map_or(1, |asked| asked.parse().expect("IMPINGE_CONTRACT is a number of rounds"))
+}
+
+/// All scenes of two kinds; every other one with the second kind first.
+struct Kinds<'a, N: Real, R, const D: usize> {
+    stage: &'a Stage<N, R, D>,
+    names: [&'static str; 2],
+    scenes: Vec<Scene<N, R, D>>,
+}
+
+impl<N, R, const D: usize> Stage<N, R, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Clone + std::fmt::Debug,
+{
+    fn convex(&self) -> Vec<usize> {
+        let composite = ["polyline", "height field", "compound", "mesh", "closed mesh"];
+        (0..self.names.len()).filter(|&kind| !composite.contains(&self.names[kind])).collect()
+    }
+
+    fn check(&self, seed: u64) {
+        let (kinds, mut report) = (self.convex(), Report::default());
+        let pairs = kinds.iter().flat_map(|one| kinds.iter().map(move |two| [*one, *two]));
+        for (index, pair) in (0..).zip(pairs.filter(|[one, two]| one <= two)) {
+            let names = pair.map(|kind| self.names[kind]);
+            if names == ["half-space"; 2] {
+                continue;
+            }
+            for round in 0..rounds() {
+                let seed = seed + 1000 * index + 1_000_000 * round;
+                let numbers = (0..SCENES).zip(seed..);
+                let scenes = numbers.map(|(number, seed)| {
+                    let [one, two] = pair;
+                    self.scene([[one, two], [two, one]][number % 2], number, seed)
+                });
+                let scenes = scenes.collect();
+                Kinds { stage: self, names, scenes }.check(&mut report);
+            }
+        }
+        let (asked, broken) = (report.asked(), report.broken(is_known::<D>));
+        let scenes = kinds.len() * kinds.len() / 2 * SCENES;
+        assert!(asked > 30 * scenes, "{asked} answers of {scenes} scenes");
+        assert!(broken.is_empty(), "of {asked} answers:\n{}", broken.join("\n"));
+    }
+}
+
+impl<N, R, const D: usize> Kinds<'_, N, R, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Clone + std::fmt::Debug,
+{
+    fn judge<'a>(&'a self, number: usize, report: &'a mut Report) -> Judge<'a, N, R, D> {
+        let (stage, scene) = (self.stage, &self.scenes[number]);
+        Judge { stage, scene, names: self.names, number, report }
+    }
+
+    fn check(&self, report: &mut Report) {
+        let alone: Vec<Points<N, D>> =
+            (0..SCENES).map(|number| self.judge(number, report).alone()).collect();
+        self.in_motion(report);
+        for (index, count) in BATCHES.into_iter().enumerate() {
+            let first = (index * 5) % (SCENES - count);
+            let batch = Batch::new(&self.scenes[first..first + count]).points();
+            for (number, points) in (first..).zip(batch) {
+                self.is_as_alone(number, [&alone[number], &points], report);
+            }
+        }
+    }
+
+    /// 5: the bits do not depend on the batch.
+    fn is_as_alone(&self, number: usize, [alone, found]: [&Points<N, D>; 2], report: &mut Report) {
+        let what = || format!("alone {alone:?}, in a batch {found:?}");
+        self.judge(number, report).holds("5 batches", are_same(alone, found), what);
+    }
+
+    /// A small step and back, of all scenes in one world and each alone: ids stay, and both are the same.
+    fn in_motion(&self, report: &mut Report) {
+        let mut batch = Batch::new(&self.scenes);
+        let mut lones: Vec<Lone<N, D>> = (0..SCENES).map(|_| Lone::new()).collect();
+        let mut given = vec![BTreeSet::new(); SCENES];
+        let mut owners = BTreeMap::new();
+        let mut before: [Vec<Points<N, D>>; 2] =
+            [vec![Vec::new(); SCENES], vec![Vec::new(); SCENES]];
+        let moved: Vec<_> = self.scenes.iter().map(Scene::moved).collect();
+        for is_moved in [false, false, true, false] {
+            let places = || {
+                let both = self.scenes.iter().zip(&moved);
+                both.map(|(scene, moved)| if is_moved { moved } else { &scene.poses })
+            };
+            batch.move_to(places().map(|poses| &poses[1]));
+            let found = batch.points();
+            for (number, poses) in places().enumerate() {
+                let scene = &self.scenes[number];
+                let (limit, angle) = (scene.limit, scene.angle);
+                let points = lones[number].ask(poses.each_ref(), scene.shapes(), limit, angle);
+                let mut judge = self.judge(number, report);
+                let olds = [&before[0][number], &before[1][number]];
+                judge.names(olds[0], &points, &mut given[number]);
+                let [ids, in_batch] = [kept(olds[0], &points), kept(olds[1], &found[number])];
+                let is_own = |id| *owners.entry(id).or_insert(number) == number;
+                let are_own = found[number].iter().map(|point| point.id).all(is_own);
+                judge.holds("4 ids in batches", ids == in_batch && are_own, || {
+                    format!("{ids:?} alone, {in_batch:?} in a batch")
+                });
+                self.is_as_alone(number, [&points, &found[number]], report);
+                before[0][number] = points;
+            }
+            before[1] = found;
+        }
+    }
+}
+
+fn in_plane<N: Real>(seed: u64) {
+    let stage = Stage::<N, UnitComplex<N>, 2> {
+        names: &PLANE,
+        form: plane,
+        turns: turns2::<N, true>(),
+        precise: |pose| {
+            let turn = [pose.rotation.re, pose.rotation.im].map(N::as_f64);
+            precise::Pose::from_complex(pose.translation.vector.map(N::as_f64).into(), turn)
+        },
+    };
+    stage.check(seed);
+}
+
+fn in_space<N: Real>(seed: u64) {
+    let stage = Stage::<N, UnitQuaternion<N>, 3> {
+        names: &SPACE,
+        form: space,
+        turns: turns3::<N, true>(),
+        precise: |pose| {
+            let turn = pose.rotation.coords.map(N::as_f64).into();
+            precise::Pose::from_quaternion(pose.translation.vector.map(N::as_f64).into(), turn)
+        },
+    };
+    stage.check(seed);
+}
+
+#[test]
+fn contacts_in_the_plane_f32() {
+    in_plane::<f32>(1);
+}
+
+#[test]
+fn contacts_in_the_plane_f64() {
+    in_plane::<f64>(2);
+}
+
+#[test]
+fn contacts_in_space_f32() {
+    in_space::<f32>(3);
+}
+
+#[test]
+fn contacts_in_space_f64() {
+    in_space::<f64>(4);
+}

@@ -1,0 +1,11 @@
+//! Contacts and manifolds: the numeric contract, ids, batches.
+
+mod accuracy;
+mod contact_ids;
+pub(crate) mod contact_points;
+mod contact_reuse;
+mod contract;
+mod curved_depths;
+mod pair_batches;
+mod smooth_solids;
+mod ties;

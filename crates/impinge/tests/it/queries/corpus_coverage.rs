@@ -1,0 +1,71 @@
+//! No case of the corpus of bugs is left out: each is run by a test that is named here, and that counts
+//! its cases itself.
+
+use crate::support::query_support;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use query_support::corpus::{narrow_phase, regression};
+
+/// By kind of question: the file that runs all cases of it, in both scalars, and how many there are.
+const RUN: [(&str, &str, usize); 12] = [
+    ("convex_hull", "hull/corpus.rs", 8),
+    ("linear_cast", "query_corpus.rs", 27),
+    ("local_aabb", "ray_corpus.rs", 1),
+    ("nonlinear_cast", "case_sweeps.rs", 1),
+    ("point_projection", "ray_corpus.rs", 8),
+    ("point_sign_grid", "ray_corpus.rs", 1),
+    ("ray", "ray_corpus.rs", 19),
+    ("ray_aabb", "ray_corpus.rs", 3),
+    ("segment_segment", "query_corpus.rs", 5),
+    ("signed_distance", "query_corpus.rs", 89),
+    ("world_point_projection", "world_corpus.rs", 1),
+    ("world_scenario", "world_corpus.rs", 14),
+];
+
+/// Cases that are not run, and why not.
+const EXEMPT: [(&str, &str); 1] =
+    [("box2d-756-sliver", "asks for a moment of inertia: there are no masses here")];
+
+#[test]
+fn each_case_is_run_or_exempt_by_name() {
+    let (mut counts, mut exempt) = (BTreeMap::new(), Vec::new());
+    for case in regression() {
+        let id = case["id"].as_str().expect("a name").to_owned();
+        if EXEMPT.iter().any(|(name, _)| *name == id) {
+            exempt.push(id);
+            continue;
+        }
+        let query = case["query"].as_str().expect("a question").to_owned();
+        *counts.entry(query).or_insert(0_usize) += 1;
+    }
+    let expected: BTreeMap<_, _> =
+        RUN.iter().map(|(query, _, count)| ((*query).to_owned(), *count)).collect();
+    assert_eq!(counts, expected, "kinds of questions and their cases");
+    assert_eq!(exempt, EXEMPT.map(|(id, _)| id.to_owned()), "exempted cases exist, once each");
+    assert_eq!(counts.values().sum::<usize>() + exempt.len(), 178, "the whole file");
+    assert_eq!(narrow_phase().len(), 1600, "the other file, which query_corpus.rs runs");
+}
+
+#[test]
+fn names_are_given_once() {
+    for cases in [regression(), narrow_phase()] {
+        let mut ids: Vec<_> = cases.iter().map(|case| case["id"].to_string()).collect();
+        ids.sort();
+        let count = ids.len();
+        ids.dedup();
+        assert_eq!(ids.len(), count, "no two cases have one name");
+    }
+}
+
+/// The files that are said to run a kind of question name it.
+#[test]
+fn files_ask_what_they_are_said_to() {
+    for (query, file, _) in RUN {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it").join(file);
+        let text = fs::read_to_string(path).expect("the test is there");
+        assert!(text.contains(&format!("\"{query}\"")), "{file} asks for {query}");
+    }
+}

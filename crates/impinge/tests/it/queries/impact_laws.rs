@@ -1,0 +1,345 @@
+//! What must hold of every impact: nothing touches before it, the solids touch at it, and the order of
+//! the arguments does not matter. Each pair of kinds, both dimensions and both scalars, against the
+//! distance at many times on the way.
+
+use crate::support::query_support;
+
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{AbstractRotation, Isometry, Point, Real, Space, Vector, max};
+use impinge::query::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, contact, impact,
+    nonlinear_time_of_impact,
+};
+use impinge::shape::{Compound, Shape, ShapeHandle, ShapeKind};
+use query_support::random::Random;
+use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
+
+/// How many pairs of each two kinds are tried.
+const SEEDS: u64 = 6;
+
+/// How many times are looked at on the way.
+const LOOKS: u32 = 48;
+
+/// What differs by dimension.
+struct Maker<N: Space<D>, R, const D: usize> {
+    sample: Sample<N, D>,
+    turn: fn(&mut Random) -> R,
+    spin: fn(&N::Isometry, &Vector<N, D>, &mut Random, N) -> ConstantVelocities<N, D>,
+}
+
+/// Two shapes and how they move.
+struct Scene<N: Space<D>, const D: usize> {
+    shapes: [Box<dyn Shape<N, D>>; 2],
+    positions: [N::Isometry; 2],
+    velocities: [Vector<N, D>; 2],
+    motions: [ConstantVelocities<N, D>; 2],
+    options: ImpactOptions<N>,
+    what: String,
+}
+
+/// What the tests vary.
+#[derive(Clone, Copy, Debug)]
+struct Setting {
+    kinds: [ShapeKind; 2],
+    seed: u64,
+    /// How fast the bodies turn, in radians for the way between them.
+    turn: f64,
+}
+
+impl<N, R, const D: usize> Maker<N, R, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy,
+{
+    fn make(&self, setting: &Setting) -> Scene<N, D> {
+        let random = &mut Random(setting.seed ^ 0xca57, false);
+        let origin = random.vector::<N, D>();
+        let shapes = setting.kinds.map(|kind| (self.sample)(kind, random, N::ONE));
+        let away = random.direction::<N, D>() * N::lit(5.0);
+        let places =
+            [origin, origin + away].map(|at| Isometry::from_parts(at.into(), (self.turn)(random)));
+        // One of them is sent past the other, or at it; both drift.
+        let drift = random.vector::<N, D>() * N::lit(0.5);
+        let aim = away + random.vector::<N, D>() * N::lit(2.0);
+        let velocities = [drift + aim, drift + random.vector::<N, D>() * N::lit(0.25)];
+        let motions = [0, 1].map(|index| {
+            (self.spin)(&places[index], &velocities[index], random, N::lit(setting.turn))
+        });
+        let target = N::lit([0.0, 0.0, 0.25][usize::try_from(setting.seed % 3).expect("small")]);
+        let options = ImpactOptions::new().with_max_time(N::TWO).with_target_distance(target);
+        let what = format!("{setting:?}");
+        Scene { shapes, positions: places, velocities, motions, options, what }
+    }
+}
+
+impl<N, R, const D: usize> Scene<N, D>
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy,
+    ConstantVelocities<N, D>: RigidMotion<N, D>,
+{
+    /// The signed distance of the shapes at two places, less the target distance.
+    fn gap(&self, m1: &Isometry<N, R, D>, m2: &Isometry<N, R, D>) -> N {
+        let found = contact(m1, &*self.shapes[0], m2, &*self.shapes[1], N::INFINITY);
+        found.map_or(-N::INFINITY, |found| -found.depth) - self.options.target_distance
+    }
+
+    fn straight(&self, time: N) -> N {
+        let [m1, m2] = [0, 1].map(|index| {
+            let mut place = self.positions[index];
+            place.translation.vector += self.velocities[index] * time;
+            place
+        });
+        self.gap(&m1, &m2)
+    }
+
+    fn extent(&self) -> N {
+        let sizes = [0, 1].map(|index| {
+            let shape = &self.shapes[index];
+            let reach = |map: &dyn impinge::shape::SupportMap<N, D>| map.reach() + map.rounding();
+            shape.geometry().as_support_map().map_or(N::ONE, reach)
+                + self.positions[index].translation.vector.norm()
+        });
+        sizes[0] + sizes[1] + N::lit(8.0)
+    }
+
+    /// Nothing touches before the impact, and the solids touch at it. `noise` is what rounding makes
+    /// of a distance.
+    fn check(&self, found: Option<&Impact<N, D>>, gap: &dyn Fn(N) -> N, noise: N) -> bool {
+        let what = &self.what;
+        let end = found.map_or(self.options.max_time, |found| found.toi);
+        assert!(end >= N::ZERO && end <= self.options.max_time, "{end} {what}");
+        let start = gap(N::ZERO);
+        if start <= noise {
+            // Starts in contact are a matter of policy.
+            return false;
+        }
+        for look in 0..LOOKS {
+            let share = N::lit(f64::from(look) / f64::from(LOOKS));
+            // All over the way, and ever closer to its end.
+            for time in [end * share, end * (N::ONE - share * share * share)] {
+                let before = gap(time);
+                assert!(before > -noise, "{before} at {time}, before {found:?} {what}");
+            }
+        }
+        let Some(found) = found else { return false };
+        assert_eq!((found.part1, found.part2), (0, 0), "{what}");
+        let reached = found.status == ImpactStatus::Reached;
+        let last = gap(end);
+        assert!(!reached || last.abs() <= noise, "{last} at the end {found:?} {what}");
+        let way = found.world2 - found.world1;
+        let along = found.normal.dot(&way);
+        assert!((found.normal.norm() - N::ONE).abs() < N::EPSILON * N::lit(32.0), "{what}");
+        let expected = last + self.options.target_distance;
+        assert!((along - expected).abs() <= noise, "{along}, not {expected} {what}");
+        assert!((way.norm() - expected).abs() <= noise, "{way:?}, not {expected} long {what}");
+        reached
+    }
+
+    fn linear(&self) -> bool {
+        let [one, two] = [0, 1].map(|index| {
+            Moving::new(&self.positions[index], &self.velocities[index], &*self.shapes[index])
+        });
+        let found = impact(&one, &two, &self.options);
+        let swapped = impact(&two, &one, &self.options).map(|found| found.flipped());
+        assert_eq!(found, swapped, "{}", self.what);
+        assert!(found.is_none_or(|found| found.status == ImpactStatus::Reached), "{}", self.what);
+        self.check(found.as_ref(), &|time| self.straight(time), self.noise())
+    }
+
+    /// Rounding of the separation: of curved solids it is less exact than of others.
+    fn noise(&self) -> N {
+        max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
+    }
+
+    /// The law for the bodies that turn too, given by how `told` gives their motions.
+    fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
+        let [one, two] = self.motions.map(told);
+        let [shape1, shape2] = &self.shapes;
+        // Up to rounding or not at all: by default a millionth of the sizes will do where bounds are loose.
+        let options = self.options.with_tolerance(N::ZERO);
+        let found = nonlinear_time_of_impact(&*one, &**shape1, &*two, &**shape2, &options);
+        let swapped = nonlinear_time_of_impact(&*two, &**shape2, &*one, &**shape1, &options);
+        assert_eq!(found, swapped.map(|found| found.flipped()), "{}", self.what);
+        let noise = self.noise() * N::lit(1.0 + setting.turn * 0.1);
+        self.check(found.as_ref(), &|time| self.gap_at(time), noise);
+        found.map(|found| found.status)
+    }
+
+    fn gap_at(&self, time: N) -> N {
+        let [one, two] = &self.motions;
+        self.gap(&one.position_at(time), &two.position_at(time))
+    }
+}
+
+/// A way to hand over a motion.
+type Told<N, const D: usize> = fn(ConstantVelocities<N, D>) -> Box<dyn RigidMotion<N, D>>;
+
+/// A motion of which nothing is known but its bounds.
+struct Opaque<M>(M);
+
+impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Opaque<M> {
+    fn position_at(&self, time: N) -> N::Isometry {
+        self.0.position_at(time)
+    }
+
+    fn speed_bound(&self, from: N, to: N) -> N {
+        self.0.speed_bound(from, to)
+    }
+
+    fn turn_bound(&self, from: N, to: N) -> N {
+        self.0.turn_bound(from, to)
+    }
+
+    fn local_center(&self) -> Point<N, D> {
+        self.0.local_center()
+    }
+}
+
+/// Both laws for all pairs of kinds; how many impacts of each sort there were, and how many searches
+/// were given up.
+fn laws<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy,
+    ConstantVelocities<N, D>: RigidMotion<N, D>,
+{
+    let (mut scenes, mut straight, mut turning, mut spent) = (0, 0, [0; 2], [0; 2]);
+    let known: Told<N, D> = |motion| Box::new(motion);
+    let opaque: Told<N, D> = |motion| Box::new(Opaque(motion));
+    for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
+        for seed in 0..SEEDS {
+            let turn = [0.5, 4.0, 60.0][usize::try_from(seed % 3).expect("small")];
+            let setting = Setting { kinds: [kind1, kind2], seed, turn };
+            let scene = maker.make(&setting);
+            scenes += 1;
+            straight += u32::from(scene.linear());
+            for (count, told) in [known, opaque].into_iter().enumerate() {
+                match scene.turning(&setting, told) {
+                    Some(ImpactStatus::Reached) => turning[count] += 1,
+                    Some(ImpactStatus::StepsSpent) => spent[count] += 1,
+                    None => {}
+                }
+            }
+        }
+    }
+    assert!(straight > scenes / 4, "{straight} of {scenes}");
+    assert!(turning.iter().all(|&hits| hits > scenes / 4), "{turning:?} of {scenes}");
+    assert!(spent[0] < scenes / 50 && spent[1] < scenes / 10, "{spent:?} of {scenes} given up");
+}
+
+/// Solids that are put where they touch with a known normal, and moved back: the impact brings them there again,
+/// alone and as the only part of a composite.
+///
+/// The supporting planes across the normal hold them apart until then. One of them is round, or they stop
+/// before they touch: so there is one normal alone.
+fn known_normals<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
+where
+    N: Space<D, Isometry = Isometry<N, R, D>>,
+    R: AbstractRotation<N, D> + Copy,
+{
+    let (mut tried, mut worst) = (0, (N::ZERO, String::new()));
+    for kinds in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| [*k1, *k2])) {
+        for seed in 0..SEEDS {
+            let random = &mut Random(seed ^ 0x9017, false);
+            let shapes = kinds
+                .map(|kind| ShapeHandle::from_arc((maker.sample)(kind, random, N::ONE).into()));
+            let turns = [0; 2].map(|_| (maker.turn)(random));
+            let normal = random.direction::<N, D>();
+            let touches = seed % 3 > 0 && kinds.iter().any(|kind| is_round(*kind));
+            let target = N::lit(if touches { 0.0 } else { 0.25 });
+            let Some(touch1) = outermost(&*shapes[0], &turns[0], &normal) else { continue };
+            let Some(touch2) = outermost(&*shapes[1], &turns[1], &-normal) else { continue };
+            let toward = -normal + random.vector::<N, D>() * N::lit(0.75);
+            let time = N::lit(random.within(0.5, 3.0));
+            let m1 = Isometry::from_parts((-touch1).into(), turns[0]);
+            let m2 =
+                Isometry::from_parts((normal * target - touch2 - toward * time).into(), turns[1]);
+            let compound = Compound::new(vec![(Isometry::identity(), shapes[1].clone())]);
+            let seconds: [&dyn Shape<N, D>; 2] = [&*shapes[1], &compound];
+            for second in seconds {
+                let (one, two) =
+                    (Moving::still(&m1, &*shapes[0]), Moving::new(&m2, &toward, second));
+                let options = ImpactOptions::new().with_target_distance(target);
+                let found = impact(&one, &two, &options).expect("on the way");
+                assert!((found.toi - time).abs() < N::lit(1e-4), "{found:?} at {time} {kinds:?}");
+                let off = (found.normal.into_inner() - normal).norm() / N::EPSILON;
+                if off > worst.0 {
+                    worst = (off, format!("{kinds:?} {seed} {found:?}"));
+                }
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 1000, "{tried}");
+    assert!(worst.0 < N::lit(1024.0), "epsilon off: {worst:?}");
+}
+
+/// A solid that has one normal alone at each of its points.
+fn is_round(kind: ShapeKind) -> bool {
+    use ShapeKind::{Ball, Capsule, Ellipsoid, Rounded, SupportMap, TaperedCapsule};
+    matches!(kind, Ball | Capsule | Ellipsoid | Rounded | SupportMap | TaperedCapsule)
+}
+
+/// The point of a turned solid that is outermost in a direction; `None` of half-spaces.
+fn outermost<N: Real, R: AbstractRotation<N, D>, const D: usize>(
+    shape: &dyn Shape<N, D>,
+    turn: &R,
+    toward: &Vector<N, D>,
+) -> Option<Vector<N, D>> {
+    let map = shape.geometry().as_support_map()?;
+    let core = map.core_support(&turn.inverse_transform_vector(toward));
+    Some(turn.transform_vector(&core.coords) + toward * map.rounding())
+}
+
+fn plane<N: Real>() -> Maker<N, UnitComplex<N>, 2> {
+    Maker {
+        sample: sample2,
+        turn: Random::turn2,
+        spin: |place, linear, random, turn| {
+            let center = random.vector::<N, 2>() * N::HALF;
+            ConstantVelocities::<N, 2>::new(*place, *linear, turn * N::lit(random.signed()))
+                .with_local_center(center.into())
+        },
+    }
+}
+
+fn space<N: Real>() -> Maker<N, UnitQuaternion<N>, 3> {
+    Maker {
+        sample: sample3,
+        turn: Random::turn3,
+        spin: |place, linear, random, turn| {
+            let center = random.vector::<N, 3>() * N::HALF;
+            ConstantVelocities::<N, 3>::new(*place, *linear, random.vector::<N, 3>() * turn)
+                .with_local_center(center.into())
+        },
+    }
+}
+
+#[test]
+fn normals_are_those_of_the_time_found() {
+    known_normals(&PLANE, &plane::<f32>());
+    known_normals(&PLANE, &plane::<f64>());
+    known_normals(&SPACE, &space::<f32>());
+    known_normals(&SPACE, &space::<f64>());
+}
+
+#[test]
+fn in_the_plane_f32() {
+    laws(&PLANE, &plane::<f32>());
+}
+
+#[test]
+fn in_the_plane_f64() {
+    laws(&PLANE, &plane::<f64>());
+}
+
+#[test]
+fn in_space_f32() {
+    laws(&SPACE, &space::<f32>());
+}
+
+#[test]
+fn in_space_f64() {
+    laws(&SPACE, &space::<f64>());
+}

@@ -1,0 +1,378 @@
+//! Every built-in shape, and composites and convex solids of a user's own, with every other in every
+//! query: no pair is without an answer, whatever the order, the dimension, the scalar, the size and the
+//! place.
+
+use crate::support::composite_support;
+use crate::support::query_support;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use composite_support::{Piece, Pieces};
+use impinge::math::{
+    AbstractRotation, Isometry, Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector,
+};
+use impinge::procedural::space as surfaces;
+use impinge::query::{
+    ClosestPoints, ConstantVelocities, ImpactOptions, Moving, PointQuery, Proximity, Ray, RayCast,
+    RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact, proximity,
+    time_of_impact, witness,
+};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid,
+    HeightField, Plane, Polyline, Rounded, Segment, Shape, ShapeHandle, ShapeKind, TaperedCapsule,
+    TriMesh, Triangle,
+};
+use query_support::solids::RoundHull;
+
+type Shapes<N, const D: usize> = Vec<(&'static str, ShapeHandle<N, D>)>;
+
+/// Those of both dimensions, a few times `s` large.
+fn common<N: Space<D>, const D: usize>(s: N, corners: &[Point<N, D>; 3]) -> Shapes<N, D> {
+    let [a, b, c] = *corners;
+    let half = Vector::<N, D>::from_fn(|axis, _| s * N::lit([1.0, 0.5, 2.0][axis]));
+    let mut up = Vector::<N, D>::zeros();
+    up[1] = N::ONE;
+    let wave = vec![a, b, c, a + (c - b)];
+    let hull = RoundHull { points: corners.to_vec(), rounding: s * N::HALF };
+    let part = Piece::Shape(ShapeHandle::new(Cuboid::new(half)));
+    vec![
+        ("ball", ShapeHandle::new(Ball::new(s))),
+        ("segment", ShapeHandle::new(Segment::new(a, b))),
+        ("capsule", ShapeHandle::new(Capsule::<N, D>::new(s, s * N::HALF))),
+        ("triangle", ShapeHandle::new(Triangle::<N, D>::new(a, b, c))),
+        ("cuboid", ShapeHandle::new(Cuboid::new(half))),
+        ("ellipsoid", ShapeHandle::new(Ellipsoid::new(half))),
+        ("tapered", ShapeHandle::new(TaperedCapsule::<N, D>::new(s, s * N::HALF, s))),
+        ("rounded cuboid", ShapeHandle::new(Rounded::new(Cuboid::new(half), s * N::HALF))),
+        ("rounded triangle", ShapeHandle::new(Rounded::new(Triangle::<N, D>::new(a, b, c), s))),
+        ("support map", ShapeHandle::new(hull)),
+        ("plane", ShapeHandle::new(Plane::<N, D>::new(Unit::new_unchecked(up)))),
+        ("polyline", ShapeHandle::new(Polyline::open(wave))),
+        (
+            "mesh",
+            ShapeHandle::new(TriMesh::new(vec![a, b, c, b + (c - a)], vec![[0, 1, 2], [2, 1, 3]])),
+        ),
+        (
+            "pieces",
+            ShapeHandle::new(Pieces::new(vec![
+                (Pose::from_translation(a.coords), part),
+                (Pose::identity(), Piece::Triangle(Triangle::new(a, b, c))),
+                (Pose::identity(), Piece::Segment(Segment::new(a, c))),
+            ])),
+        ),
+    ]
+}
+
+fn plane<N: Real>(s: N) -> Shapes<N, 2> {
+    let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x) * s, N::lit(y) * s);
+    let corners = [p(-1.0, -0.5), p(1.0, -0.25), p(0.25, 1.0)];
+    let mut shapes = common(s, &corners);
+    let square = [p(-1.0, -1.0), p(1.0, -1.0), p(1.0, 1.0), p(-1.0, 1.0)];
+    let polygon = ConvexPolygon::from_points(&square);
+    let heights = [0.0, 1.0, 0.5, -1.0, 0.0].map(N::lit).to_vec();
+    let field = HeightField::<N, 2>::new(heights, Vector::<N, 2>::new(s * N::lit(4.0), s));
+    let at = Isometry2::translation;
+    let children = vec![
+        (at(s, N::ZERO), ShapeHandle::new(Ball::new(s))),
+        (at(-s, s), ShapeHandle::new(Polyline::closed(square.to_vec()))),
+    ];
+    shapes.push(("polygon", ShapeHandle::new(polygon.clone())));
+    shapes.push(("rounded polygon", ShapeHandle::new(Rounded::new(polygon, s))));
+    shapes.push(("height field", ShapeHandle::new(field)));
+    shapes.push(("compound", ShapeHandle::new(Compound::new(children))));
+    shapes
+}
+
+fn space<N: Real>(s: N) -> Shapes<N, 3> {
+    let p =
+        |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x) * s, N::lit(y) * s, N::lit(z) * s);
+    let corners = [p(-1.0, -0.5, 0.0), p(1.0, -0.25, 0.5), p(0.25, 1.0, -0.5)];
+    let mut shapes = common(s, &corners);
+    let cube = surfaces::cuboid(&Cuboid::new(Vector::<N, 3>::repeat(s)));
+    let hull = ConvexHull::from_points(&cube.vertices);
+    let heights = [0.0, 1.0, 0.5, -1.0, 0.0, 0.25].map(N::lit).to_vec();
+    let scale = Vector::<N, 3>::new(s * N::lit(4.0), s, s * N::lit(4.0));
+    let at = Isometry3::translation;
+    let closed = ShapeHandle::new(TriMesh::new(cube.vertices, cube.triangles));
+    let children = vec![
+        (at(s, N::ZERO, N::ZERO), ShapeHandle::new(Ball::new(s))),
+        (at(-s, s, s), closed.clone()),
+    ];
+    let cylinder = || Cylinder::new(s, s * N::HALF);
+    shapes.push(("hull", ShapeHandle::new(hull.clone())));
+    shapes.push(("rounded hull", ShapeHandle::new(Rounded::new(hull, s))));
+    shapes.push(("cylinder", ShapeHandle::new(cylinder())));
+    shapes.push(("rounded cylinder", ShapeHandle::new(Rounded::new(cylinder(), s))));
+    shapes.push(("cone", ShapeHandle::new(Cone::new(s, s))));
+    shapes.push(("rounded cone", ShapeHandle::new(Rounded::new(Cone::new(s, s), s))));
+    shapes.push(("height field", ShapeHandle::new(HeightField::<N, 3>::new(2, 3, heights, scale))));
+    shapes.push(("closed mesh", closed));
+    shapes.push(("compound", ShapeHandle::new(Compound::new(children))));
+    shapes
+}
+
+/// Where two shapes lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Regime {
+    Far,
+    /// Their boxes touch.
+    Touching,
+    Deep,
+    Coincident,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Setting {
+    regime: Regime,
+    scale: f64,
+    /// How far from the world's origin, in units of the scale.
+    away: f64,
+    turned: bool,
+}
+
+/// A motion from a place, that turns as fast as the number says.
+type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
+
+/// What is particular to a dimension.
+struct Stage<N: Real, R, const D: usize> {
+    shapes: fn(N) -> Shapes<N, D>,
+    turn: R,
+    spin: Spin<N, R, D>,
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
+    /// How many pairs are wrong.
+    fn all_pairs(&self, setting: &Setting) -> usize {
+        let shapes = (self.shapes)(N::lit(setting.scale));
+        let mut wrong = Vec::new();
+        for (name1, shape1) in &shapes {
+            self.guarded(&mut wrong, &format!("{name1} alone"), || self.alone(setting, &**shape1));
+            for (name2, shape2) in &shapes {
+                let same = name1 == name2 && setting.regime == Regime::Coincident;
+                self.guarded(&mut wrong, &format!("{name1} {name2}"), || {
+                    self.together(setting, [&**shape1, &**shape2], same);
+                });
+            }
+        }
+        if wrong.is_empty() {
+            return 0;
+        }
+        eprintln!("{setting:?}: {wrong:#?}");
+        wrong.len()
+    }
+
+    /// The queries about two shapes.
+    fn together(&self, setting: &Setting, [g1, g2]: [&dyn Shape<N, D>; 2], same: bool) {
+        let (m1, m2) = self.places(setting, g1, g2);
+        check(&Two { m1: &m1, g1, m2: &m2, g2, same }, setting);
+        if setting.scale == 1.0 && setting.away == 0.0 && !setting.turned {
+            self.turning((&m1, g1), (&m2, g2), same);
+        }
+    }
+
+    fn guarded(&self, wrong: &mut Vec<String>, name: &str, run: impl FnOnce()) {
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(run)) {
+            let text = panic.downcast_ref::<String>().cloned();
+            wrong.push(format!("{name}: {}", text.unwrap_or_else(|| "?".to_owned())));
+        }
+    }
+
+    fn places(
+        &self,
+        setting: &Setting,
+        shape1: &dyn Shape<N, D>,
+        shape2: &dyn Shape<N, D>,
+    ) -> (Isometry<N, R, D>, Isometry<N, R, D>) {
+        let scale = N::lit(setting.scale);
+        let origin = Vector::<N, D>::repeat(N::lit(setting.away) * scale);
+        let finite = |x: N| if x.is_finite_number() { x } else { scale };
+        let (box1, box2) = (shape1.local_aabb(), shape2.local_aabb());
+        let mut by = Vector::<N, D>::zeros();
+        match setting.regime {
+            Regime::Far => by = Vector::<N, D>::repeat(scale * N::lit(100.0)),
+            Regime::Touching => by[0] = finite(box1.maxs()[0] - box2.mins()[0]),
+            Regime::Deep => by[0] = scale * N::lit(0.125),
+            Regime::Coincident => (),
+        }
+        let turn = if setting.turned { self.turn.clone() } else { R::identity() };
+        let second =
+            if setting.regime == Regime::Coincident { turn.clone() } else { R::identity() };
+        let m1 = Isometry::from_parts(origin.into(), turn);
+        (m1, Isometry::from_parts((origin + by).into(), second))
+    }
+
+    /// The queries about one shape.
+    fn alone(&self, setting: &Setting, shape: &dyn Shape<N, D>) {
+        let (m, _) = self.places(setting, shape, shape);
+        let scale = N::lit(setting.scale);
+        let noise = scale * N::lit(1.0 + setting.away) * N::EPSILON * N::lit(256.0);
+        for step in 0..9 {
+            let offset = Vector::<N, D>::from_fn(|axis, _| {
+                scale * N::lit([0.0, 0.25, -1.5][(step / [1, 3, 2][axis]) % 3])
+            });
+            let point = Point::from(m.translation.vector + offset);
+            let (projected, location) = shape.project_point_with_location(&m, &point, true);
+            let apart = shape.distance_to_point(&m, &point, true);
+            assert_eq!(projected.is_inside, apart == N::ZERO, "{point} {projected:?} {apart:?}");
+            assert_eq!(shape.contains_point(&m, &point), projected.is_inside, "{point}");
+            assert!(((projected.point - point).norm() - apart).abs() <= noise, "{point} {apart:?}");
+            let (_, feature) = shape.project_point_with_feature(&m, &point);
+            assert_eq!(location.feature, feature, "{point}");
+            let signed = shape.distance_to_point(&m, &point, false);
+            assert_eq!(signed > N::ZERO, apart > N::ZERO, "{signed:?}");
+            let dir = Vector::<N, D>::repeat(scale) - offset;
+            let ray = Ray::new(point, dir);
+            let hit = shape.toi_and_normal_with_ray(&m, &ray, true);
+            assert_eq!(hit.is_some(), shape.intersects_ray(&m, &ray), "{ray:?}");
+            assert_eq!(hit.map(|hit| hit.toi), shape.toi_with_ray(&m, &ray, true), "{ray:?}");
+            let hits = shape.all_hits_with_ray(&m, &ray, N::INFINITY, true);
+            assert_eq!(hits.first().copied(), hit, "{ray:?}");
+            let toi = hit.map_or(N::INFINITY, |hit| hit.toi);
+            let hollow = shape.toi_with_ray(&m, &ray, false).unwrap_or(N::INFINITY);
+            assert!(toi >= N::ZERO && hollow >= toi, "{toi:?} {hollow:?}");
+        }
+    }
+
+    /// Bodies that turn.
+    fn turning(
+        &self,
+        (m1, g1): (&Isometry<N, R, D>, &dyn Shape<N, D>),
+        (m2, g2): (&Isometry<N, R, D>, &dyn Shape<N, D>),
+        same: bool,
+    ) {
+        let (motion1, motion2) = ((self.spin)(m1, N::HALF), (self.spin)(m2, -N::ONE));
+        let options = ImpactOptions::new().with_max_time(N::HALF * N::HALF);
+        let found = nonlinear_time_of_impact(&*motion1, g1, &*motion2, g2, &options);
+        let swapped = nonlinear_time_of_impact(&*motion2, g2, &*motion1, g1, &options);
+        if !same {
+            assert_eq!(found, swapped.map(|found| found.flipped()), "turning");
+        }
+        assert!(found.is_none_or(|found| found.toi >= N::ZERO), "{found:?}");
+    }
+}
+
+/// Two placed shapes.
+struct Two<'a, N: Real, R, const D: usize> {
+    m1: &'a Isometry<N, R, D>,
+    g1: &'a dyn Shape<N, D>,
+    m2: &'a Isometry<N, R, D>,
+    g2: &'a dyn Shape<N, D>,
+    /// They cannot be told apart.
+    same: bool,
+}
+
+fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    two: &Two<'_, N, R, D>,
+    setting: &Setting,
+) {
+    let Two { m1, g1, m2, g2, same } = *two;
+    let apart = distance(m1, g1, m2, g2);
+    assert!(apart >= N::ZERO && apart.is_finite_number(), "the distance is {apart:?}");
+    assert_eq!(apart, distance(m2, g2, m1, g1), "swapped");
+    let near = proximity(m1, g1, m2, g2, apart);
+    assert_eq!(near, proximity(m2, g2, m1, g1, apart), "swapped");
+    let expected = if apart > N::ZERO { Proximity::WithinMargin } else { Proximity::Intersecting };
+    assert_eq!(near, expected, "{apart:?}");
+    let points = closest_points(m1, g1, m2, g2, N::INFINITY);
+    if !same {
+        assert_eq!(points.flipped(), closest_points(m2, g2, m1, g1, N::INFINITY), "swapped");
+    }
+    assert_eq!(points == ClosestPoints::Intersecting, apart == N::ZERO, "{points:?} {apart:?}");
+
+    let found = witness(m1, g1, m2, g2, N::INFINITY);
+    let touch = contact(m1, g1, m2, g2, N::INFINITY);
+    let planes = [g1, g2].iter().all(|shape| shape.geometry().kind() == ShapeKind::Plane);
+    assert!(planes || (found.is_some() && touch.is_some()), "{found:?} {touch:?}");
+    if let (Some(found), Some(touch)) = (found, touch) {
+        assert!((found.normal.norm() - N::ONE).abs() < N::lit(1e-4), "{found:?}");
+        assert!((touch.normal.norm() - N::ONE).abs() < N::lit(1e-4), "{touch:?}");
+        assert_eq!(found.distance > N::ZERO, apart > N::ZERO, "{found:?} {apart:?}");
+        assert!(apart == N::ZERO || found.distance == apart, "{found:?} {apart:?}");
+        if !same {
+            let swapped = witness(m2, g2, m1, g1, N::INFINITY).map(|other| other.flipped());
+            assert_eq!(swapped, Some(found), "swapped");
+            let swapped = contact(m2, g2, m1, g1, N::INFINITY).map(|other| other.flipped());
+            assert_eq!(swapped, Some(touch), "swapped");
+        }
+    }
+    moving(two, N::lit(setting.scale));
+}
+
+fn moving<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    two: &Two<'_, N, R, D>,
+    scale: N,
+) {
+    let Two { m1, g1, m2, g2, same } = *two;
+    let v1 = Vector::<N, D>::repeat(scale);
+    let v2 = Vector::<N, D>::from_fn(|axis, _| scale * N::lit([-0.5, 0.25, 0.0][axis]));
+    let options = ImpactOptions::new().with_target_distance(scale * N::lit(0.125));
+    let (one, other) = (Moving::new(m1, &v1, g1), Moving::new(m2, &v2, g2));
+    let (found, swapped) = (impact(&one, &other, &options), impact(&other, &one, &options));
+    if !same {
+        assert_eq!(found, swapped.map(|found| found.flipped()), "swapped");
+    }
+    let toi = time_of_impact(m1, &v1, g1, m2, &v2, g2);
+    assert_eq!(toi, time_of_impact(m2, &v2, g2, m1, &v1, g1), "swapped");
+    assert!(toi.is_none_or(|toi| toi >= N::ZERO), "{toi:?}");
+}
+
+fn settings(scales: &[f64]) -> Vec<Setting> {
+    let regimes = [Regime::Far, Regime::Touching, Regime::Deep, Regime::Coincident];
+    let mut all = Vec::new();
+    for regime in regimes {
+        let (away, turned) = (0.0, false);
+        all.extend(scales.iter().map(|&scale| Setting { regime, scale, away, turned }));
+        all.push(Setting { regime, scale: 1.0, away, turned: true });
+        all.push(Setting { regime, scale: 1.0, away: 1e6, turned: true });
+    }
+    all
+}
+
+fn in_plane<N: Real>(scales: &[f64]) {
+    let turn = impinge::math::na::UnitComplex::new(N::lit(0.7));
+    let stage = Stage::<N, _, 2> {
+        shapes: plane::<N>,
+        turn,
+        spin: |m, turn| {
+            let linear = Vector::<N, 2>::new(turn, N::ONE);
+            Box::new(ConstantVelocities::<N, 2>::new(*m, linear, turn))
+        },
+    };
+    let wrong: usize = settings(scales).iter().map(|setting| stage.all_pairs(setting)).sum();
+    assert_eq!(wrong, 0, "pairs are wrong, see above");
+}
+
+fn in_space<N: Real>(scales: &[f64]) {
+    let angles = [0.7, -0.4, 1.9].map(N::lit);
+    let stage = Stage::<N, _, 3> {
+        shapes: space::<N>,
+        turn: impinge::math::na::UnitQuaternion::from_euler_angles(angles[0], angles[1], angles[2]),
+        spin: |m, turn| {
+            let linear = Vector::<N, 3>::new(turn, N::ONE, N::ZERO);
+            let angular = Vector::<N, 3>::new(turn, N::ZERO, turn);
+            Box::new(ConstantVelocities::<N, 3>::new(*m, linear, angular))
+        },
+    };
+    let wrong: usize = settings(scales).iter().map(|setting| stage.all_pairs(setting)).sum();
+    assert_eq!(wrong, 0, "pairs are wrong, see above");
+}
+
+#[test]
+fn in_the_plane_f32() {
+    in_plane::<f32>(&[1.0, 1e-10, 1e10]);
+}
+
+#[test]
+fn in_the_plane_f64() {
+    in_plane::<f64>(&[1.0, 1e-60, 1e60]);
+}
+
+#[test]
+fn in_space_f32() {
+    in_space::<f32>(&[1.0, 1e-10, 1e10]);
+}
+
+#[test]
+fn in_space_f64() {
+    in_space::<f64>(&[1.0, 1e-60, 1e60]);
+}

@@ -1,0 +1,432 @@
+//! What must hold of every pair of solids, whatever the right answer is: each pair of kinds, in both
+//! orders, both dimensions and both scalars, from far apart to one inside the other.
+
+use crate::support::query_support;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use impinge::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector, max};
+use impinge::query::{
+    ClosestPoints, Contact, Proximity, closest_points, contact, distance, proximity, time_of_impact,
+};
+use impinge::shape::ShapeKind;
+use query_support::random::Random;
+use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
+use query_support::{Placed, gap_along, signed};
+
+/// How the second solid is placed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Regime {
+    /// At this signed distance from the first, in units of the smaller solid.
+    At(f64),
+    /// With the frames at one place.
+    Coincident,
+}
+
+const REGIMES: [Regime; 7] = [
+    Regime::At(3.0),
+    Regime::At(1e-2),
+    Regime::At(1e-5),
+    Regime::At(0.0),
+    Regime::At(-1e-2),
+    Regime::At(-0.5),
+    Regime::Coincident,
+];
+
+/// How many times larger the second solid is.
+const RATIOS: [f64; 8] = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3, 1e-6, 1e6];
+
+/// How many pairs of each two kinds are tried in each regime: a few, or as many as the variable
+/// `IMPINGE_LAWS` says.
+fn seeds() -> u64 {
+    let asked = std::env::var("IMPINGE_LAWS").ok();
+    asked.map_or(16, |asked| asked.parse().expect("IMPINGE_LAWS is a number of pairs"))
+}
+
+/// What the tests vary.
+#[derive(Clone, Copy, Debug)]
+struct Setting {
+    kinds: [ShapeKind; 2],
+    regime: Regime,
+    seed: u64,
+    /// How many times larger the second solid is.
+    ratio: f64,
+    /// How far from the world's origin.
+    offset: f64,
+    /// Everything is so much larger.
+    scale: f64,
+    /// Half of the sizes and coordinates are zero.
+    degenerate: bool,
+}
+
+/// A way to make random solids and rotations of one dimension.
+struct Maker<N: Real, R, const D: usize> {
+    sample: Sample<N, D>,
+    turn: fn(&mut Random) -> R,
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R, D> {
+    /// Two solids in a setting: the same up to the scale for every scale.
+    fn make(&self, setting: &Setting) -> [Placed<N, R, D>; 2] {
+        let random = &mut Random(setting.seed, setting.degenerate);
+        let scale = N::lit(setting.scale);
+        let origin = random.vector::<N, D>() * N::lit(setting.offset) * scale;
+        let shape1 = (self.sample)(setting.kinds[0], random, scale);
+        let shape2 = (self.sample)(setting.kinds[1], random, scale * N::lit(setting.ratio));
+        let pose1 = Isometry::from_parts(origin.into(), (self.turn)(random));
+        let away = random.direction::<N, D>() * (scale * N::lit(4.0 * setting.ratio.max(1.0)));
+        let pose2 = Isometry::from_parts((origin + away).into(), (self.turn)(random));
+        let mut pair =
+            [Placed { shape: shape1, pose: pose1 }, Placed { shape: shape2, pose: pose2 }];
+        match setting.regime {
+            Regime::Coincident => pair[1].pose = pair[0].pose.clone(),
+            Regime::At(at) => bring_to(&mut pair, N::lit(at * setting.ratio.min(1.0)) * scale),
+        }
+        pair
+    }
+}
+
+/// The contact of a pair, however far apart.
+fn contact_of<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    [solid1, solid2]: &[Placed<N, R, D>; 2],
+) -> Option<Contact<N, D>> {
+    contact(&solid1.pose, &*solid1.shape, &solid2.pose, &*solid2.shape, N::INFINITY)
+}
+
+/// Moves the second solid along the normal until the signed distance is about `target`.
+fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    pair: &mut [Placed<N, R, D>; 2],
+    target: N,
+) {
+    if let Some(found) = contact_of(pair) {
+        let step = found.normal.into_inner() * (found.depth + target);
+        pair[1].pose.translation.vector += step;
+    }
+}
+
+/// What arithmetic may get wrong about a pair of kinds, relative to their size.
+///
+/// A solid a million times smaller than the other shows it faces whose directions are only known up to
+/// rounding a million times as large.
+fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
+    let ratio = setting.ratio.max(1.0 / setting.ratio);
+    max(of_alike::<N, D>(setting), N::EPSILON * N::lit(ratio))
+}
+
+/// The same for solids of about the same size.
+fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
+    let kinds = setting.kinds;
+    let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
+    let ball = kinds.contains(&ShapeKind::Ball) || kinds.contains(&ShapeKind::Plane);
+    if kinds.into_iter().any(curved) && !ball {
+        // Of a curved solid that swallows one a thousand times smaller every direction is about as
+        // good as the best, and the general algorithm reaches its cap.
+        let swallowed = setting.regime == Regime::Coincident && (setting.ratio - 1.0).abs() > 0.99;
+        let relative = if swallowed { 1e-6 } else { 1e-9 };
+        // In f32 this is 1e-4.
+        return max(N::EPSILON * N::lit(1024.0), N::lit(relative));
+    }
+    // The generating line of a tapered capsule and the edge of a flat solid are kinks; the iterations
+    // of the general algorithm stop a little earlier there.
+    if kinds.contains(&ShapeKind::TaperedCapsule) && D == 3 && !ball {
+        return max(N::EPSILON * N::lit(128.0), N::lit(2e-11));
+    }
+    let closed = |kind| matches!(kind, ShapeKind::Segment | ShapeKind::Capsule);
+    if D == 2 || ball || kinds.into_iter().all(closed) {
+        return N::EPSILON * N::lit(128.0);
+    }
+    max(N::EPSILON * N::lit(128.0), N::lit(1e-12))
+}
+
+/// All that must hold of one pair.
+fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    setting: &Setting,
+    pair: &[Placed<N, R, D>; 2],
+) {
+    let [(m1, g1), (m2, g2)] = [&pair[0], &pair[1]].map(|solid| (&solid.pose, &*solid.shape));
+    let Some(found) = contact_of(pair) else {
+        assert_eq!(setting.kinds, [ShapeKind::Plane; 2], "only planes have no contact {setting:?}");
+        assert_eq!(distance(m1, g1, m2, g2), N::ZERO, "planes that overlap {setting:?}");
+        assert_eq!(proximity(m1, g1, m2, g2, N::ZERO), Proximity::Intersecting, "{setting:?}");
+        return;
+    };
+    let signed = -found.depth;
+    let swapped = contact(m2, g2, m1, g1, N::INFINITY).map(|swapped| swapped.flipped());
+    // Of equal solids at one place, both orders are the same question and have one answer; balls have no
+    // rotation that tells them apart.
+    let are_balls = setting.kinds == [ShapeKind::Ball; 2];
+    let at_one_place = setting.regime == Regime::Coincident
+        || (are_balls && m1.translation.vector == m2.translation.vector);
+    let same = at_one_place && format!("{g1:?}") == format!("{g2:?}");
+    if !same {
+        assert_eq!(swapped, Some(found), "swapped {setting:?}");
+    }
+    let apart = distance(m1, g1, m2, g2);
+    assert_eq!(apart, max(signed, N::ZERO), "distance {setting:?}");
+    assert_eq!(distance(m2, g2, m1, g1), apart, "distance swapped {setting:?}");
+    assert_eq!(contact(m1, g1, m2, g2, signed), Some(found), "at the limit {setting:?}");
+    let closer = signed - signed.abs() * N::EPSILON - N::MIN_POSITIVE;
+    assert_eq!(contact(m1, g1, m2, g2, closer), None, "below the limit {setting:?}");
+    let touching = signed <= N::ZERO;
+    let (near, nearest) = if touching {
+        (Proximity::Intersecting, ClosestPoints::Intersecting)
+    } else {
+        (Proximity::WithinMargin, ClosestPoints::WithinMargin(found.world1, found.world2))
+    };
+    assert_eq!(proximity(m1, g1, m2, g2, apart), near, "{setting:?}");
+    assert_eq!(closest_points(m1, g1, m2, g2, apart), nearest, "{setting:?}");
+    let flipped = closest_points(m2, g2, m1, g1, apart).flipped();
+    assert_eq!(flipped, nearest, "swapped {setting:?}");
+    if !touching {
+        assert_eq!(proximity(m1, g1, m2, g2, closer), Proximity::Disjoint, "{setting:?}");
+        assert_eq!(closest_points(m1, g1, m2, g2, closer), ClosestPoints::Disjoint, "{setting:?}");
+    }
+    check_geometry(setting, pair, &found);
+}
+
+/// The points and the normal of a contact are what they say.
+fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    setting: &Setting,
+    pair: &[Placed<N, R, D>; 2],
+    found: &Contact<N, D>,
+) {
+    let normal = found.normal.into_inner();
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
+    assert!((normal.norm() - N::ONE).abs() < N::EPSILON * N::lit(32.0), "unit {setting:?}");
+    let off = (found.world1 - normal * found.depth - found.world2).norm();
+    assert!(off <= noise, "the points are off by {off} {setting:?}");
+    if setting.kinds.contains(&ShapeKind::Plane) {
+        return;
+    }
+    let certified = gap_along(&pair[0], &pair[1], &normal);
+    assert!(certified >= -found.depth - noise, "{certified} of {} {setting:?}", -found.depth);
+    let random = &mut Random(setting.seed ^ 0x5eed, false);
+    for _ in 0..40 {
+        let other = gap_along(&pair[0], &pair[1], &random.direction());
+        assert!(other <= -found.depth + noise, "{other} above {} {setting:?}", -found.depth);
+    }
+}
+
+/// Moving the second solid by a little less or more than the way to touching toggles the answer.
+fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    setting: &Setting,
+    pair: &[Placed<N, R, D>; 2],
+) {
+    let Some(found) = contact_of(pair) else { return };
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
+    // What has sharp tips may pass the other by rounding; of two such solids nothing can be said.
+    let sharpness = |kind: &ShapeKind| match kind {
+        ShapeKind::Segment | ShapeKind::Triangle | ShapeKind::Cone => 2,
+        ShapeKind::Polytope => 1,
+        _ => 0,
+    };
+    // So may one that is no larger than what is lost in the rounding of the other.
+    let is_lost = N::lit(setting.ratio.min(1.0)) < N::lit(16.0) * noise;
+    let sharp = setting.kinds.iter().map(sharpness).sum::<i32>() + if is_lost { 3 } else { 0 };
+    let slack = if sharp > 0 { noise } else { noise / N::lit(4.0) };
+    let moved = |side: N| {
+        let mut pose = pair[1].pose.clone();
+        pose.translation.vector += found.normal.into_inner() * (found.depth + side * noise);
+        distance(&pair[0].pose, &*pair[0].shape, &pose, &*pair[1].shape)
+    };
+    assert!(moved(N::TWO) > N::ZERO, "apart {setting:?}");
+    let together = moved(-N::TWO);
+    assert!(sharp > 2 || together <= slack, "{together} not together {setting:?}");
+}
+
+/// A power of two times larger, everything is exactly that much larger.
+fn check_scaled<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    maker: &Maker<N, R, D>,
+    setting: &Setting,
+    pair: &[Placed<N, R, D>; 2],
+) {
+    let found = contact_of(pair);
+    for power in [20, -20] {
+        let scale = 2.0_f64.powi(power);
+        let mut scaled = maker.make(&Setting { scale: setting.scale * scale, ..*setting });
+        let by = N::lit(scale);
+        for (small, large) in pair.iter().zip(&mut scaled) {
+            large.pose.translation.vector = small.pose.translation.vector * by;
+        }
+        let expected = found.map(|found| Contact {
+            world1: found.world1 * by,
+            world2: found.world2 * by,
+            normal: found.normal,
+            depth: found.depth * by,
+        });
+        assert_eq!(contact_of(&scaled), expected, "2^{power} {setting:?}");
+        let v = [Random(setting.seed, false).vector::<N, D>(), Random(1, false).vector::<N, D>()];
+        assert_eq!(impact(&scaled, &v.map(|v| v * by)), impact(pair, &v), "2^{power} {setting:?}");
+    }
+}
+
+fn impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    [solid1, solid2]: &[Placed<N, R, D>; 2],
+    [v1, v2]: &[Vector<N, D>; 2],
+) -> Option<N> {
+    time_of_impact(&solid1.pose, v1, &*solid1.shape, &solid2.pose, v2, &*solid2.shape)
+}
+
+/// Moving both solids together changes the distance by rounding only.
+fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    maker: &Maker<N, R, D>,
+    setting: &Setting,
+    mut pair: [Placed<N, R, D>; 2],
+) {
+    let before = signed(&pair[0], &pair[1]);
+    let random = &mut Random(setting.seed, setting.degenerate);
+    let turn = (maker.turn)(random);
+    let shift = random.vector::<N, D>() * N::lit(setting.scale);
+    for solid in &mut pair {
+        let moved = turn.transform_vector(&solid.pose.translation.vector) + shift;
+        solid.pose.translation.vector = moved;
+        solid.pose.rotation = turn.clone() * solid.pose.rotation.clone();
+    }
+    let after = signed(&pair[0], &pair[1]);
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
+    let same = before == after || (before - after).abs() <= noise;
+    assert!(same, "{before} becomes {after} {setting:?}");
+}
+
+/// A moving pair does not touch before the time of impact, and does at it.
+fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    setting: &Setting,
+    pair: &[Placed<N, R, D>; 2],
+) -> bool {
+    let random = &mut Random(setting.seed ^ 7, false);
+    let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
+    // Half of the pairs are sent at each other.
+    if setting.seed.is_multiple_of(2) {
+        v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
+    }
+    let found = impact(pair, &v);
+    let swapped = time_of_impact(
+        &pair[1].pose,
+        &v[1],
+        &*pair[1].shape,
+        &pair[0].pose,
+        &v[0],
+        &*pair[0].shape,
+    );
+    assert_eq!(found, swapped, "swapped {setting:?}");
+    if signed(&pair[0], &pair[1]) <= N::ZERO {
+        // Whether such a start counts depends on the velocities; see `tests/impact.rs`.
+        assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
+        return found.is_some();
+    }
+    let at = |time: N| {
+        let placed = |index: usize| {
+            let mut pose = pair[index].pose.clone();
+            pose.translation.vector += v[index] * time;
+            pose
+        };
+        let (pose1, pose2) = (placed(0), placed(1));
+        let found = contact(&pose1, &*pair[0].shape, &pose2, &*pair[1].shape, N::INFINITY);
+        found.map_or(-N::INFINITY, |found| -found.depth)
+    };
+    let speed = (v[0] - v[1]).norm();
+    let end = found.unwrap_or_else(|| N::lit(8.0 * setting.ratio.max(1.0)) / speed);
+    let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent() + speed * end);
+    for step in 0..20 {
+        let time = end * N::lit(f64::from(step) / 20.0);
+        let before = at(time);
+        // Of two that graze each other, the distance says more than the time.
+        let is_early = before > -noise || (end - time) * speed < noise;
+        assert!(is_early, "{before} before the end {setting:?}");
+    }
+    assert!(found.is_none() || at(end) <= noise, "{} at the end {setting:?}", at(end));
+    found.is_some()
+}
+
+/// All laws, for all kinds and regimes.
+fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
+    kinds: &[ShapeKind],
+    maker: &Maker<N, R, D>,
+) {
+    let (mut hits, mut shots) = (0, 0);
+    let (mut settings, mut broken) = (0, 0);
+    for (kind1, kind2) in kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2))) {
+        for (regime, seed) in REGIMES.iter().flat_map(|r| (0..seeds()).map(move |seed| (*r, seed)))
+        {
+            let ratio = RATIOS[usize::try_from(seed % 8).expect("small")];
+            let base = Setting {
+                kinds: [kind1, kind2],
+                regime,
+                seed,
+                ratio,
+                offset: 0.0,
+                scale: 1.0,
+                degenerate: false,
+            };
+            let mut all = || {
+                let pair = maker.make(&base);
+                check(&base, &pair);
+                check_toggle(&base, &pair);
+                check_scaled(maker, &base, &pair);
+                if !base.kinds.contains(&ShapeKind::Plane) && regime == Regime::At(1e-2) {
+                    shots += 1;
+                    hits += u32::from(check_impact(&base, &pair));
+                }
+                check_moved(maker, &base, pair);
+                let far = Setting { offset: 1e6, ..base };
+                check(&far, &maker.make(&far));
+                let flat = Setting { degenerate: true, ..base };
+                let pair = maker.make(&flat);
+                check(&flat, &pair);
+                check_scaled(maker, &flat, &pair);
+                check_moved(maker, &flat, pair);
+            };
+            broken += u32::from(catch_unwind(AssertUnwindSafe(&mut all)).is_err());
+            settings += 1;
+        }
+    }
+    assert_eq!(broken, 0, "of {settings} settings");
+    assert!(hits * 10 > shots * 3 && hits * 10 < shots * 7, "{hits} of {shots} shots hit");
+}
+
+#[test]
+fn plane_f32() {
+    laws::<f32, _, 2>(&PLANE, &Maker { sample: sample2, turn: Random::turn2 });
+}
+
+#[test]
+fn plane_f64() {
+    laws::<f64, _, 2>(&PLANE, &Maker { sample: sample2, turn: Random::turn2 });
+}
+
+#[test]
+fn space_f32() {
+    laws::<f32, _, 3>(&SPACE, &Maker { sample: sample3, turn: Random::turn3 });
+}
+
+#[test]
+fn space_f64() {
+    laws::<f64, _, 3>(&SPACE, &Maker { sample: sample3, turn: Random::turn3 });
+}
+
+#[test]
+fn poses_that_are_not_finite_touch_nothing() {
+    let maker = Maker::<f32, _, 3> { sample: sample3, turn: Random::turn3 };
+    for (kind1, kind2) in SPACE.iter().flat_map(|k1| SPACE.iter().map(move |k2| (*k1, *k2))) {
+        let kinds = [kind1, kind2];
+        let setting = Setting {
+            kinds,
+            regime: Regime::At(0.0),
+            seed: 3,
+            ratio: 1.0,
+            offset: 0.0,
+            scale: 1.0,
+            degenerate: false,
+        };
+        let mut pair = maker.make(&setting);
+        pair[0].pose.translation.vector.x = f32::NAN;
+        assert!(!Pose::from_isometry(&pair[0].pose).is_finite(), "not a place");
+        let [(m1, g1), (m2, g2)] = [&pair[0], &pair[1]].map(|solid| (&solid.pose, &*solid.shape));
+        let v = Vector::<f32, 3>::x();
+        assert_eq!(contact(m1, g1, m2, g2, 1.0), None, "{kinds:?}");
+        assert_eq!(distance(m1, g1, m2, g2), f32::INFINITY, "{kinds:?}");
+        assert_eq!(proximity(m1, g1, m2, g2, 1.0), Proximity::Disjoint, "{kinds:?}");
+        assert_eq!(closest_points(m1, g1, m2, g2, 1.0), ClosestPoints::Disjoint, "{kinds:?}");
+        assert_eq!(time_of_impact(m1, &v, g1, m2, &-v, g2), None, "{kinds:?}");
+    }
+}

@@ -1,0 +1,11 @@
+//! Collision worlds: rules, events, queries, against models.
+
+mod extremes_of_worlds;
+mod world_ball_in_room;
+mod world_corpus;
+mod world_events;
+mod world_input;
+mod world_model;
+mod world_queries;
+mod world_rules;
+mod worlds_and_generators;

@@ -1,0 +1,344 @@
+//! A world and its naive twin, to which the same is done.
+
+use std::collections::BTreeMap;
+
+use impinge::bounding_volume::Aabb;
+use impinge::broad_phase::DBVTBroadPhase;
+use impinge::math::Point;
+use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, DefaultNarrowPhase};
+use impinge::query::{Proximity, Ray};
+use impinge::world::{CollisionObject, CollisionWorld, WorldError};
+use impinge_reference::geometry::Pose;
+use impinge_reference::random::Random;
+use impinge_reference::world::{Handle, NaiveWorld};
+
+use super::draw::{self, Grid};
+use super::twins::{self, OnGrid, Twins};
+use crate::support::world_stage::vector;
+
+/// What a run has reached.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) updates: usize,
+    pub(crate) started: usize,
+    pub(crate) transitions: usize,
+    pub(crate) removal_events: usize,
+    pub(crate) exchanges: usize,
+    pub(crate) refusals: usize,
+    /// Pairs that the broad phase keeps and that are asked for contacts; those with contacts.
+    pub(crate) near: usize,
+    pub(crate) touching: usize,
+    pub(crate) queries: usize,
+    pub(crate) hits: usize,
+}
+
+/// The status of each pair as the events tell it.
+#[derive(Default)]
+struct Told {
+    touching: BTreeMap<(CollisionObjectHandle, CollisionObjectHandle), ()>,
+    proximity: BTreeMap<(CollisionObjectHandle, CollisionObjectHandle), Proximity>,
+}
+
+pub(crate) struct Both<N: Grid<D>, const D: usize> {
+    random: Random,
+    world: CollisionWorld<N, D, u64>,
+    naive: NaiveWorld<D, OnGrid<D>>,
+    twins: Twins,
+    alive: Vec<CollisionObjectHandle>,
+    stale: Vec<CollisionObjectHandle>,
+    told: Told,
+    pub(crate) tally: Tally,
+}
+
+impl<N: Grid<D>, const D: usize> Both<N, D> {
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let margin = *random.pick(&[0.0, 0.125, 0.5]);
+        Self {
+            random,
+            world: CollisionWorld::new(N::lit(margin)),
+            naive: NaiveWorld::new(),
+            twins: Twins::new(),
+            alive: Vec::new(),
+            stale: Vec::new(),
+            told: Told::default(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// Does one thing to both, at random.
+    pub(crate) fn operate(&mut self) {
+        match self.random.below(100) {
+            0..10 => self.add(),
+            10..17 => self.remove(),
+            17..38 => self.shift(),
+            38..44 => self.teleport(),
+            44..48 => self.move_many(),
+            48..53 => self.change_shape(),
+            53..58 => self.change_groups(),
+            58..64 => self.change_query_type(),
+            64..66 => self.change_filters(),
+            66..67 => self.exchange_phases(),
+            67..71 => self.try_nonsense(),
+            71..83 => self.ask(),
+            _ => self.update(),
+        }
+    }
+
+    /// A living object, if there is one.
+    fn someone(&mut self) -> Option<(CollisionObjectHandle, Handle)> {
+        let handle = (!self.alive.is_empty()).then(|| *self.random.pick(&self.alive))?;
+        Some((handle, self.twins[&handle]))
+    }
+
+    fn add(&mut self) {
+        if self.alive.len() >= 16 {
+            return;
+        }
+        let random = &mut self.random;
+        let (position, pose) = draw::pose::<N, D>(random);
+        let (shape, solid) = draw::shape::<N, D>(random);
+        let (groups, naive_groups) = draw::groups(random);
+        let (query_type, naive_query) = draw::query_type(random);
+        let data = random.bits();
+        let handle = self.world.add(position, shape, groups, query_type, data);
+        let twin = self.naive.add(pose, OnGrid(solid), naive_groups, naive_query);
+        assert_eq!(handle.uid(), twin.index, "the same place");
+        let known = self.twins.insert(handle, twin);
+        assert!(known.is_none(), "a handle is never given twice");
+        let object = self.world.collision_object(handle).expect("it was added");
+        assert_eq!((object.position(), *object.data()), (&position, data), "as given");
+        self.alive.push(handle);
+    }
+
+    fn remove(&mut self) {
+        let count = self.random.below(4).min(self.alive.len());
+        let mut handles = Vec::new();
+        for _ in 0..count {
+            let place = self.random.below(self.alive.len());
+            handles.push(self.alive.swap_remove(place));
+        }
+        self.world.remove(&handles);
+        let naive: Vec<Handle> = handles.iter().map(|handle| self.twins[handle]).collect();
+        self.naive.remove(&naive).expect("they are alive");
+        assert!(handles.iter().all(|&handle| !self.world.contains(handle)), "gone at once");
+        self.stale.extend(handles);
+    }
+
+    fn place(&mut self, handle: CollisionObjectHandle, (position, pose): (N::Isometry, Pose<D>)) {
+        self.world.set_position(handle, position);
+        self.naive.set_position(self.twins[&handle], pose).expect("alive");
+    }
+
+    fn shift(&mut self) {
+        let Some((handle, twin)) = self.someone() else { return };
+        let from = self.naive.object(twin).expect("alive").pose;
+        let to = draw::pose_near::<N, D>(&from, &mut self.random);
+        self.place(handle, to);
+    }
+
+    fn teleport(&mut self) {
+        let Some((handle, _)) = self.someone() else { return };
+        let to = draw::pose::<N, D>(&mut self.random);
+        self.place(handle, to);
+    }
+
+    fn move_many(&mut self) {
+        let mut positions = Vec::new();
+        for _ in 0..self.random.below(6) {
+            let Some((handle, twin)) = self.someone() else { return };
+            let (position, pose) = draw::pose::<N, D>(&mut self.random);
+            positions.push((handle, position));
+            self.naive.set_position(twin, pose).expect("alive");
+        }
+        self.world.set_positions(&positions);
+    }
+
+    fn change_shape(&mut self) {
+        let Some((handle, twin)) = self.someone() else { return };
+        let (shape, solid) = draw::shape::<N, D>(&mut self.random);
+        self.world.set_shape(handle, shape);
+        self.naive.set_shape(twin, OnGrid(solid)).expect("alive");
+    }
+
+    fn change_groups(&mut self) {
+        let Some((handle, twin)) = self.someone() else { return };
+        let (groups, naive) = draw::groups(&mut self.random);
+        self.world.set_collision_groups(handle, groups);
+        self.naive.set_groups(twin, naive).expect("alive");
+    }
+
+    fn change_query_type(&mut self) {
+        let Some((handle, twin)) = self.someone() else { return };
+        let (query_type, naive) = draw::query_type(&mut self.random);
+        self.world.set_query_type(handle, query_type);
+        self.naive.set_query_type(twin, naive).expect("alive");
+    }
+
+    fn change_filters(&mut self) {
+        let name = *self.random.pick(&["one", "another"]);
+        if self.random.chance(0.6) {
+            self.world.unregister_broad_phase_pair_filter(name);
+            self.naive.unregister_filter(name);
+        } else {
+            let number = 2 + self.random.below(4);
+            N::register(&mut self.world, name, number);
+            self.naive.register_filter(name, move |a, b| !(a + b).is_multiple_of(number));
+        }
+    }
+
+    fn exchange_phases(&mut self) {
+        if self.random.chance(0.6) {
+            let margin = N::lit(*self.random.pick(&[0.0, 0.25, 1.0]));
+            self.world.set_broad_phase(Box::new(DBVTBroadPhase::new(margin)));
+        }
+        if self.random.chance(0.6) {
+            self.world.set_narrow_phase(Box::new(DefaultNarrowPhase::<N, D>::new()));
+        }
+        self.tally.exchanges += 1;
+    }
+
+    /// What must be refused and change nothing: the next checks would notice.
+    fn try_nonsense(&mut self) {
+        let (position, _) = draw::pose::<N, D>(&mut self.random);
+        if !self.stale.is_empty() {
+            let stale = *self.random.pick(&self.stale);
+            let refused = Err(WorldError::StaleHandle(stale));
+            assert_eq!(self.world.try_set_position(stale, position), refused, "stale");
+            let mut all = self.alive.clone();
+            all.push(stale);
+            assert_eq!(self.world.try_remove(&all), refused, "one of them is stale");
+            let moves: Vec<_> = all.iter().map(|&handle| (handle, position)).collect();
+            assert_eq!(self.world.try_set_positions(&moves), refused, "one of them is stale");
+            self.tally.refusals += 1;
+        }
+        if let Some((handle, _)) = self.someone() {
+            let refused = Err(WorldError::RepeatedHandle(handle));
+            assert_eq!(self.world.try_remove(&[handle, handle]), refused, "twice");
+            let mut coordinates = [0.0; D];
+            coordinates[1] = f64::NAN;
+            let refused = self.world.try_set_position(handle, N::at(coordinates));
+            assert!(matches!(refused, Err(WorldError::Position { .. })), "not a number");
+        }
+    }
+
+    fn update(&mut self) {
+        self.world.update();
+        let events = self.naive.update();
+        self.world.validate().expect("the parts of the world agree");
+        let contacts = twins::contact_events(&self.twins, self.world.contact_events());
+        let proximities = twins::proximity_events(&self.twins, self.world.proximity_events());
+        let different = contacts != events.contacts || proximities != events.proximities;
+        let scene = if different { self.describe() } else { String::new() };
+        assert_eq!(contacts, events.contacts, "contact events\n{scene}");
+        assert_eq!(proximities, events.proximities, "proximity events\n{scene}");
+        let touching = twins::touching(&self.twins, &self.world);
+        assert_eq!(touching, self.naive.touching_pairs(), "pairs with contacts");
+        let close = twins::close(&self.twins, &self.world);
+        assert_eq!(close, self.naive.close_pairs(), "pairs that are not disjoint");
+        self.listen();
+        self.tally.updates += 1;
+        self.tally.transitions += proximities.len();
+        self.tally.removal_events += events.removed_contacts + events.removed_proximities;
+        self.tally.touching += touching.len();
+        self.tally.near += self.world.contact_pairs().count();
+    }
+
+    /// The pairs on which the two disagree.
+    fn describe(&self) -> String {
+        let mut text = String::new();
+        let (world, naive) =
+            (twins::touching(&self.twins, &self.world), self.naive.touching_pairs());
+        let (world2, naive2) = (twins::close(&self.twins, &self.world), self.naive.close_pairs());
+        let pairs = world.iter().chain(&naive).copied();
+        let pairs = pairs.chain(world2.iter().chain(&naive2).map(|&(a, b, _)| (a, b)));
+        for (a, b) in pairs {
+            let status = |list: &[(Handle, Handle, _)]| {
+                list.iter().find(|other| (other.0, other.1) == (a, b)).map(|other| other.2)
+            };
+            let same = world.contains(&(a, b)) == naive.contains(&(a, b));
+            if same && status(&world2) == status(&naive2) {
+                continue;
+            }
+            let objects = [a, b].map(|handle| self.naive.object(handle).expect("alive"));
+            let distance = self.naive.signed_distance(objects[0], objects[1]);
+            text += &format!("distance {distance:e} of {:#?}\n", objects);
+        }
+        text
+    }
+
+    /// Follows the events: each start has one stop, each status is the one that was told before.
+    fn listen(&mut self) {
+        for event in self.world.contact_events() {
+            let consistent = match *event {
+                ContactEvent::Started(a, b) => self.told.touching.insert((a, b), ()).is_none(),
+                ContactEvent::Stopped(a, b) => self.told.touching.remove(&(a, b)).is_some(),
+            };
+            assert!(consistent, "{event:?} out of turn");
+            self.tally.started += usize::from(matches!(event, ContactEvent::Started(..)));
+        }
+        for event in self.world.proximity_events() {
+            let pair = (event.collider1, event.collider2);
+            let before = self.told.proximity.insert(pair, event.new_status);
+            assert_eq!(before.unwrap_or(Proximity::Disjoint), event.prev_status, "{event:?}");
+        }
+    }
+
+    /// The end: when nothing is left, everything has stopped.
+    pub(crate) fn finish(&mut self) {
+        self.world.remove(&self.alive);
+        let naive: Vec<Handle> = self.alive.iter().map(|handle| self.twins[handle]).collect();
+        self.naive.remove(&naive).expect("they are alive");
+        self.update();
+        assert!(self.told.touching.is_empty(), "each contact that started has stopped");
+        let disjoint = self.told.proximity.values().all(|status| *status == Proximity::Disjoint);
+        assert!(disjoint, "each proximity has ended");
+    }
+
+    /// The same questions to both, at any moment.
+    fn ask(&mut self) {
+        let (groups, naive_groups) = draw::groups(&mut self.random);
+        let (a, b) = (draw::point::<D>(&mut self.random), draw::point::<D>(&mut self.random));
+        let twin = |object: &CollisionObject<N, D, u64>| self.twins[&object.handle()];
+
+        let point = Point::from(vector::<N, D>(a));
+        let found: Vec<_> =
+            self.world.interferences_with_point(&point, &groups).map(twin).collect();
+        assert_eq!(found, self.naive.interferences_with_point(&a, naive_groups), "at {a:?}");
+        self.tally.hits += usize::from(!found.is_empty());
+
+        let least = std::array::from_fn(|axis| a[axis].min(b[axis]));
+        let greatest = std::array::from_fn(|axis| a[axis].max(b[axis]));
+        let aabb = Aabb::new(vector::<N, D>(least).into(), vector::<N, D>(greatest).into());
+        let found: Vec<_> = self.world.interferences_with_aabb(&aabb, &groups).map(twin).collect();
+        let expected = self.naive.interferences_with_aabb(&least, &greatest, naive_groups);
+        assert_eq!(found, expected, "in {least:?} {greatest:?}");
+        self.tally.hits += usize::from(!found.is_empty());
+
+        let direction = draw::direction::<D>(&mut self.random);
+        let ray = Ray::new(point, vector(direction));
+        let hits: Vec<_> = self.world.interferences_with_ray(&ray, &groups).collect();
+        let found: Vec<_> = hits.iter().map(|(object, _)| twin(object)).collect();
+        let expected = self.naive.interferences_with_ray(&a, &direction, naive_groups);
+        let handles: Vec<_> = expected.iter().map(|(handle, _)| *handle).collect();
+        let scene = |handle: &Handle| {
+            let object = self.naive.object(*handle).expect("alive");
+            format!("{:?} at {:?}\n", object.shape, object.pose)
+        };
+        let scene: String = found.iter().chain(&handles).map(scene).collect();
+        assert_eq!(found, handles, "from {a:?} along {direction:?}: {scene}");
+        let slack = 1e-3 * if N::EPSILON.as_f64() < 1e-9 { 1e-6 } else { 1.0 };
+        for ((_, hit), (_, t)) in hits.iter().zip(&expected) {
+            assert!((hit.toi.as_f64() - t).abs() <= slack * (1.0 + t), "{} for {t}", hit.toi);
+        }
+        let first = self.world.first_interference_with_ray(&ray, &groups);
+        let nearest = hits.iter().min_by(|(a, hit1), (b, hit2)| {
+            let by_time = hit1.toi.partial_cmp(&hit2.toi).expect("times are numbers");
+            by_time.then(a.handle().cmp(&b.handle()))
+        });
+        let name = |(object, hit): &(&CollisionObject<N, D, u64>, _)| (object.handle(), *hit);
+        assert_eq!(first.as_ref().map(name), nearest.map(name), "the first of them");
+        self.tally.hits += usize::from(!hits.is_empty());
+        self.tally.queries += 3;
+    }
+}
