@@ -116,7 +116,7 @@ type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
 type SeenFn<N, const D: usize> = fn(Kind<'_, N, D>, &Point<N, D>) -> Option<Projection<N, D>>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Witness<N, D>>;
-type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, (&Separation<N, D>, N), bool) -> FeatureId;
+type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, N, bool) -> FeatureId;
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type GapsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, N, GapVisitor<'_, N, D>) -> bool;

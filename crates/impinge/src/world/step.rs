@@ -102,8 +102,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Takes back what the narrow phase read of the objects of a pair that stopped, if it has no other
     /// pair of theirs.
-    pub(super) fn give_back(&mut self, (first, second): HandlePair) {
-        for handle in [first, second] {
+    pub(super) fn give_back(&mut self, pair: HandlePair) {
+        for handle in [pair.0, pair.1] {
             if !self.narrow_phase.has_pairs_of(handle) {
                 self.objects.table.release(handle.index());
             }
@@ -248,11 +248,12 @@ fn push_differences(
 
 /// The events that lead from one status of a pair to another.
 fn push_change(
-    (collider1, collider2): HandlePair,
+    pair: HandlePair,
     before: Option<StepStatus>,
     after: Option<StepStatus>,
     events: &mut Events,
 ) {
+    let (collider1, collider2) = pair;
     let touching = |status| status == Some(StepStatus::Touching);
     let proximity = |status| match status {
         Some(StepStatus::Near(proximity)) => proximity,

@@ -17,7 +17,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let [Solid::Ball(ball), Solid::Cuboid(cuboid)] = pair.solids else { return false };
         inputs.put_beside_ball(lane, pair);
         inputs.put_radius(lane, 0, ball.radius());
-        inputs.put_end(lane, (1, 0), cuboid.half_extents());
+        inputs.put_end(lane, 1, 0, cuboid.half_extents());
         true
     }
 
@@ -27,7 +27,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         inputs: &Inputs<N, D>,
         found: &mut EightContacts<N, D>,
     ) {
-        let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, (1, 0)));
+        let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
         let clamped = by_axis(

@@ -29,7 +29,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         found: &mut EightContacts<N, D>,
     ) {
         let pose12 = inputs.beside_ball::<S, V>(simd);
-        let ends = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
+        let ends = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let (radius, rounding) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
         let center = pose12.inverse_origin(simd);
         let near = nearest_on_segment(simd, &ends, &center);

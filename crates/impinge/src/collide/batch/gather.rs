@@ -101,8 +101,8 @@ impl<N: Real, const D: usize> Inputs<N, D> {
 
     /// An end of the segment in the middle of one of the solids, or the half extents of a box.
     #[inline(always)]
-    pub(super) fn put_end(&mut self, lane: usize, which: (usize, usize), end: &Vector<N, D>) {
-        put(&mut self.ends[which.0][which.1], lane, end);
+    pub(super) fn put_end(&mut self, lane: usize, solid: usize, number: usize, end: &Vector<N, D>) {
+        put(&mut self.ends[solid][number], lane, end);
     }
 
     #[inline(always)]
@@ -124,9 +124,10 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     pub(super) fn end<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        (which, end): (usize, usize),
+        solid: usize,
+        number: usize,
     ) -> [V; D] {
-        load(simd, &self.ends[which][end])
+        load(simd, &self.ends[solid][number])
     }
 
     /// The second solid's place seen from the first, which is its place in the frame of a ball.

@@ -29,8 +29,8 @@ impl<N: Real, const D: usize> Inputs<N, D> {
             _ => return false,
         };
         let ends: [&Vector<N, D>; 2] = [&segment.a().coords, &segment.b().coords];
-        self.put_end(lane, (which, 0), ends[0]);
-        self.put_end(lane, (which, 1), ends[1]);
+        self.put_end(lane, which, 0, ends[0]);
+        self.put_end(lane, which, 1, ends[1]);
         self.put_radius(lane, which, radius);
         true
     }

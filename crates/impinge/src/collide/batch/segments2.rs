@@ -31,8 +31,8 @@ impl<N: Real> Form<N, 2> for Segments2 {
         found: &mut EightContacts<N, 2>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
-        let ends1 = [inputs.end::<S, V>(simd, (0, 0)), inputs.end::<S, V>(simd, (0, 1))];
-        let local2 = [inputs.end::<S, V>(simd, (1, 0)), inputs.end::<S, V>(simd, (1, 1))];
+        let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
+        let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
         let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
         let apart = SegmentGap::of(simd, [&ends1, &ends2]);

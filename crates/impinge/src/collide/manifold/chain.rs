@@ -118,12 +118,12 @@ impl<N: Real> SegmentPair<'_, N> {
     fn first(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
         match self.pair.first {
             Kind::Segment(segment) => Some(Stretch::of_segment(segment, frame)),
-            other => Stretch::of((Which::First, other), None, frame),
+            other => Stretch::of(Which::First, other, None, frame),
         }
     }
 
     #[inline]
     fn second(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
-        Stretch::of((Which::Second, self.pair.second), Some(&self.pair.pose12), frame)
+        Stretch::of(Which::Second, self.pair.second, Some(&self.pair.pose12), frame)
     }
 }

@@ -29,8 +29,8 @@ pub(super) fn build<N: Real>(
     limit: usize,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
-    let first = Stretch::of((Which::First, pair.first), None, frame);
-    let second = Stretch::of((Which::Second, pair.second), Some(&pair.pose12), frame);
+    let first = Stretch::of(Which::First, pair.first, None, frame);
+    let second = Stretch::of(Which::Second, pair.second, Some(&pair.pose12), frame);
     let (Some(first), Some(second)) = (first, second) else { return false };
     out.normal = frame.normal();
     let mut candidates = Candidates::new();
@@ -75,26 +75,29 @@ pub(super) struct Stretch<N: Real> {
 impl<N: Real> Stretch<N> {
     #[inline(always)]
     pub(super) fn of(
-        (which, kind): (Which, Kind<'_, N, 2>),
+        which: Which,
+        kind: Kind<'_, N, 2>,
         pose: Option<&Pose<N, 2>>,
         frame: &Frame<N, 2>,
     ) -> Option<Self> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
         let shown = Shown::of(kind, &direction)?;
-        Some(Self::placed((which, &shown), (rounding(kind), pose), frame))
+        Some(Self::placed(which, &shown, rounding(kind), pose, frame))
     }
 
     /// That of a segment, the first solid.
     #[inline]
     pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &Frame<N, 2>) -> Self {
-        Self::placed((Which::First, &Shown::of_segment(segment)), (N::ZERO, None), frame)
+        Self::placed(Which::First, &Shown::of_segment(segment), N::ZERO, None, frame)
     }
 
     #[inline(always)]
     fn placed(
-        (which, shown): (Which, &Shown<N>),
-        (rounding, pose): (N, Option<&Pose<N, 2>>),
+        which: Which,
+        shown: &Shown<N>,
+        rounding: N,
+        pose: Option<&Pose<N, 2>>,
         frame: &Frame<N, 2>,
     ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {

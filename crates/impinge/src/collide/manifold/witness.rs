@@ -27,19 +27,21 @@ pub(crate) fn features3<N: Real>(
 /// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
-    known: (&Separation<N, 2>, N),
+    separation: &Separation<N, 2>,
+    tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, known, shown2, is_second)
+    feature(pair, separation, tolerance, shown2, is_second)
 }
 
 /// The feature of one of two solids of space, the first or the second: one of [`features3`].
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
-    known: (&Separation<N, 3>, N),
+    separation: &Separation<N, 3>,
+    tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, known, shown3, is_second)
+    feature(pair, separation, tolerance, shown3, is_second)
 }
 
 /// The smallest part of the supporting feature of one of two solids, the first or the second, that holds the
@@ -65,10 +67,10 @@ fn features<N: Real, const D: usize>(
         return [FeatureId::Face(0), touched];
     }
     let (noise, normal) = (rounding(pair), separation.normal);
-    let first = by_place(pair.first, (&separation.point1, &normal), noise);
+    let first = by_place(pair.first, &separation.point1, &normal, noise);
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
-        by_place(pair.second, (&point, &-pair.pose12.inverse_vector(&normal)), noise)
+        by_place(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
     };
     [
         first.unwrap_or_else(|| shown(pair, separation, false)),
@@ -81,7 +83,8 @@ fn features<N: Real, const D: usize>(
 /// other kinds, and where rounding does not let it tell.
 fn by_place<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
-    (point, outward): (&Point<N, D>, &Vector<N, D>),
+    point: &Point<N, D>,
+    outward: &Vector<N, D>,
     noise: N,
 ) -> Option<FeatureId> {
     match kind {
@@ -96,7 +99,7 @@ fn by_place<N: Real, const D: usize>(
         }
         Kind::Rounded(solid) => {
             let core = point - outward * solid.radius();
-            by_place(solid.inner().0, (&core, outward), noise)
+            by_place(solid.inner().0, &core, outward, noise)
         }
         _ => None,
     }
@@ -104,7 +107,8 @@ fn by_place<N: Real, const D: usize>(
 
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
-    (separation, noise): (&Separation<N, D>, N),
+    separation: &Separation<N, D>,
+    noise: N,
     shown: ShownFn<N, D>,
     is_second: bool,
 ) -> FeatureId {
@@ -164,7 +168,7 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     match pair.second {
         Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, noise),
         Kind::Cone(cone, _) => cone.part_at(&point, noise),
-        other => by_place(other, (&point, &-pair.pose12.inverse_vector(&found.normal)), noise),
+        other => by_place(other, &point, &-pair.pose12.inverse_vector(&found.normal), noise),
     }
 }
 
@@ -187,7 +191,7 @@ fn shown2<N: Real>(
 ) -> FeatureId {
     let frame = frame(pair, separation, tangents2(&separation.normal));
     let (which, kind, pose) = solid(pair, is_second);
-    let side = Stretch::of((which, kind), pose, &frame);
+    let side = Stretch::of(which, kind, pose, &frame);
     side.map_or(FeatureId::Face(0), |side| side.at_witness(&frame))
 }
 

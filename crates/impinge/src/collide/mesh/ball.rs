@@ -122,7 +122,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             |[near, hidden]| near & !hidden,
             |index| {
                 let one = self.seen(around, index)?;
-                self.add(&one, around, (&mut *part_contacts, &mut *arena));
+                self.add(&one, around, part_contacts, arena);
                 Some(())
             },
         )?;
@@ -176,7 +176,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         &self,
         seen: &SeenTriangle<N>,
         around: &PartCache<N, 3>,
-        (part_contacts, arena): (&mut PartContacts<N, 3>, &mut Arena<N, 3>),
+        part_contacts: &mut PartContacts<N, 3>,
+        arena: &mut Arena<N, 3>,
     ) {
         let kind = Kind::Triangle(&seen.triangle);
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };

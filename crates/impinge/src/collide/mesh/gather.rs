@@ -125,7 +125,7 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
     let mut found = PartPairs::new();
     match between.composites() {
         [Some(parts), Some(_)] if is_self => of_one(parts, reach, &mut found),
-        [Some(parts1), Some(parts2)] => of_two(between, (parts1, parts2), reach, &mut found),
+        [Some(parts1), Some(parts2)] => of_two(between, parts1, parts2, reach, &mut found),
         [None, Some(parts2)] => {
             let aabb = search_box(between, reach);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
@@ -141,7 +141,8 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
 /// that are near the other.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    (parts1, parts2): (&dyn CompositeShape<N, D>, &dyn CompositeShape<N, D>),
+    parts1: &dyn CompositeShape<N, D>,
+    parts2: &dyn CompositeShape<N, D>,
     reach: N,
     found: &mut PartPairs,
 ) {

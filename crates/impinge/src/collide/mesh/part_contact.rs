@@ -173,7 +173,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let feature = |is_second| match &gap.witness {
             Some(found) => {
                 let pair = self.placed.pair();
-                (N::tables().witness_feature)(&pair, (found, tolerance), is_second)
+                (N::tables().witness_feature)(&pair, found, tolerance, is_second)
             }
             None => {
                 is_owing.set(true);

@@ -68,7 +68,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
         for along in across(corners) {
             let (start, end) = (range(corners, &along), range(ends, &along));
-            let (lowest, highest) = (min(start.0, end.0) - spread, max(start.1, end.1) + spread);
+            let (lowest, highest) =
+                (min(start[0], end[0]) - spread, max(start[1], end[1]) + spread);
             self.slabs.push(Slab { along, lowest, highest });
         }
     }
@@ -82,7 +83,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let corners = corners.map(|corner| corner - self.origin);
         let size = corners.iter().fold(self.size, |size, at| max(max_component(at), size));
         let gap = self.slabs.iter().fold(-N::INFINITY, |gap, slab| {
-            let (lowest, highest) = range(&corners, &slab.along);
+            let [lowest, highest] = range(&corners, &slab.along);
             max(max(lowest - slab.highest, slab.lowest - highest), gap)
         });
         // Lengths that are subnormal numbers are not precise.
@@ -117,9 +118,9 @@ pub(crate) fn corners<N: Real, const D: usize>(
 pub(crate) fn range<N: Real, const D: usize>(
     corners: &[Vector<N, D>; 3],
     along: &Vector<N, D>,
-) -> (N, N) {
+) -> [N; 2] {
     let [a, b, c] = [0, 1, 2].map(|index| corners[index].dot(along));
-    (min(min(a, b), c), max(max(a, b), c))
+    [min(min(a, b), c), max(max(a, b), c)]
 }
 
 /// A vector less what is along another.

@@ -58,8 +58,8 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
             let own = &self.boxes[index];
             for axis in 0..D {
                 let [a, b, c] = points.each_ref().map(|at| at[axis]);
-                let other = (min(min(a, b), c), max(max(a, b), c));
-                meeting.cut((own.mins()[axis], own.maxs()[axis]), other, speeds[index][axis]);
+                let other = [min(min(a, b), c), max(max(a, b), c)];
+                meeting.cut([own.mins()[axis], own.maxs()[axis]], other, speeds[index][axis]);
             }
         }
         for along in across(&seen.map(|at| at - seen[0])) {
@@ -68,7 +68,7 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
                 self.map.core_support(direction).coords.dot(direction) + self.map.rounding()
             };
             meeting.cut(
-                (-reach(&-local), reach(&local)),
+                [-reach(&-local), reach(&local)],
                 range(&seen, &along),
                 self.velocity.dot(&along),
             );
@@ -80,7 +80,8 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
 impl<N: Real> MeetingSpan<N> {
     /// Takes into account how the two lie along an axis at time zero, from the lowest to the highest point, and how fast
     /// the first moves along it. NaN says nothing.
-    fn cut(&mut self, (low, high): (N, N), (bottom, top): (N, N), speed: N) {
+    fn cut(&mut self, own: [N; 2], other: [N; 2], speed: N) {
+        let ([low, high], [bottom, top]) = (own, other);
         let (down, up) = (bottom - high - self.slack, top - low + self.slack);
         if speed == N::ZERO {
             // Parted for good: a span that is empty.

@@ -116,7 +116,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         if kept.is_still && kept.slots == slots {
             self.put_all(deepest, raw);
         } else {
-            self.replace(slots, deepest, (&kept, naming), raw);
+            self.replace(slots, deepest, &kept, naming, raw);
         }
     }
 
@@ -134,7 +134,8 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         &self,
         slots: u32,
         deepest: usize,
-        (kept, naming): (&KeptSlots, &impl Naming),
+        kept: &KeptSlots,
+        naming: &impl Naming,
         raw: &mut RawManifold<N, D>,
     ) {
         raw.points.resize(slots.count_ones() as usize, RawPoint::default());

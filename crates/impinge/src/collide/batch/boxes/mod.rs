@@ -25,8 +25,8 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         let [Solid::Cuboid(box1), Solid::Cuboid(box2)] = pair.solids else { return false };
         self.put_poses(lane, pair);
         self.put_sine(lane, pair.request.sine);
-        self.put_end(lane, (0, 0), box1.half_extents());
-        self.put_end(lane, (1, 0), box2.half_extents());
+        self.put_end(lane, 0, 0, box1.half_extents());
+        self.put_end(lane, 1, 0, box2.half_extents());
         true
     }
 
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     #[inline(always)]
     fn boxes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Boxes<V, D> {
         let (pose12, half1, half2) =
-            (self.pose12::<S, V>(simd), self.end(simd, (0, 0)), self.end(simd, (1, 0)));
+            (self.pose12::<S, V>(simd), self.end(simd, 0, 0), self.end(simd, 1, 0));
         Boxes { rotation: pose12.rotation, translation: pose12.translation, half1, half2 }
     }
 }

@@ -128,7 +128,7 @@ impl<N: Real> EightSides<N> {
             simd,
             &mut self.slots,
             #[inline(always)]
-            |[place, _], height| sides.point1(simd, &boxes, is_second, (place, height)),
+            |[place, _], height| sides.point1(simd, &boxes, is_second, place, height),
         );
     }
 

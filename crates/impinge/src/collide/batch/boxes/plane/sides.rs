@@ -80,7 +80,7 @@ impl<V, M> BoxSides<V, M> {
         let half = either(axis.is_second, &boxes.half2, &boxes.half1);
         let level = on(is_y, &half);
         let level = is_upward.select(level, -level);
-        let upper = Upper::facing(simd, boxes, axis, (is_upward, level));
+        let upper = Upper::facing(simd, boxes, axis, is_upward, level);
         let half = is_y.select(half[0], half[1]);
         let (tolerance, length) =
             (tolerance(simd, boxes), upper.ends[1].place - upper.ends[0].place);
@@ -146,7 +146,8 @@ impl<V, M> BoxSides<V, M> {
         simd: S,
         boxes: &Boxes<V, 2>,
         is_second: M,
-        (place, height): (V, V),
+        place: V,
+        height: V,
     ) -> [V; 2]
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -173,7 +174,7 @@ impl<V, M> BoxSides<V, M> {
         M: SimdMask<S>,
     {
         let end = self.ends[end];
-        self.beside(simd, end, (end.place + self.half, self.half + self.half))
+        self.beside(simd, end, end.place + self.half, self.half + self.half)
     }
 
     /// An end of the lower side as the upper one sees it.
@@ -188,7 +189,7 @@ impl<V, M> BoxSides<V, M> {
         let share = (along / self.length).larger(zero).smaller(one);
         let (low, high) = (self.ends[0].height, self.ends[1].height);
         let height = low + (high - low) * share;
-        self.beside(simd, End { place, height }, (along, self.length))
+        self.beside(simd, End { place, height }, along, self.length)
     }
 
     /// An end that is so far along the other side, of a given length.
@@ -197,7 +198,8 @@ impl<V, M> BoxSides<V, M> {
         &self,
         simd: S,
         end: End<V>,
-        (along, length): (V, V),
+        along: V,
+        length: V,
     ) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -228,7 +230,8 @@ impl<V, M> Upper<V, M> {
         simd: S,
         boxes: &Boxes<V, 2>,
         axis: &BestSide<V, M>,
-        (is_upward, level): (M, V),
+        is_upward: M,
+        level: V,
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
