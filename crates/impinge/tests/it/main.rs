@@ -22,6 +22,7 @@ mod api_dim2;
 mod api_dim3;
 mod api_messages;
 mod api_values;
+mod architecture;
 mod bounding_volumes;
 mod broad_phase_random;
 mod broad_phase_semantics;
