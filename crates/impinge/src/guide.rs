@@ -1,7 +1,7 @@
 //! The user guide: what the library does and how to use it, chapter by chapter.
 //!
 //! [`introduction`] comes first, [`pipeline`] explains how a world works, [`coming_from`] is for users of
-//! ncollide, parry and rapier. Every block of code in it is compiled and run as a test.
+//! ncollide, parry, rapier and Box2D. Every block of code in it is compiled and run as a test.
 //!
 //! This module is part of the documentation alone: a program has no `impinge::guide`.
 

@@ -1,4 +1,7 @@
 //! The pass that makes the upper layers true again, and the end of a step.
+//!
+//! An object that was put elsewhere is listed as strayed: the join need not see which of its pairs ended, since
+//! the table of pairs knows.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};

@@ -1,4 +1,7 @@
 //! Two solids and how one lies to the other: what every pair algorithm is given.
+//!
+//! `pose12` comes from the difference of the positions, so two solids near each other lose nothing by being far
+//! from the origin. A ball has no rotation, wherever two solids are placed.
 
 use core::cmp::Ordering;
 
@@ -90,7 +93,7 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
         Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
     }
 
-    /// One of the two is made of parts: [`Between`](super::composite::Between) has the answers.
+    /// One of the two is made of parts: [`Between`](super::parts::Between) has the answers.
     #[inline]
     pub(crate) fn has_composite(&self) -> bool {
         let is_composite = |placed: &Placed<'a, N, D>| placed.shape.as_composite().is_some();

@@ -1,4 +1,7 @@
 //! Manifolds as the narrow phase keeps them: small, flat, in the frame of the first solid.
+//!
+//! The code of a point names its features and its slot in a batch, or is 0: whoever makes or renames a point
+//! otherwise sets it to 0.
 
 use smallvec::SmallVec;
 

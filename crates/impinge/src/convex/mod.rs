@@ -11,6 +11,11 @@
 //! All this happens in units in which the pair is about 1 large (`difference`), reached by an exact
 //! power of two; so every tolerance is a plain multiple of the machine epsilon, and scaling both
 //! solids by a power of two scales the answer bit by bit.
+//!
+//! [`gjk`] and `epa` find a normal from nothing; `refine` (support points), `climb` (apart from each other),
+//! `newton` and `polish` (curvature) and `side` (the ring of a round side) find a better normal near a good one;
+//! `witness` finds the points that belong to it. Every loop has a cap, and the answer at the cap is certified
+//! like any other.
 
 mod candidate;
 mod climb;

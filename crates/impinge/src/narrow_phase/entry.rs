@@ -1,4 +1,6 @@
 //! What the narrow phase keeps of a pair, by who computes it and what is asked.
+//!
+//! A public manifold is made when first read, in the memory of the one before, and forgotten by the next update.
 
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};

@@ -1,4 +1,6 @@
 //! What changed between two updates.
+//!
+//! Each `Started` has exactly one `Stopped`, whatever ends the contact.
 
 use core::fmt;
 

@@ -1,4 +1,7 @@
 //! Pairs that share one algorithm, side by side.
+//!
+//! Chunks have a constant size, never one that depends on the number of threads. Reading memory ahead of time
+//! changes no answer.
 
 use std::sync::OnceLock;
 

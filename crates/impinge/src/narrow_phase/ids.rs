@@ -1,4 +1,6 @@
 //! Where the names of contacts come from.
+//!
+//! A name is never given twice, also across an exchange of phases, which hands the counter on.
 
 /// Gives each pair a number that no other pair of the same world has or had.
 ///

@@ -1,4 +1,6 @@
 //! The pairs that begin and end in an update, all together.
+//!
+//! A pair that begins may get the index of one that ends, so the order in which pairs lie is no promise.
 
 use smallvec::SmallVec;
 

@@ -1,4 +1,6 @@
 //! What is kept of one built-in pair between updates, and how it is brought up to date.
+//!
+//! What a world computes of a pair has the bits of a generator that follows that pair alone.
 
 use super::group::PairKey;
 use crate::collide::far::{Apart, ReachBounds};

@@ -1,4 +1,6 @@
 //! Manifolds read where they are kept.
+//!
+//! A view has the contacts of the public manifold, to the bit.
 
 use core::fmt;
 

@@ -1,5 +1,7 @@
 //! The numbers of a ball or a box without the way to the shape: what lies behind a handle lies elsewhere
 //! in memory.
+//!
+//! A query of a world reads the copy; the answer is that of the solid itself.
 
 use crate::math::{Real, Vector};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, ShapeHandle};

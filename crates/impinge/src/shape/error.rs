@@ -1,4 +1,7 @@
 //! Why numbers make no shape.
+//!
+//! Sizes are finite and not negative, coordinates finite: constructors refuse everything else, so that no
+//! algorithm has to ask again.
 
 use core::fmt;
 

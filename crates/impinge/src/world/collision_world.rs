@@ -1,4 +1,6 @@
 //! The world: objects in, changes by handle, everything else at the next update.
+//!
+//! An operation that fails changes nothing.
 
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;

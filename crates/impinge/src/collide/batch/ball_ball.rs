@@ -1,4 +1,4 @@
-//! Two balls: `separation/ball_ball.rs` in lanes.
+//! Two balls: `collide/separation/balls/ball_ball.rs` in lanes.
 
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;

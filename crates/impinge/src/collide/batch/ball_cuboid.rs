@@ -1,4 +1,4 @@
-//! A ball and a box: `separation/ball_cuboid.rs` in lanes.
+//! A ball and a box: `collide/separation/balls/ball_cuboid.rs` in lanes.
 
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;

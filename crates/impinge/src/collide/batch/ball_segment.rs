@@ -1,4 +1,4 @@
-//! A ball and a segment or capsule: `separation/ball_segment.rs` in lanes.
+//! A ball and a segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
 
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;

@@ -1,4 +1,6 @@
 //! Copies of the solids that a few numbers describe.
+//!
+//! A copy is made when a pair begins or a shape is exchanged, and kept with the pair.
 
 use crate::math::Real;
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};

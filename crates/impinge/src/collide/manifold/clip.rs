@@ -9,6 +9,10 @@
 //!
 //! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of the other,
 //! which makes one solid the reference.
+//!
+//! Every pair in 3D with flat features is clipped here, lone or part of a composite, along its own normal or that
+//! of a face; only boxes, and segments and capsules, have lanes of their own. The angle by which solids may turn
+//! is a number in the admission test.
 
 use smallvec::SmallVec;
 

@@ -1,5 +1,5 @@
-//! The contacts of a ball and a surface of triangles in 3D: the generic path, which defines them, with what
-//! all triangles have in common worked out once, and nothing made of those that others hide.
+//! The contacts of a ball and a surface of triangles in 3D, with the bits of the generic path, which defines
+//! them. What all triangles share is computed once, and triangles that others hide are skipped.
 
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::over::over3;

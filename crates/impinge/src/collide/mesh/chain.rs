@@ -1,5 +1,5 @@
-//! The contacts of a convex solid and a chain of segments in 2D: the generic path, which defines them,
-//! with what all segments have in common worked out once, and nothing made of those beyond reach.
+//! The contacts of a convex solid and a chain of segments in 2D, with the bits of the generic path, which defines
+//! them. What all segments share is computed once, and segments beyond the prediction are skipped.
 
 use super::cull::relative_slack;
 use super::gather::{depth_in, search_box};

@@ -1,14 +1,21 @@
 //! Contacts of composites: those of the parts, as the whole has them.
 //!
-//! For every two parts within reach [`part_contact`] finds their separation and asks the surfaces, if there
-//! are any, whether the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam,
-//! only contacts with the face of the part count. [`hidden`] drops contacts from behind a face that is
-//! touched from its front, [`resolve`] those that another contact
-//! explains, and makes sure that solids that overlap have a contact. What is left is merged into flat
-//! patches.
+//! 1. [`gather`] finds the parts within the prediction: among those in [`part_cache`], where they serve still,
+//!    less those that a lower bound rejects ([`cull`], eight at a time [`cull_lanes`]).
+//! 2. [`part_contact`] computes the contact of every two parts and asks the surfaces, if there are any, whether
+//!    the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam, only contacts with
+//!    the face of the part count.
+//! 3. [`hidden`] drops contacts from behind a face that is touched from its front, [`resolve`] those that another
+//!    contact explains. Solids that overlap always keep a contact.
+//! 4. [`patch`] merges what is left into flat patches.
+//!
+//! [`chain`] does all of this for a chain in 2D, [`ball`] for a ball in 3D, with the same bits.
 //!
 //! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
 //! their neighbours.
+//!
+//! The contact of a query with a composite is the deepest of the manifolds that a world would have; with a
+//! half-space it is that of the nearest part.
 
 mod ball;
 #[cfg(test)]

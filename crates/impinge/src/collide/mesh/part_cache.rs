@@ -1,4 +1,6 @@
 //! The parts around a solid, kept from update to update.
+//!
+//! The parts are those of the shape that the last update saw: a new shape forgets them.
 
 use smallvec::SmallVec;
 

@@ -2,6 +2,8 @@
 //!
 //! The manifolds of the parts of a composite lie side by side. Those with one normal in one plane
 //! are pieces of one area of contact; of all their points those on its outline delimit it.
+//!
+//! A contact point keeps its id while its parts and features stay.
 
 use core::cmp::Ordering;
 use core::ops::Range;

@@ -1,9 +1,15 @@
 //! The one fact about a pair: how far apart or how deep, where and along what.
 //!
 //! Distance, closest points, proximity, contact and time of impact are all derived from the
-//! [`Separation`] that the functions here compute, so that they cannot contradict each other. One
-//! file per pair of kinds, named in the order of [`ShapeKind`]; a table per dimension says which
-//! function serves which pair.
+//! [`Separation`] that the functions here compute, so that they cannot contradict each other. A table per
+//! dimension says which function serves which pair; a pair with a closed form has a file of its own, named in
+//! the order of [`ShapeKind`]:
+//!
+//! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis tests;
+//! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D, `triangles` and `chain` test eight
+//!   parts of a surface at once;
+//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps;
+//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA.
 //!
 //! Every function is given a pair and a limit and answers in the frame of the first solid; `None`
 //! exactly if the signed distance is above the limit (or not a number). The limit never changes the

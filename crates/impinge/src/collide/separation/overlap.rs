@@ -1,4 +1,6 @@
 //! The distance of two solids, of which an overlap need not be measured.
+//!
+//! Where the solids are apart the distance is that of the separation, to the bit.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,

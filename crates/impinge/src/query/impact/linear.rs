@@ -1,4 +1,8 @@
 //! The first touch of two solids that do not turn: the kernel, on one pair.
+//!
+//! Balls that are apart meet where a quadratic equation says and their separation then proves it; a half-space is
+//! met after one step; all other pairs advance by what certainly separates them. The last step may be told by a
+//! point that touches, where that proves it and the normal has not turned on the way.
 
 use super::ImpactStatus;
 use crate::collide::Pair;

@@ -4,6 +4,9 @@
 //! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
 //! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
 //! a motion than where it is and how fast it can be ([`motion`], [`bounds`]).
+//!
+//! An impact is never late: a step goes as far as the solids certainly stay apart. Every loop has a cap, and the
+//! status says when it was reached.
 
 mod bounds;
 mod linear;

@@ -1,4 +1,6 @@
 //! A line and a convex solid known by its support points only.
+//!
+//! The steps have a cap; a time is never later than the hit.
 
 use super::ball::roots;
 use super::span::{Crossing, Span};

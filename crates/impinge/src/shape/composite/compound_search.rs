@@ -1,4 +1,6 @@
 //! The search of a compound: first among the boxes of its children, then within each composite.
+//!
+//! The bounds that nested searches report stay bounds in the frame of the compound.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::outward::slack_of;

@@ -1,4 +1,7 @@
 //! The best answers so far.
+//!
+//! Answers come by (key, handle), whatever the order in which objects are proposed. A box is passed over only
+//! where its key proves that it holds no better answer.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;

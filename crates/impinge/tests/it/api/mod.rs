@@ -1,6 +1,7 @@
 //! The public interface: chapters of the specification, messages, memory, the rules of the house.
 
 mod allocations;
+mod architecture;
 mod chapter2;
 mod chapter3;
 mod coming_from;

@@ -310,7 +310,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     );
     assert_eq!(found, swapped, "swapped {setting:?}");
     if signed(&pair[0], &pair[1]) <= N::ZERO {
-        // Whether such a start counts depends on the velocities; see `tests/impact.rs`.
+        // Whether such a start counts depends on the velocities; see `tests/it/impact.rs`.
         assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
         return found.is_some();
     }

@@ -3,6 +3,8 @@
 //! What depends on the pair is chosen by masks, and a corner of the common area has a slot of its own whether it is
 //! there or not ([`admit`]). Only the choice of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs
 //! whose nearest points are off the faces that face each other, fall back to the builder for one pair.
+//!
+//! The angle by which boxes may turn is a number in the test of each corner.
 
 mod admit;
 mod choose;

@@ -14,6 +14,8 @@
 //! An answer is accepted only if it is proved: its two points lie as far apart as a pair of supporting
 //! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no state: the
 //! answer depends on the pair alone.
+//!
+//! A triangle is a prism without height. Thin triangles, flat boxes and large hulls fall back as well.
 
 mod edges;
 mod face;

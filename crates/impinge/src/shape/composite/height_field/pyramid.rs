@@ -1,4 +1,6 @@
 //! The least and greatest heights of ever larger blocks of cells.
+//!
+//! The span of a block is exactly that of its cells, also after an edit.
 
 use crate::math::{Real, max, min};
 

@@ -1,5 +1,5 @@
 //! The separating axis test of eight pairs of boxes in 2D:
-//! `query/separation/rectangle_axes.rs` in lanes.
+//! `collide/separation/boxes/rectangle_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{by_axis, dot, either_mask, lit};

@@ -1,4 +1,4 @@
-//! The separating axis test of eight pairs of boxes: `query/separation/cuboid_axes.rs` in lanes.
+//! The separating axis test of eight pairs of boxes: `collide/separation/boxes/cuboid_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{by_axis, dot, lit};
