@@ -2,7 +2,7 @@
 //!
 //! A type here is the generic one of the same name at the crate's top with `D` = 3:
 //! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module tree is the
-//! one of the user guide.
+//! one of the user guide; [`prelude`] has at once what the usual program needs.
 //!
 //! ```
 //! use impinge::dim3::math::{Isometry, Vector};
@@ -30,6 +30,7 @@
 //! ```
 
 mod filter;
+pub mod prelude;
 
 /// Simple volumes that enclose shapes.
 pub mod bounding_volume {
@@ -240,7 +241,18 @@ pub mod partitioning {
     pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
-/// Numbers, vectors and poses.
+/// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
+///
+/// They are nalgebra's types, and [`na`](super::na) is the way to all else that it has.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Rotation, Vector};
+///
+/// let quarter = Rotation::new(Vector::z() * core::f64::consts::FRAC_PI_2);
+/// let pose = Isometry::from_parts(Vector::new(3.0, 0.0, 0.0).into(), quarter);
+/// let moved = pose * Point::new(1.0, 0.0, 0.0);
+/// assert!((moved - Point::new(3.0, 1.0, 0.0)).norm() < 1e-15);
+/// ```
 pub mod math {
     use crate::math::na;
     pub use crate::math::{Pose, Real, Unit};
@@ -263,4 +275,6 @@ pub mod math {
     pub type Matrix<N> = na::Matrix3<N>;
 }
 
+/// All of nalgebra, in the version that the library uses; its vectors and poses for this dimension have
+/// short names in [`math`].
 pub use crate::math::na;

@@ -25,19 +25,19 @@ use crate::partitioning::BoxTree;
 /// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
 ///
 /// ```
-/// use impinge::dim3::na::{Isometry3, Vector3};
+/// use impinge::dim3::math::{Isometry, Vector};
 /// use impinge::dim3::shape::{Ball, Compound, Cuboid, ShapeHandle};
 ///
 /// // A hammer, and a rack of two.
-/// let handle = ShapeHandle::new(Cuboid::new(Vector3::new(0.5_f32, 0.1, 0.1)));
+/// let handle = ShapeHandle::new(Cuboid::new(Vector::new(0.5_f32, 0.1, 0.1)));
 /// let head = ShapeHandle::new(Ball::new(0.25));
 /// let hammer = ShapeHandle::new(Compound::new(vec![
-///     (Isometry3::identity(), handle),
-///     (Isometry3::translation(0.5, 0.0, 0.0), head),
+///     (Isometry::identity(), handle),
+///     (Isometry::translation(0.5, 0.0, 0.0), head),
 /// ]));
 /// let rack = ShapeHandle::new(Compound::new(vec![
-///     (Isometry3::identity(), hammer.clone()),
-///     (Isometry3::translation(0.0, 0.0, 2.0), hammer),
+///     (Isometry::identity(), hammer.clone()),
+///     (Isometry::translation(0.0, 0.0, 2.0), hammer),
 /// ]));
 /// assert_eq!(rack.local_aabb().maxs().z, 2.25);
 /// // Part 3 is the second solid of the second child.

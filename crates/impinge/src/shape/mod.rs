@@ -158,7 +158,6 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// Finding out which type a shape has: for dispatchers that treat a type of their own.
 ///
 /// ```
-/// use impinge::dim2::na::Vector2;
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
 ///
 /// let handle = ShapeHandle::new(Ball::new(2.0_f32));

@@ -371,14 +371,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// two objects mean the same is up to the caller.
     ///
     /// ```
-    /// use impinge::dim2::na::Isometry2;
+    /// use impinge::dim2::math::Isometry;
     /// use impinge::dim2::shape::{Ball, ShapeHandle};
     /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
     /// let [mut server, mut client] = [0, 1].map(|_| CollisionWorld::new(0.02_f32));
     /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
     /// let add = |world: &mut CollisionWorld<f32, ()>| {
-    ///     world.add(Isometry2::identity(), ball.clone(), CollisionGroups::new(), query, ())
+    ///     world.add(Isometry::identity(), ball.clone(), CollisionGroups::new(), query, ())
     /// };
     /// let (on_server, on_client) = (add(&mut server), add(&mut client));
     /// assert!(client.collision_object(on_server).is_none(), "it names an object of the server");

@@ -73,6 +73,7 @@ mod partitioning_of_boxes;
 mod point_by_hand;
 mod point_shapes;
 mod procedural;
+mod public_face;
 mod query_corpus;
 mod query_laws;
 mod query_values;
