@@ -93,7 +93,9 @@ pub mod events {
 /// Objects, and who touches whom as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
-    pub use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+    pub use crate::narrow_phase::{
+        CollisionObjectHandle, ContactQuery, GeometricQueryType, ProximityQuery,
+    };
     pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
 
     /// A world in 3D.

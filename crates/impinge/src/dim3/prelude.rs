@@ -34,6 +34,6 @@ pub use super::shape::{
     Polyline, Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, Tetrahedron, TriMesh, Triangle,
 };
 pub use super::world::{
-    CollisionGroups, CollisionObject, CollisionObjectHandle, CollisionWorld, GeometricQueryType,
-    QueryFilter,
+    CollisionGroups, CollisionObject, CollisionObjectHandle, CollisionWorld, ContactQuery,
+    GeometricQueryType, ProximityQuery, QueryFilter,
 };

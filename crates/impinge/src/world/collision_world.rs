@@ -104,7 +104,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Adds an object. Queries see it at once, pairs at the next update.
+    /// Adds an object. Queries see it at once, pairs at the next update. The query type is a
+    /// [`GeometricQueryType`], or a [`ContactQuery`](crate::narrow_phase::ContactQuery) or
+    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery), which name its numbers.
     ///
     /// # Panics
     /// If a number of the position is not finite, a number of the query type is negative or not
@@ -115,7 +117,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
         shape: ShapeHandle<N, D>,
         groups: CollisionGroups,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> CollisionObjectHandle {
         or_panic(self.try_add(position, shape, groups, query_type, data))
@@ -131,11 +133,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
         shape: ShapeHandle<N, D>,
         groups: CollisionGroups,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> Result<CollisionObjectHandle, WorldError> {
         finite_pose(N::pose(&position), None)?;
-        let query_type = usable_query(query_type)?;
+        let query_type = usable_query(query_type.into())?;
         let handle = self.objects.next_handle()?;
         let broad_phase = &mut self.broad_phase;
         let object = Description { position, shape, groups, query_type, data };
@@ -300,7 +302,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn set_query_type(
         &mut self,
         handle: CollisionObjectHandle,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
     ) {
         or_panic(self.try_set_query_type(handle, query_type));
     }
@@ -313,10 +315,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn try_set_query_type(
         &mut self,
         handle: CollisionObjectHandle,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_query)(body, changes, usable_query(query_type)?);
+        (N::tables().world.set_query)(body, changes, usable_query(query_type.into())?);
         Ok(())
     }
 
