@@ -169,7 +169,9 @@ pub mod shape {
     pub type Cuboid<N> = crate::shape::Cuboid<N, 2>;
     /// The points near a segment.
     pub type Capsule<N> = crate::shape::Capsule<N, 2>;
-    /// A half-plane.
+    /// A half-plane: all that is behind a line.
+    pub type HalfSpace<N> = crate::shape::Plane<N, 2>;
+    /// The same as [`HalfSpace`], which is the name to use.
     pub type Plane<N> = crate::shape::Plane<N, 2>;
     /// A straight line between two points.
     pub type Segment<N> = crate::shape::Segment<N, 2>;

@@ -30,8 +30,8 @@ pub use super::query::{
     contact, distance, impact, proximity, time_of_impact,
 };
 pub use super::shape::{
-    Ball, Capsule, Compound, ConvexPolygon, Cuboid, Ellipse, HeightField, Plane, Polyline, Rounded,
-    Segment, Shape, ShapeHandle, TaperedCapsule, TriMesh, Triangle,
+    Ball, Capsule, Compound, ConvexPolygon, Cuboid, Ellipse, HalfSpace, HeightField, Plane,
+    Polyline, Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, TriMesh, Triangle,
 };
 pub use super::world::{
     CollisionGroups, CollisionObject, CollisionObjectHandle, CollisionWorld, ContactQuery,

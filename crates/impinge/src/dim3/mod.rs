@@ -169,7 +169,9 @@ pub mod shape {
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
     /// The points near a segment.
     pub type Capsule<N> = crate::shape::Capsule<N, 3>;
-    /// A half-space.
+    /// A half-space: all that is behind a plane.
+    pub type HalfSpace<N> = crate::shape::Plane<N, 3>;
+    /// The same as [`HalfSpace`], which is the name to use.
     pub type Plane<N> = crate::shape::Plane<N, 3>;
     /// A straight line between two points.
     pub type Segment<N> = crate::shape::Segment<N, 3>;

@@ -30,8 +30,9 @@ pub use super::query::{
     contact, distance, impact, proximity, time_of_impact,
 };
 pub use super::shape::{
-    Ball, Capsule, Compound, Cone, ConvexHull, Cuboid, Cylinder, Ellipsoid, HeightField, Plane,
-    Polyline, Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, Tetrahedron, TriMesh, Triangle,
+    Ball, Capsule, Compound, Cone, ConvexHull, Cuboid, Cylinder, Ellipsoid, HalfSpace, HeightField,
+    Plane, Polyline, Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, Tetrahedron, TriMesh,
+    Triangle,
 };
 pub use super::world::{
     CollisionGroups, CollisionObject, CollisionObjectHandle, CollisionWorld, ContactQuery,

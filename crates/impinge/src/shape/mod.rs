@@ -78,7 +78,7 @@ pub use handle::ShapeHandle;
 pub(crate) use height_field::FieldTable;
 pub use height_field::{Diagonal, Diagonals, HeightField};
 pub use mesh_error::MeshError;
-pub use plane::Plane;
+pub use plane::{HalfSpace, Plane};
 pub use polyline::Polyline;
 pub(crate) use polytope::Planes;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};

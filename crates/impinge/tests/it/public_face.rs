@@ -43,7 +43,8 @@ macro_rules! programs {
 
             fn questions<N: Real>() {
                 let (ball, floor) =
-                    (Ball::new(N::ONE), Plane::new(Unit::new_unchecked(Vector::y())));
+                    (Ball::new(N::ONE), HalfSpace::new(Unit::new_unchecked(Vector::y())));
+                let _: &Plane<N> = &floor;
                 let (here, up) = (at::<N>(0.0), at::<N>(3.0));
                 assert_eq!(distance(&here, &floor, &up, &ball), N::TWO, "above the ground");
                 assert_eq!(
