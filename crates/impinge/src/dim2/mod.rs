@@ -107,7 +107,7 @@ pub mod world {
     /// Which objects a query is about.
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 2, T>;
     /// An object near what was asked about.
-    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 2, T>;
+    pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 2, T>;
 }
 
 /// Questions about one solid or two.
@@ -158,7 +158,7 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, FeatureId, MeshError, Neighbor,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, EdgeNeighbor, FeatureId, MeshError,
         PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Sidedness, SupportMap,
         Surface,
     };

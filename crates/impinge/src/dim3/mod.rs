@@ -107,7 +107,7 @@ pub mod world {
     /// Which objects a query is about.
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
     /// An object near what was asked about.
-    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 3, T>;
+    pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 3, T>;
 }
 
 /// Questions about one solid or two.
@@ -159,7 +159,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
-        FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
+        EdgeNeighbor, FeatureId, MeshError, PartPath, PartSearch, ScaleError, Shape, ShapeError,
         ShapeKind, Sidedness, SupportMap, Surface, Tetrahedron,
     };
 

@@ -96,7 +96,7 @@ pub use tapered_capsule::TaperedCapsule;
 pub use tetrahedron::Tetrahedron;
 pub(crate) use tilt::FACING_SINE_SQUARED;
 pub(crate) use tri_mesh::MeshTable;
-pub use tri_mesh::{Neighbor, TriMesh};
+pub use tri_mesh::{EdgeNeighbor, TriMesh};
 pub use triangle::Triangle;
 
 use core::any::Any;

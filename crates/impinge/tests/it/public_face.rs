@@ -69,6 +69,90 @@ macro_rules! programs {
                 assert_eq!(around.maxs().y, N::lit(4.0), "its box");
             }
 
+            /// The numbers of a query type by their names, and the same events whichever way they are given.
+            fn query_types<N: Real>() {
+                let contacts = ContactQuery::new(N::HALF).with_angular_prediction(N::ONE);
+                let by_place = GeometricQueryType::Contacts(N::HALF, N::ONE);
+                assert_eq!(GeometricQueryType::from(contacts), by_place, "the same numbers");
+                assert_eq!(by_place.as_contacts(), Some(contacts), "and back");
+                assert_eq!(by_place.as_proximity(), None, "something else");
+                let sensor = ProximityQuery { margin: N::TWO };
+                assert_eq!(
+                    GeometricQueryType::Proximity(N::TWO).as_proximity(),
+                    Some(sensor),
+                    "too"
+                );
+                let none = GeometricQueryType::Contacts(N::ZERO, N::ZERO);
+                assert_eq!(none, ContactQuery::default().into(), "no prediction");
+
+                let mut world = CollisionWorld::new(N::lit(0.02));
+                let (ball, groups) = (ShapeHandle::new(Ball::new(N::ONE)), CollisionGroups::new());
+                let low = world.add(at(0.0), ball.clone(), groups, ContactQuery::default(), ());
+                let high = world.add(at(2.5), ball, groups, none, ());
+                world.update();
+                assert!(world.contact_events().is_empty(), "half a unit apart");
+                world.set_query_type(high, ContactQuery::new(N::HALF));
+                world.update();
+                assert_eq!(world.contact_events(), [ContactEvent::Started(low, high)], "predicted");
+                world.set_query_type(low, ProximityQuery { margin: N::HALF });
+                world.update();
+                let event: &ProximityEvent = &world.proximity_events()[0];
+                assert_eq!(event.new_status, Proximity::WithinMargin, "near");
+                assert!(
+                    world.try_set_query_type(low, ProximityQuery::new(-N::ONE)).is_err(),
+                    "bad"
+                );
+            }
+
+            /// Each name of a question answers as the one that it is the same as.
+            fn aliases<N: Real>() {
+                let mut world = CollisionWorld::new(N::lit(0.02));
+                let ball = ShapeHandle::new(Ball::new(N::ONE));
+                for height in [4.0, 0.0, 2.0, 9.0] {
+                    let query = ContactQuery::default();
+                    world.add(at(height), ball.clone(), CollisionGroups::new(), query, ());
+                }
+                let (groups, all) = (CollisionGroups::new(), QueryFilter::new());
+                let ray = Ray::new(Point::from(Vector::y() * N::lit(-3.0)), Vector::y());
+                let first = world.first_ray_hit(&ray, N::MAX, true, &all);
+                let other = world.first_interference_with_ray(&ray, &groups);
+                let hit = |(object, hit): (&CollisionObject<N, ()>, _)| (object.handle(), hit);
+                assert_eq!(first.map(hit), other.map(hit), "the first hit");
+                let mut hits: Vec<_> =
+                    world.ray_hits(&ray, N::MAX, true, &all).into_iter().map(hit).collect();
+                hits.sort_by_key(|(handle, _)| *handle);
+                let others: Vec<_> = world.interferences_with_ray(&ray, &groups).map(hit).collect();
+                assert_eq!((hits.len(), hits), (4, others), "all hits");
+                let between = Point::from(Vector::y());
+                let holding = world.objects_containing(&between, &all).map(CollisionObject::handle);
+                let others = world.interferences_with_point(&between, &groups);
+                assert!(holding.eq(others.map(CollisionObject::handle)), "around a point");
+                let volume = Aabb::new(Point::from(-Vector::repeat(N::ONE)), between);
+                let within = world.objects_in_aabb(&volume, &all).map(CollisionObject::handle);
+                let others = world.interferences_with_aabb(&volume, &groups);
+                assert!(within.eq(others.map(CollisionObject::handle)), "in a box");
+                let probe = Ball::new(N::HALF);
+                let nearest = world.nearest_objects(&at(6.0), &probe, 1, N::MAX, &all);
+                let closest = world.closest_object(&at(6.0), &probe, N::MAX, &all).expect("one");
+                assert_eq!(nearest[0].object.handle(), closest.object.handle(), "the nearest");
+                let (ball, here) = (Ball::new(N::ONE), at::<N>(0.0));
+                let found = ball.first_hit_with_ray(&here, &ray, N::MAX, true);
+                assert_eq!(found, ball.toi_and_normal_with_ray(&here, &ray, true), "one shape");
+                assert_eq!(found.map(|hit| hit.toi), ball.toi_with_ray(&here, &ray, true), "time");
+            }
+
+            #[test]
+            fn query_types_by_name() {
+                query_types::<f32>();
+                query_types::<f64>();
+            }
+
+            #[test]
+            fn names_of_one_question_agree() {
+                aliases::<f32>();
+                aliases::<f64>();
+            }
+
             #[test]
             fn a_program_with_the_prelude() {
                 program::<f32>();
