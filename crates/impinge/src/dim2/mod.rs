@@ -159,8 +159,7 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, EdgeNeighbor, FeatureId, MeshError,
-        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, Sidedness, SupportMap,
-        Surface,
+        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
     };
 
     /// Where a curved support point lies, and how it moves.

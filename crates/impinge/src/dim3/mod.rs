@@ -160,7 +160,7 @@ pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         EdgeNeighbor, FeatureId, MeshError, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, Sidedness, SupportMap, Surface, Tetrahedron,
+        ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// Where a curved support point lies, and how it moves.
