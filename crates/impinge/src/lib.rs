@@ -6,21 +6,19 @@
 //! question about two shapes on their own.
 //!
 //! ```
-//! use impinge::dim3::na::{Isometry3, Vector3};
-//! use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle};
-//! use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+//! use impinge::dim3::prelude::*;
 //!
 //! let mut world = CollisionWorld::new(0.02_f32);
 //! let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
-//! let floor = ShapeHandle::new(Cuboid::new(Vector3::new(10.0, 1.0, 10.0)));
+//! let floor = ShapeHandle::new(Cuboid::new(Vector::new(10.0, 1.0, 10.0)));
 //! let ball = ShapeHandle::new(Ball::new(0.5));
-//! world.add(Isometry3::identity(), floor, everybody, contacts, "floor");
-//! world.add(Isometry3::translation(0.0, 1.25, 0.0), ball, everybody, contacts, "ball");
+//! world.add(Isometry::identity(), floor, everybody, contacts, "floor");
+//! world.add(Isometry::translation(0.0, 1.25, 0.0), ball, everybody, contacts, "ball");
 //! world.update();
 //! for (object1, object2, manifold) in world.contact_manifolds() {
 //!     let contact = manifold.deepest_contact().expect("not empty").contact;
 //!     assert_eq!((*object1.data(), *object2.data()), ("floor", "ball"));
-//!     assert_eq!((contact.depth, *contact.normal), (0.25, Vector3::y()));
+//!     assert_eq!((contact.depth, *contact.normal), (0.25, Vector::y()));
 //! }
 //! ```
 //!
@@ -28,13 +26,14 @@
 //!
 //! * The guide explains it all, chapter by chapter, with programs; users of ncollide, parry and rapier
 //!   find there what is called what. It is the module [`guide`] of this documentation.
-//! * [`dim2`] and [`dim3`] hold the names to type: everything with the dimension filled in. The
-//!   modules beside them hold the same things for every dimension `D`; write code against those only
-//!   where it shall serve both.
+//! * [`dim2`] and [`dim3`] hold the names to type: everything with the dimension filled in, and a
+//!   `prelude` with what the usual program needs. The modules beside them hold the same things for every
+//!   dimension `D`; write code against those only where it shall serve both.
 //! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
 //! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions are
-//!   nalgebra's isometries, re-exported as `na`.
+//!   isometries; `dim2::math` and `dim3::math` have them, vectors and points under one name in both, and
+//!   `na` is all of nalgebra, whose types they are.
 //!
 //! # What holds everywhere
 //!

@@ -2,7 +2,7 @@
 //!
 //! A type here is the generic one of the same name at the crate's top with `D` = 3:
 //! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module tree is the
-//! one of the user guide.
+//! one of the user guide; [`prelude`] has at once what the usual program needs.
 //!
 //! ```
 //! use impinge::dim3::math::{Isometry, Vector};
@@ -30,6 +30,7 @@
 //! ```
 
 mod filter;
+pub mod prelude;
 
 /// Simple volumes that enclose shapes.
 pub mod bounding_volume {
@@ -92,7 +93,9 @@ pub mod events {
 /// Objects, and who touches whom as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
-    pub use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+    pub use crate::narrow_phase::{
+        CollisionObjectHandle, ContactQuery, GeometricQueryType, ProximityQuery,
+    };
     pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
 
     /// A world in 3D.
@@ -104,7 +107,7 @@ pub mod world {
     /// Which objects a query is about.
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
     /// An object near what was asked about.
-    pub type Neighbor<'a, N, T> = crate::world::Neighbor<'a, N, 3, T>;
+    pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 3, T>;
 }
 
 /// Questions about one solid or two.
@@ -156,8 +159,8 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
-        FeatureId, MeshError, Neighbor, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, Sidedness, SupportMap, Surface, Tetrahedron,
+        EdgeNeighbor, FeatureId, MeshError, PartPath, PartSearch, ScaleError, Shape, ShapeError,
+        ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// Where a curved support point lies, and how it moves.
@@ -166,7 +169,9 @@ pub mod shape {
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
     /// The points near a segment.
     pub type Capsule<N> = crate::shape::Capsule<N, 3>;
-    /// A half-space.
+    /// A half-space: all that is behind a plane.
+    pub type HalfSpace<N> = crate::shape::Plane<N, 3>;
+    /// The same as [`HalfSpace`], which is the name to use.
     pub type Plane<N> = crate::shape::Plane<N, 3>;
     /// A straight line between two points.
     pub type Segment<N> = crate::shape::Segment<N, 3>;
@@ -240,7 +245,18 @@ pub mod partitioning {
     pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
-/// Numbers, vectors and poses.
+/// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
+///
+/// They are nalgebra's types, and [`na`](super::na) is the way to all else that it has.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Point, Rotation, Vector};
+///
+/// let quarter = Rotation::new(Vector::z() * core::f64::consts::FRAC_PI_2);
+/// let pose = Isometry::from_parts(Vector::new(3.0, 0.0, 0.0).into(), quarter);
+/// let moved = pose * Point::new(1.0, 0.0, 0.0);
+/// assert!((moved - Point::new(3.0, 1.0, 0.0)).norm() < 1e-15);
+/// ```
 pub mod math {
     use crate::math::na;
     pub use crate::math::{Pose, Real, Unit};
@@ -263,4 +279,6 @@ pub mod math {
     pub type Matrix<N> = na::Matrix3<N>;
 }
 
+/// All of nalgebra, in the version that the library uses; its vectors and poses for this dimension have
+/// short names in [`math`].
 pub use crate::math::na;

@@ -35,7 +35,7 @@ pub use handle::{CollisionObjectHandle, Interaction};
 pub use ids::IdAllocator;
 pub(crate) use objects::ObjectRow;
 pub use objects::ObjectTable;
-pub use query_type::GeometricQueryType;
+pub use query_type::{ContactQuery, GeometricQueryType, ProximityQuery};
 pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};

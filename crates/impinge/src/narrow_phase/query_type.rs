@@ -7,10 +7,13 @@ use crate::math::Real;
 /// If either object of a pair has the type `Proximity`, only proximity is computed for the pair.
 ///
 /// ```
-/// use impinge::dim2::world::GeometricQueryType;
+/// use impinge::dim2::world::{ContactQuery, GeometricQueryType, ProximityQuery};
 ///
 /// let (body, sensor) = (GeometricQueryType::Contacts(0.1_f32, 0.0), GeometricQueryType::Proximity(0.5));
 /// assert_eq!((body.query_limit(), sensor.query_limit()), (0.1, 0.5));
+/// // The same with named fields, which worlds take as well:
+/// assert_eq!(body, ContactQuery::new(0.1).into());
+/// assert_eq!(sensor, ProximityQuery { margin: 0.5 }.into());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -28,6 +31,87 @@ pub enum GeometricQueryType<N: Real> {
     Proximity(N),
 }
 
+/// [`GeometricQueryType::Contacts`] with named fields: contact points are wanted.
+///
+/// The default has no prediction: contact points exist where the solids touch or overlap.
+///
+/// ```
+/// use impinge::dim3::prelude::*;
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+/// let at = |x| Isometry::translation(x, 0.0, 0.0);
+/// world.add(at(0.0), ball.clone(), groups, ContactQuery::default(), ());
+/// world.add(at(2.25), ball, groups, ContactQuery::new(0.25).with_angular_prediction(0.09), ());
+/// world.update();
+/// assert_eq!(world.contact_events().len(), 1, "as near as both predictions together");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ContactQuery<N: Real> {
+    /// The object's share of the distance up to which contact points exist.
+    pub prediction: N,
+    /// Its share of the angle, in radians, by which the solids may turn until they are that near.
+    pub angular_prediction: N,
+}
+
+/// [`GeometricQueryType::Proximity`] with a named field: whether solids are near, without contact points.
+///
+/// The default has no margin: a pair is [`WithinMargin`](crate::query::Proximity::WithinMargin) by the
+/// other object's margin alone.
+///
+/// ```
+/// use impinge::dim2::prelude::*;
+///
+/// let mut world = CollisionWorld::<f64, &str>::new(0.02);
+/// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+/// world.add(Isometry::identity(), ball.clone(), groups, ProximityQuery::default(), "sensor");
+/// let car = world.add(Isometry::translation(1.5, 0.0), ball, groups, ContactQuery::default(), "car");
+/// world.update();
+/// assert_eq!(world.proximity_events()[0].new_status, Proximity::Intersecting);
+/// world.set_query_type(car, ProximityQuery { margin: 0.5 });
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ProximityQuery<N: Real> {
+    /// The object's share of the distance up to which others are within the margin.
+    pub margin: N,
+}
+
+impl<N: Real> ContactQuery<N> {
+    /// Contact points up to a distance, whatever the angle.
+    #[must_use]
+    pub const fn new(prediction: N) -> Self {
+        Self { prediction, angular_prediction: N::ZERO }
+    }
+
+    /// The same with the points that turning by an angle, in radians, would bring that near.
+    #[must_use]
+    pub const fn with_angular_prediction(self, angular_prediction: N) -> Self {
+        Self { angular_prediction, ..self }
+    }
+}
+
+impl<N: Real> ProximityQuery<N> {
+    /// Proximity up to a distance.
+    #[must_use]
+    pub const fn new(margin: N) -> Self {
+        Self { margin }
+    }
+}
+
+impl<N: Real> From<ContactQuery<N>> for GeometricQueryType<N> {
+    fn from(query: ContactQuery<N>) -> Self {
+        Self::Contacts(query.prediction, query.angular_prediction)
+    }
+}
+
+impl<N: Real> From<ProximityQuery<N>> for GeometricQueryType<N> {
+    fn from(query: ProximityQuery<N>) -> Self {
+        Self::Proximity(query.margin)
+    }
+}
+
 /// What is asked of a pair: the sums over its two objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairQuery<N: Real> {
@@ -43,6 +127,26 @@ impl<N: Real> GeometricQueryType<N> {
         match *self {
             Self::Contacts(linear, _) => linear,
             Self::Proximity(margin) => margin,
+        }
+    }
+
+    /// The predictions by their names; `None` for an object that asks for proximity.
+    #[must_use]
+    pub fn as_contacts(&self) -> Option<ContactQuery<N>> {
+        match *self {
+            Self::Contacts(prediction, angular_prediction) => {
+                Some(ContactQuery { prediction, angular_prediction })
+            }
+            Self::Proximity(_) => None,
+        }
+    }
+
+    /// The margin by its name; `None` for an object that asks for contacts.
+    #[must_use]
+    pub fn as_proximity(&self) -> Option<ProximityQuery<N>> {
+        match *self {
+            Self::Proximity(margin) => Some(ProximityQuery { margin }),
+            Self::Contacts(..) => None,
         }
     }
 

@@ -34,13 +34,13 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     /// The shape scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
     ///
     /// ```
-    /// use impinge::dim2::na::{Vector2, Point2};
+    /// use impinge::dim2::math::{Vector, Point};
     /// use impinge::dim2::shape::{Capsule, ScaleError, Segment, ShapeHandle};
     ///
-    /// let (mirror, wide) = (Vector2::new(-1.0_f32, 1.0), Vector2::new(2.0, 1.0));
-    /// let segment = ShapeHandle::new(Segment::new(Point2::origin(), Point2::new(3.0, 4.0)));
+    /// let (mirror, wide) = (Vector::new(-1.0_f32, 1.0), Vector::new(2.0, 1.0));
+    /// let segment = ShapeHandle::new(Segment::new(Point::origin(), Point::new(3.0, 4.0)));
     /// let mirrored = segment.scaled(&mirror).expect("a segment takes every scale");
-    /// assert_eq!(mirrored.local_aabb().mins(), &Point2::new(-3.0, 0.0));
+    /// assert_eq!(mirrored.local_aabb().mins(), &Point::new(-3.0, 0.0));
     ///
     /// let capsule = ShapeHandle::new(Capsule::new(1.0_f32, 0.5));
     /// assert!(capsule.scaled(&mirror).is_ok());

@@ -33,7 +33,7 @@ pub use composite::height_field::{Diagonal, Diagonals, HeightField};
 pub use composite::mesh_error::MeshError;
 pub use composite::polyline::Polyline;
 pub(crate) use composite::tri_mesh::MeshTable;
-pub use composite::tri_mesh::{Neighbor, TriMesh};
+pub use composite::tri_mesh::{EdgeNeighbor, TriMesh};
 pub use composite::{CompositeShape, Part, PartPath, PartSearch, PartSolid, Surface};
 pub use error::ShapeError;
 pub(crate) use face_ring::FaceRing;
@@ -54,7 +54,7 @@ pub use solids::cuboid::Cuboid;
 pub(crate) use solids::cuboid::FacingPart;
 pub use solids::cylinder::Cylinder;
 pub use solids::ellipsoid::Ellipsoid;
-pub use solids::plane::Plane;
+pub use solids::plane::{HalfSpace, Plane};
 pub(crate) use solids::round::RoundPart;
 pub use solids::rounded::Rounded;
 pub(crate) use solids::rounded::RoundedSolid;
@@ -64,8 +64,9 @@ pub use solids::tapered_capsule::TaperedCapsule;
 pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
-pub use surface::sidedness::Sidedness;
-pub(crate) use surface::sidedness::{KnownSegment, KnownSegments};
+#[doc(hidden)]
+pub use surface::own_surface::SurfaceAccess;
+pub(crate) use surface::sidedness::{KnownSegment, KnownSegments, Sidedness};
 pub(crate) use tilt::FACING_SINE_SQUARED;
 
 use core::any::Any;
@@ -127,7 +128,6 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// Finding out which type a shape has: for dispatchers that treat a type of their own.
 ///
 /// ```
-/// use impinge::dim2::na::Vector2;
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
 ///
 /// let handle = ShapeHandle::new(Ball::new(2.0_f32));

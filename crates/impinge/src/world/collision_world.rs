@@ -106,7 +106,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Adds an object. Queries see it at once, pairs at the next update.
+    /// Adds an object. Queries see it at once, pairs at the next update. The query type is a
+    /// [`GeometricQueryType`], or a [`ContactQuery`](crate::narrow_phase::ContactQuery) or
+    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery), which name its numbers.
     ///
     /// # Panics
     /// If a number of the position is not finite, a number of the query type is negative or not
@@ -117,7 +119,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
         shape: ShapeHandle<N, D>,
         groups: CollisionGroups,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> CollisionObjectHandle {
         or_panic(self.try_add(position, shape, groups, query_type, data))
@@ -133,11 +135,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
         shape: ShapeHandle<N, D>,
         groups: CollisionGroups,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> Result<CollisionObjectHandle, WorldError> {
         finite_pose(N::pose(&position), None)?;
-        let query_type = usable_query(query_type)?;
+        let query_type = usable_query(query_type.into())?;
         let handle = self.objects.next_handle()?;
         let broad_phase = &mut self.broad_phase;
         let object = Description { position, shape, groups, query_type, data };
@@ -302,7 +304,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn set_query_type(
         &mut self,
         handle: CollisionObjectHandle,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
     ) {
         or_panic(self.try_set_query_type(handle, query_type));
     }
@@ -315,10 +317,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn try_set_query_type(
         &mut self,
         handle: CollisionObjectHandle,
-        query_type: GeometricQueryType<N>,
+        query_type: impl Into<GeometricQueryType<N>>,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_query)(body, changes, usable_query(query_type)?);
+        (N::tables().world.set_query)(body, changes, usable_query(query_type.into())?);
         Ok(())
     }
 
@@ -373,14 +375,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// two objects mean the same is up to the caller.
     ///
     /// ```
-    /// use impinge::dim2::na::Isometry2;
+    /// use impinge::dim2::math::Isometry;
     /// use impinge::dim2::shape::{Ball, ShapeHandle};
     /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
     /// let [mut server, mut client] = [0, 1].map(|_| CollisionWorld::new(0.02_f32));
     /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
     /// let add = |world: &mut CollisionWorld<f32, ()>| {
-    ///     world.add(Isometry2::identity(), ball.clone(), CollisionGroups::new(), query, ())
+    ///     world.add(Isometry::identity(), ball.clone(), CollisionGroups::new(), query, ())
     /// };
     /// let (on_server, on_client) = (add(&mut server), add(&mut client));
     /// assert!(client.collision_object(on_server).is_none(), "it names an object of the server");

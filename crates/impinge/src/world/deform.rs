@@ -18,21 +18,21 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// If the handle is stale or the shape of another type; [`Self::try_deform`] returns these.
     ///
     /// ```
-    /// use impinge::dim2::na::{Isometry2, Point2, Vector2};
+    /// use impinge::dim2::math::{Isometry, Point, Vector};
     /// use impinge::dim2::shape::{Ball, Polyline, ShapeHandle};
     /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
     /// let mut world = CollisionWorld::new(0.02_f32);
     /// let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
-    /// let rope = [-1.0, 0.0, 1.0].map(|x| Point2::new(x, 0.0)).to_vec();
+    /// let rope = [-1.0, 0.0, 1.0].map(|x| Point::new(x, 0.0)).to_vec();
     /// let rope = ShapeHandle::new(Polyline::<f32>::open(rope));
-    /// let rope = world.add(Isometry2::identity(), rope, everybody, contacts, ());
+    /// let rope = world.add(Isometry::identity(), rope, everybody, contacts, ());
     /// let ball = ShapeHandle::new(Ball::new(0.5));
-    /// world.add(Isometry2::translation(0.0, 1.0), ball, everybody, contacts, ());
+    /// world.add(Isometry::translation(0.0, 1.0), ball, everybody, contacts, ());
     /// world.update();
     /// assert!(world.contact_events().is_empty());
     ///
-    /// let raised = [Point2::new(-1.0, 0.0), Point2::new(0.0, 0.75), Point2::new(1.0, 0.0)];
+    /// let raised = [Point::new(-1.0, 0.0), Point::new(0.0, 0.75), Point::new(1.0, 0.0)];
     /// world.deform(rope, |rope: &mut Polyline<f32>| rope.set_vertices(&raised));
     /// world.update();
     /// assert_eq!(world.contact_events().len(), 1);

@@ -23,7 +23,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// ```
     /// use impinge::dim2::events::ContactEvent;
-    /// use impinge::dim2::na::Isometry2;
+    /// use impinge::dim2::math::Isometry;
     /// use impinge::dim2::shape::{Ball, ShapeHandle};
     /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
@@ -31,7 +31,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
     /// let contacts = GeometricQueryType::Contacts(0.0, 0.0);
     /// let [a, b] = [0.0, 1.0].map(|x| {
-    ///     world.add(Isometry2::translation(x, 0.0), ball.clone(), groups, contacts, ())
+    ///     world.add(Isometry::translation(x, 0.0), ball.clone(), groups, contacts, ())
     /// });
     /// world.update();
     /// world.clear();
@@ -48,7 +48,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// each object, in order of the handles; a panic in it leaves the world unchanged.
     ///
     /// ```
-    /// use impinge::dim3::na::Isometry3;
+    /// use impinge::dim3::math::Isometry;
     /// use impinge::dim3::shape::{Ball, ShapeHandle};
     /// use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let (ball, groups) = (ShapeHandle::new(Ball::new(0.5)), CollisionGroups::new());
     /// for lives in [3, 0, 1] {
     ///     let query = GeometricQueryType::Proximity(0.0);
-    ///     world.add(Isometry3::identity(), ball.clone(), groups, query, lives);
+    ///     world.add(Isometry::identity(), ball.clone(), groups, query, lives);
     /// }
     /// world.retain(|object| *object.data() > 0);
     /// assert_eq!(world.len(), 2);

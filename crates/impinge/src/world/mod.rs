@@ -32,4 +32,4 @@ pub use narrow_phase::{
 };
 pub use object::CollisionObject;
 pub use objects::CollisionObjects;
-pub use queries::{Neighbor, QueryFilter};
+pub use queries::{NearObject, QueryFilter};

@@ -17,23 +17,23 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// object tested against itself the first solid is the part of lower number. Nothing for a stale handle.
     ///
     /// ```
-    /// use impinge::dim2::na::{Isometry2, Vector2};
+    /// use impinge::dim2::math::{Isometry, Vector};
     /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
     /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
     /// let mut world = CollisionWorld::new(0.02_f64);
     /// let (everybody, contacts) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.0, 0.0));
-    /// let slab = ShapeHandle::new(Cuboid::new(Vector2::new(4.0, 1.0)));
-    /// world.add(Isometry2::identity(), slab.clone(), everybody, contacts, "floor");
+    /// let slab = ShapeHandle::new(Cuboid::new(Vector::new(4.0, 1.0)));
+    /// world.add(Isometry::identity(), slab.clone(), everybody, contacts, "floor");
     /// let ball = ShapeHandle::new(Ball::new(1.0));
-    /// let ball = world.add(Isometry2::translation(0.0, 1.75), ball, everybody, contacts, "ball");
-    /// world.add(Isometry2::translation(0.0, 3.5), slab, everybody, contacts, "ceiling");
+    /// let ball = world.add(Isometry::translation(0.0, 1.75), ball, everybody, contacts, "ball");
+    /// world.add(Isometry::translation(0.0, 3.5), slab, everybody, contacts, "ceiling");
     /// world.update();
     /// let found = world.contacts_with(ball).map(|(other, point)| (*other.data(), point.contact.normal.y));
     /// assert_eq!(found.collect::<Vec<_>>(), [("floor", -1.0), ("ceiling", 1.0)]);
     /// // What moves the ball out: against each normal by the depth.
     /// let out = world.contacts_with(ball).map(|(_, point)| *point.contact.normal * -point.contact.depth);
-    /// assert_eq!(out.sum::<Vector2<f64>>(), Vector2::zeros(), "it is stuck");
+    /// assert_eq!(out.sum::<Vector<f64>>(), Vector::zeros(), "it is stuck");
     /// ```
     pub fn contacts_with(
         &self,
@@ -54,7 +54,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// ```
     /// use impinge::dim3::events::Proximity;
-    /// use impinge::dim3::na::Isometry3;
+    /// use impinge::dim3::math::Isometry;
     /// use impinge::dim3::shape::{Ball, ShapeHandle};
     /// use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
     ///
@@ -62,7 +62,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let (ball, everybody) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
     /// let near = GeometricQueryType::Proximity(0.5);
     /// let sensors = [0.0, 1.5, 3.0].map(|x| {
-    ///     world.add(Isometry3::translation(x, 0.0, 0.0), ball.clone(), everybody, near, x)
+    ///     world.add(Isometry::translation(x, 0.0, 0.0), ball.clone(), everybody, near, x)
     /// });
     /// world.update();
     /// let found: Vec<_> = world.proximities_with(sensors[0]).map(|(other, p)| (*other.data(), p)).collect();

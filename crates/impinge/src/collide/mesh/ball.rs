@@ -19,7 +19,7 @@ use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, nea
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, max, min};
-use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, Surface, Triangle};
+use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAccess, Triangle};
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
 const ROUNDING: f64 = 16.0;
@@ -56,7 +56,7 @@ struct Rolling<'b, 'a, N: Real> {
     request: ManifoldRequest<N>,
     ball: &'a Ball<N>,
     parts: &'a dyn CompositeShape<N, 3>,
-    surface: &'a dyn Surface<N, 3>,
+    surface: SurfaceAccess<'a, N, 3>,
     /// The surface's frame in that of the ball, put through its middle.
     turn: Pose<N, 3>,
     /// The middle of the ball, and where it comes from, in the surface's frame.
@@ -77,7 +77,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();
         let parts = parts?;
-        let surface = parts.surface()?;
+        let surface = parts.surface_access()?;
         let center = middle_of_first(between)?;
         let request = of_parts(between, request);
         let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };

@@ -23,7 +23,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, centroid, max, min};
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Kind, KnownSegment, KnownSegments, Segment, Sidedness,
-    SupportMap, Surface,
+    SupportMap, Surface, SurfaceAccess,
 };
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
@@ -64,7 +64,7 @@ struct Chain<'b, 'a, N: Real> {
     request: ManifoldRequest<N>,
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
-    surface: &'a dyn Surface<N, 2>,
+    surface: SurfaceAccess<'a, N, 2>,
     sidedness: Option<Sidedness>,
     /// The chain's frame in that of the solid, put through one point.
     turn: Pose<N, 2>,
@@ -145,7 +145,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         }
         let [_, parts] = between.composites();
         let (parts, map) = (parts?, Geometry(solid).as_support_map()?);
-        let surface = parts.surface()?;
+        let surface = parts.surface_access()?;
         let turn = Pose { rotation: between.pair.pose12.rotation, ..Pose::identity() };
         let pose12 = if comes_first { turn } else { Pose::relative(&turn, &Pose::identity()) };
         let center = middle_of_first(between)?;
@@ -309,7 +309,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let (part, outward) = (self.parts[1], -chain.turn.inverse_vector(normal));
         let toward = chain.from - middle;
         let case = Case { part, feature: &feature, is_beside: false, outward, toward };
-        filter_normal(Some(&self.known), &case)
+        filter_normal(Some(SurfaceAccess::of_own(&self.known)), &case)
     }
 
     /// The segment and the solid, in the order of kinds.

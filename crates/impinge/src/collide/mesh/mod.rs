@@ -284,7 +284,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
         }
         if let Some(surface) = scene.surfaces[1] {
-            nearby.parts.iter().for_each(|&[_, part]| surface.expect(part));
+            surface.prefetch(nearby.parts.iter().map(|&[_, part]| part));
         }
         let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
             let parts = nearby.parts[index];

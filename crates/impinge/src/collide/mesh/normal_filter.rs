@@ -1,7 +1,7 @@
 //! Whether a contact with one part of a surface is one of the whole.
 
 use crate::math::{Point, Real, Space, Vector, unit};
-use crate::shape::{FeatureId, Surface};
+use crate::shape::{FeatureId, SurfaceAccess};
 
 /// Normals this many rounding units from a face's own are that one.
 const ROUNDING: f64 = 4096.0;
@@ -59,7 +59,7 @@ pub(super) struct Case<'a, N: Real, const D: usize> {
 
 /// The solid at `center` can touch the part.
 pub(super) fn faces<N: Space<D>, const D: usize>(
-    surface: Option<&dyn Surface<N, D>>,
+    surface: Option<SurfaceAccess<'_, N, D>>,
     part: u32,
     center: &Point<N, D>,
 ) -> bool {
@@ -68,7 +68,7 @@ pub(super) fn faces<N: Space<D>, const D: usize>(
 
 /// What the surface of a shape, if it has one, says of a contact.
 pub(super) fn filter_normal<N: Space<D>, const D: usize>(
-    surface: Option<&dyn Surface<N, D>>,
+    surface: Option<SurfaceAccess<'_, N, D>>,
     case: &Case<'_, N, D>,
 ) -> FilteredNormal<N, D> {
     let Some(surface) = surface else { return FilteredNormal::Admitted };

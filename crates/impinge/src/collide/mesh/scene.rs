@@ -9,13 +9,13 @@ use crate::collide::packet::{GapVisitor, TiledParts};
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::{Pair, RawManifold};
 use crate::math::{Point, Pose, Real, Space, Vector, min};
-use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Surface};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SurfaceAccess};
 
 /// Two shapes, one of them a composite at least.
 pub(super) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// What holds the parts of each together.
-    pub(super) surfaces: [Option<&'a dyn Surface<N, D>>; 2],
+    pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
     /// What is kept of the parts of the second.
     around: Option<&'a PartCache<N, D>>,
     /// How the parts of a surface lie that a convex solid meets: most lie alike.
@@ -114,7 +114,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
 
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>, around: Option<&'a PartCache<N, D>>) -> Self {
-        let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface();
+        let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface_access();
         let surfaces = between.composites().map(surface);
         Self { between, surfaces, around, usual: OnceCell::new() }
     }

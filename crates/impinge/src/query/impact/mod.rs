@@ -263,16 +263,16 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// with fewer searches the other.
 ///
 /// ```
-/// use impinge::dim2::na::{Isometry2, Point2, Vector2};
+/// use impinge::dim2::math::{Isometry, Point, Vector};
 /// use impinge::dim2::query::{ImpactOptions, Moving, impact};
 /// use impinge::dim2::shape::{Ball, Cuboid};
 ///
-/// let (floor, ball) = (Cuboid::new(Vector2::new(10.0_f64, 1.0)), Ball::new(0.5));
-/// let floor = Moving::still(&Isometry2::identity(), &floor);
-/// let fall = Moving::new(&Isometry2::translation(3.0, 4.5), &Vector2::new(1.0, -2.0), &ball);
+/// let (floor, ball) = (Cuboid::new(Vector::new(10.0_f64, 1.0)), Ball::new(0.5));
+/// let floor = Moving::still(&Isometry::identity(), &floor);
+/// let fall = Moving::new(&Isometry::translation(3.0, 4.5), &Vector::new(1.0, -2.0), &ball);
 /// let found = impact(&floor, &fall, &ImpactOptions::new()).expect("it falls on the floor");
 /// assert_eq!((found.toi, found.normal.y), (1.5, 1.0));
-/// assert_eq!(found.world1, Point2::new(4.5, 1.0), "where the ball has moved to by then");
+/// assert_eq!(found.world1, Point::new(4.5, 1.0), "where the ball has moved to by then");
 ///
 /// let early = ImpactOptions::new().with_target_distance(1.0);
 /// assert_eq!(impact(&floor, &fall, &early).expect("a unit higher").toi, 1.0);

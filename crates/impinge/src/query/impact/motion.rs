@@ -17,7 +17,7 @@ use crate::math::{
 /// A pendulum of length 2 that swings about the origin with the angle `cos t`:
 ///
 /// ```
-/// use impinge::dim2::na::{Isometry2, Vector2};
+/// use impinge::dim2::math::{Isometry, Vector};
 /// use impinge::dim2::query::{ConstantVelocities, ImpactOptions, nonlinear_time_of_impact};
 /// use impinge::dim2::shape::Ball;
 /// use impinge::query::RigidMotion;
@@ -25,9 +25,9 @@ use crate::math::{
 /// struct Pendulum;
 ///
 /// impl RigidMotion<f64, 2> for Pendulum {
-///     fn position_at(&self, time: f64) -> Isometry2<f64> {
+///     fn position_at(&self, time: f64) -> Isometry<f64> {
 ///         let angle = time.cos();
-///         Isometry2::new(Vector2::new(2.0 * angle.sin(), -2.0 * angle.cos()), angle)
+///         Isometry::new(Vector::new(2.0 * angle.sin(), -2.0 * angle.cos()), angle)
 ///     }
 ///
 ///     fn speed_bound(&self, from: f64, to: f64) -> f64 {
@@ -40,7 +40,7 @@ use crate::math::{
 /// }
 ///
 /// let (bob, post) = (Ball::new(0.25), Ball::new(0.125));
-/// let stays = ConstantVelocities::still(Isometry2::translation(0.0, -2.0));
+/// let stays = ConstantVelocities::still(Isometry::translation(0.0, -2.0));
 /// let found = nonlinear_time_of_impact(&Pendulum, &bob, &stays, &post, &ImpactOptions::new());
 /// let toi = found.expect("the post stands at the lowest point").toi;
 /// let angle = 2.0 * (0.375_f64 / 4.0).asin(); // the chord to the post is 0.25 + 0.125 long

@@ -106,15 +106,16 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
 pub trait RayCast<N: Real, const D: usize> {
-    /// The first hit in the local frame.
-    ///
-    /// The other methods agree with it.
+    /// The same as [`Self::cast_local_ray_until`] without a longest time.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
     }
 
     /// The first hit in the local frame, if it is at `max_time` or before; no hit is if that is negative
     /// or NaN. The time is in units of the ray's direction.
+    ///
+    /// The other methods agree with it.
+    #[doc(alias = "cast_local_ray")]
     fn cast_local_ray_until(
         &self,
         ray: &Ray<N, D>,
@@ -189,7 +190,7 @@ pub trait RayCast<N: Real, const D: usize> {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
 
-    /// The first hit on the solid placed at `m`, with its normal in the world frame.
+    /// The same as [`Self::first_hit_with_ray`] without a longest time.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -199,7 +200,9 @@ pub trait RayCast<N: Real, const D: usize> {
         self.first_hit_with_ray(m, ray, N::INFINITY, solid)
     }
 
-    /// [`Self::toi_and_normal_with_ray`] for hits at `max_time` or before.
+    /// The first hit on the solid placed at `m`, with its normal in the world frame, if it is at `max_time`
+    /// or before; no hit is if that is negative or NaN. The time is in units of the ray's direction.
+    #[doc(alias = "toi_and_normal_with_ray")]
     fn first_hit_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -276,7 +279,7 @@ pub trait RayCast<N: Real, const D: usize> {
         hits
     }
 
-    /// The time of the first hit on the solid placed at `m`, in units of the ray's direction.
+    /// The time alone of [`Self::first_hit_with_ray`] without a longest time.
     fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,

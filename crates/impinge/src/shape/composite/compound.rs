@@ -7,9 +7,10 @@ use crate::shape::composite::compound_search::search_box;
 use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
+use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid, ScaleError, Shape,
-    ShapeError, ShapeHandle, Surface,
+    ShapeError, ShapeHandle, Surface, SurfaceAccess,
 };
 
 /// The union of shapes, its children, each placed in the compound's frame.
@@ -25,19 +26,19 @@ use crate::shape::{
 /// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
 ///
 /// ```
-/// use impinge::dim3::na::{Isometry3, Vector3};
+/// use impinge::dim3::math::{Isometry, Vector};
 /// use impinge::dim3::shape::{Ball, Compound, Cuboid, ShapeHandle};
 ///
 /// // A hammer, and a rack of two.
-/// let handle = ShapeHandle::new(Cuboid::new(Vector3::new(0.5_f32, 0.1, 0.1)));
+/// let handle = ShapeHandle::new(Cuboid::new(Vector::new(0.5_f32, 0.1, 0.1)));
 /// let head = ShapeHandle::new(Ball::new(0.25));
 /// let hammer = ShapeHandle::new(Compound::new(vec![
-///     (Isometry3::identity(), handle),
-///     (Isometry3::translation(0.5, 0.0, 0.0), head),
+///     (Isometry::identity(), handle),
+///     (Isometry::translation(0.5, 0.0, 0.0), head),
 /// ]));
 /// let rack = ShapeHandle::new(Compound::new(vec![
-///     (Isometry3::identity(), hammer.clone()),
-///     (Isometry3::translation(0.0, 0.0, 2.0), hammer),
+///     (Isometry::identity(), hammer.clone()),
+///     (Isometry::translation(0.0, 0.0, 2.0), hammer),
 /// ]));
 /// assert_eq!(rack.local_aabb().maxs().z, 2.25);
 /// // Part 3 is the second solid of the second child.
@@ -147,9 +148,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 
     /// The surface of the child that a part belongs to, how the child lies, and which of its parts it
     /// is.
-    fn surface_at(&self, part: u32) -> Option<(&dyn Surface<N, D>, &Pose<N, D>, u32)> {
+    fn surface_at(&self, part: u32) -> Option<(SurfaceAccess<'_, N, D>, &Pose<N, D>, u32)> {
         let (child, own) = self.child_of_part(part);
-        Some((self.composite(child)?.surface()?, &self.poses[child], own))
+        Some((self.composite(child)?.surface_access()?, &self.poses[child], own))
     }
 }
 
@@ -262,6 +263,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         self.has_surface.then_some(self as &dyn Surface<N, D>)
     }
 
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
+        self.surface().map(|_| SurfaceAccess::of_own(self))
+    }
+
     /// Those of the innermost composite, with the number of its first part in the upper half.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let (child, own) = self.child_of_part(part);
@@ -288,17 +293,6 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
         })
     }
 
-    fn admits_in_turn(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        normals: [&Vector<N, D>; 2],
-    ) -> [bool; 2] {
-        let Some((surface, pose, own)) = self.surface_at(part) else { return [true, false] };
-        let [first, second] = normals.map(|normal| pose.inverse_vector(normal));
-        surface.admits_in_turn(own, feature, [&first, &second])
-    }
-
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         let (surface, pose, own) = self.surface_at(part)?;
         let snapped = surface.snapped(own, &pose.inverse_vector(normal))?;
@@ -308,6 +302,19 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
         self.surface_at(part)
             .is_none_or(|(surface, pose, own)| surface.faces(own, &pose.inverse_point(center)))
+    }
+}
+
+impl<N: Space<D>, const D: usize> OwnSurface<N, D> for Compound<N, D> {
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        let Some((surface, pose, own)) = self.surface_at(part) else { return [true, false] };
+        let [first, second] = normals.map(|normal| pose.inverse_vector(normal));
+        surface.admits_in_turn(own, feature, [&first, &second])
     }
 }
 

@@ -20,7 +20,7 @@ use smallvec::SmallVec;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::{FeatureId, Geometry, Segment, Shape, Sidedness, Triangle};
+use crate::shape::{FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
@@ -74,6 +74,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// between them are not taken for edges. `None` for solids side by side.
     fn surface(&self) -> Option<&dyn Surface<N, D>> {
         None
+    }
+
+    /// The surface as the library's algorithms see it; the library's own composites give more of it.
+    #[doc(hidden)]
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
+        self.surface().map(SurfaceAccess::of_any)
     }
 
     /// Calls `visit` with the number of each corner of a part that others may share: two parts are adjacent
@@ -237,43 +243,12 @@ pub trait Surface<N: Real, const D: usize>: Send + Sync {
     /// a tolerance for rounding.
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
-    /// [`Self::admits`] of two normals, of the second only where the first is not admitted: a surface that
-    /// looks up what is around the feature need do so only once.
-    fn admits_in_turn(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        [first, second]: [&Vector<N, D>; 2],
-    ) -> [bool; 2] {
-        let is_first = self.admits(part, feature, first);
-        [is_first, !is_first && self.admits(part, feature, second)]
-    }
-
     /// The normal that the whole surface has on the part and that stands for `normal`, which it does
     /// not admit: that of the face, on the side that `normal` points to for a surface with two
     /// sides. `None` if the part has no surface of its own, as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
-    /// The part will be asked about next. A surface may read now what it will need then: of several
-    /// parts announced in a row, what lies far apart in memory comes at one time.
-    fn expect(&self, part: u32) {
-        let _ = part;
-    }
-
     /// The part can touch a solid whose middle is `center`: false on the back of a surface with one
     /// side.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
-
-    /// Which sides all segments of a chain in 2D have, for a quicker way to the same answers. `None`,
-    /// the default, of all surfaces but this library's own chains.
-    fn sidedness(&self) -> Option<Sidedness> {
-        None
-    }
-
-    /// In 3D, parts hang together where they have corners at one position, and there alone; and a normal
-    /// along which a direction into a part at the seam rises is none there. For a quicker way to the same
-    /// answers: false, the default, of all surfaces but this library's own.
-    fn has_plain_seams(&self) -> bool {
-        false
-    }
 }

@@ -3,11 +3,12 @@
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
 use crate::shape::composite::tri_mesh::{aabb_at, sphere_around};
+use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
 use crate::shape::surface::sidedness::Joining;
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
-    Shape, ShapeHandle, Sidedness, Surface,
+    Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
 };
 
 /// The normal on the right of a direction.
@@ -44,6 +45,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
         (self.is_one_sided() || !self.keeps_internal_edges).then_some(self)
     }
 
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
+        self.surface().map(|_| SurfaceAccess::of_own(self))
+    }
+
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         self.segments[part as usize].iter().for_each(|&end| visit(self.joints.of(end).into()));
     }
@@ -72,15 +77,17 @@ impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
         across(&along, normal)
     }
 
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        self.height_over(part, &(center - self.ends(part)[0])) >= N::ZERO
+    }
+}
+
+impl<N: Real, const D: usize> OwnSurface<N, D> for Polyline<N, D> {
     fn sidedness(&self) -> Option<Sidedness> {
         let (is_left, follows_front) = (false, false);
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided(), self.keeps_internal_edges);
         let joining = if self.is_moved { Joining::Unknown } else { Joining::All };
         Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
-    }
-
-    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
-        self.height_over(part, &(center - self.ends(part)[0])) >= N::ZERO
     }
 }
 

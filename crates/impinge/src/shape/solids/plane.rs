@@ -1,4 +1,4 @@
-//! Half-spaces (half-planes in 2D).
+//! Half-spaces (half-planes in 2D), which ncollide's guide calls planes.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Pose, Real, Unit, Vector};
@@ -7,22 +7,39 @@ use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeHandle};
 
 /// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
 ///
+/// [`HalfSpace`] is the name to use: the solid is not the plane, but all that is behind it. `Plane` is the
+/// same type under the name that it has in ncollide.
+///
 /// Its only feature is `Face(0)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Unit, Vector};
 /// use impinge::dim3::query::PointQuery;
-/// use impinge::dim3::shape::Plane;
+/// use impinge::dim3::shape::HalfSpace;
 ///
-/// let floor = Plane::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
+/// let floor = HalfSpace::new(Unit::new_normalize(Vector::new(0.0_f32, 1.0, 0.0)));
 /// let above = Point::new(7.0, 2.0, -3.0);
 /// assert_eq!(floor.distance_to_point(&Isometry::identity(), &above, true), 2.0);
 /// assert!(floor.contains_point(&Isometry::identity(), &Point::new(0.0, -9.0, 0.0)));
 /// ```
+#[doc(alias = "HalfSpace")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane<N: Real, const D: usize> {
     normal: Unit<Vector<N, D>>,
 }
+
+/// The half-space behind a plane (in 2D a half-plane): the name to use for [`Plane`].
+///
+/// ```
+/// use impinge::dim2::prelude::*;
+///
+/// let ground = HalfSpace::new(Unit::new_normalize(Vector::new(0.0_f64, 3.0)));
+/// let (here, ball) = (Isometry::identity(), Ball::new(1.0));
+/// assert_eq!(distance(&here, &ground, &Isometry::translation(7.0, 5.0), &ball), 4.0);
+/// assert_eq!(distance(&here, &ground, &Isometry::translation(7.0, -5.0), &ball), 0.0, "inside");
+/// ```
+#[doc(alias = "Halfplane")]
+pub type HalfSpace<N, const D: usize> = Plane<N, D>;
 
 impl<N: Real, const D: usize> Plane<N, D> {
     /// The half-space that `normal` points out of.

@@ -2,5 +2,6 @@
 //! sides of chains.
 
 pub(crate) mod bend;
+pub(crate) mod own_surface;
 pub(crate) mod seam;
 pub(crate) mod sidedness;

@@ -4,21 +4,14 @@ use smallvec::SmallVec;
 
 use crate::math::{Point, Real, Vector, perp, unit};
 use crate::shape::composite::polyline_parts::across;
+use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
-use crate::shape::{FeatureId, Surface};
+use crate::shape::{FeatureId, Surface, SurfaceAccess};
 
-/// Which sides the segments of a chain have: what a [`Surface`] in 2D says so that contacts need not
-/// ask it about each segment. Chains of this library have one.
-///
-/// ```
-/// use impinge::dim2::math::Point;
-/// use impinge::dim2::shape::{CompositeShape, Polyline, Surface};
-///
-/// let line: Polyline<f32> = Polyline::open(vec![Point::origin(), Point::new(1.0, 0.0)]);
-/// assert!(line.surface().and_then(|surface| surface.sidedness()).is_some());
-/// ```
+/// Which sides the segments of a chain have: what a surface in 2D answers so that contacts need not ask it
+/// about each segment. Chains of this library have one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sidedness {
+pub(crate) struct Sidedness {
     /// The front is on the left of a segment, seen from its first end to its second.
     pub(in crate::shape) is_left: bool,
     pub(in crate::shape) is_one_sided: bool,
@@ -73,7 +66,7 @@ impl Sidedness {
 
 /// A segment of a chain, with what follows from its ends: the answers of its surface, without a look at that.
 pub(crate) struct KnownSegment<'a, N: Real> {
-    surface: &'a dyn Surface<N, 2>,
+    surface: SurfaceAccess<'a, N, 2>,
     sidedness: Option<Sidedness>,
     /// Those around it.
     others: &'a dyn KnownSegments<N>,
@@ -85,7 +78,7 @@ pub(crate) struct KnownSegment<'a, N: Real> {
 impl<'a, N: Real> KnownSegment<'a, N> {
     /// A segment by its ends, as its surface has them.
     pub(crate) fn new(
-        surface: &'a dyn Surface<N, 2>,
+        surface: SurfaceAccess<'a, N, 2>,
         sidedness: Option<Sidedness>,
         others: &'a dyn KnownSegments<N>,
         ends: [Point<N, 2>; 2],
@@ -152,6 +145,24 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
         }
     }
 
+    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
+        match self.sidedness {
+            Some(sidedness) => sidedness.snapped(&self.along?, normal),
+            None => self.surface.snapped(part, normal),
+        }
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        match self.sidedness {
+            Some(sidedness) => {
+                sidedness.height_over(self.along.as_ref(), &(center - self.ends[0])) >= N::ZERO
+            }
+            None => self.surface.faces(part, center),
+        }
+    }
+}
+
+impl<N: Real> OwnSurface<N, 2> for KnownSegment<'_, N> {
     fn admits_in_turn(
         &self,
         part: u32,
@@ -170,21 +181,5 @@ impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
         }
         let is_first = self.admits(part, feature, first);
         [is_first, !is_first && self.admits(part, feature, second)]
-    }
-
-    fn snapped(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
-        match self.sidedness {
-            Some(sidedness) => sidedness.snapped(&self.along?, normal),
-            None => self.surface.snapped(part, normal),
-        }
-    }
-
-    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
-        match self.sidedness {
-            Some(sidedness) => {
-                sidedness.height_over(self.along.as_ref(), &(center - self.ends[0])) >= N::ZERO
-            }
-            None => self.surface.faces(part, center),
-        }
     }
 }

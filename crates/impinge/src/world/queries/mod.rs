@@ -42,7 +42,7 @@ const FEW: usize = 16;
 /// let found = world.nearest_objects(&here, &probe, 1, 10.0, &QueryFilter::new());
 /// assert_eq!((*found[0].object.data(), found[0].distance), ("tree", 3.0));
 /// ```
-pub struct Neighbor<'a, N: Space<D>, const D: usize, T> {
+pub struct NearObject<'a, N: Space<D>, const D: usize, T> {
     /// The object.
     pub object: &'a CollisionObject<N, D, T>,
     /// How far it is: zero if it touches or overlaps what was asked about.
@@ -52,17 +52,17 @@ pub struct Neighbor<'a, N: Space<D>, const D: usize, T> {
     pub points: ClosestPoints<N, D>,
 }
 
-impl<N: Space<D>, const D: usize, T> Clone for Neighbor<'_, N, D, T> {
+impl<N: Space<D>, const D: usize, T> Clone for NearObject<'_, N, D, T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<N: Space<D>, const D: usize, T> Copy for Neighbor<'_, N, D, T> {}
+impl<N: Space<D>, const D: usize, T> Copy for NearObject<'_, N, D, T> {}
 
-impl<N: Space<D>, const D: usize, T> fmt::Debug for Neighbor<'_, N, D, T> {
+impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Neighbor")
+        f.debug_struct("NearObject")
             .field("object", &self.object.handle())
             .field("distance", &self.distance)
             .field("points", &self.points)

@@ -2,7 +2,7 @@
 
 use super::ranking::RankRange;
 use super::search::WorldProbe;
-use super::{Neighbor, QueryFilter};
+use super::{NearObject, QueryFilter};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
 use crate::query::{ClosestPoints, PointProjection};
@@ -11,8 +11,7 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Points, in the world frame. A point that is not finite lies in nothing and is near nothing.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects that hold a point, on their surface at least, among those able to interact with
-    /// `groups`.
+    /// The same as [`Self::objects_containing`], of the objects able to interact with `groups`.
     pub fn interferences_with_point<'a>(
         &'a self,
         point: &Point<N, D>,
@@ -22,6 +21,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// The objects that hold a point, on their surface at least, in order of their handles.
+    #[doc(alias = "interferences_with_point")]
     pub fn objects_containing<'a>(
         &'a self,
         point: &Point<N, D>,
@@ -94,7 +94,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         count: usize,
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> Vec<Neighbor<'_, N, D, T>> {
+    ) -> Vec<NearObject<'_, N, D, T>> {
         let room = RankRange { count, limit: max_distance };
         let Some(probe) = near(point) else { return Vec::new() };
         let found = self
@@ -102,7 +102,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let neighbor = |(object, distance, nearest): (_, _, PointProjection<N, D>)| {
             let apart = ClosestPoints::WithinMargin(*point, nearest.point);
             let points = if nearest.is_inside { ClosestPoints::Intersecting } else { apart };
-            Neighbor { object, distance, points }
+            NearObject { object, distance, points }
         };
         found.into_iter().map(neighbor).collect()
     }

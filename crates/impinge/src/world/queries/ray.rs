@@ -14,11 +14,8 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 /// Times are in units of the length of the ray's direction, normals in the world frame. Each object is
 /// hit once at most: where the ray meets it first.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects that a ray meets, among those able to interact with `groups`, and where it enters
-    /// each of them.
-    ///
-    /// Solids are solid: a ray that starts inside one meets it at time zero. A ray that is not finite
-    /// meets nothing.
+    /// The same as [`Self::ray_hits`] without a longest time, with solids, of the objects able to interact
+    /// with `groups`, but in order of their handles.
     pub fn interferences_with_ray<'a>(
         &'a self,
         ray: &Ray<N, D>,
@@ -32,10 +29,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// The object that a ray meets first, among those able to interact with `groups`, and where; of
-    /// several at the same time the one whose handle comes first.
-    ///
-    /// [`Self::first_ray_hit`] without a longest time, with solids.
+    /// The same as [`Self::first_ray_hit`] without a longest time, with solids, of the objects able to
+    /// interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
         &self,
@@ -79,6 +74,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let times: Vec<f32> = all.iter().map(|(_, hit)| hit.toi).collect();
     /// assert_eq!(times, [1.5, 3.5]);
     /// ```
+    #[doc(alias = "first_interference_with_ray")]
     #[must_use]
     pub fn first_ray_hit(
         &self,
@@ -139,6 +135,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// in ascending order of time, then of handle.
     ///
     /// Beside the order, as [`Self::first_ray_hit`].
+    #[doc(alias = "interferences_with_ray")]
     #[must_use]
     pub fn ray_hits(
         &self,

@@ -2,7 +2,7 @@
 
 use super::ranking::RankRange;
 use super::search::WorldProbe;
-use super::{Neighbor, QueryFilter};
+use super::{NearObject, QueryFilter};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::Placed;
 use crate::convex::Separation;
@@ -19,8 +19,7 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 /// near nothing. Distances are those of [`crate::query::distance`]: zero for solids that touch or
 /// overlap.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects whose boxes meet or touch a box, among those able to interact with `groups`. The
-    /// boxes are those of the shapes where the objects are now, without any margin.
+    /// The same as [`Self::objects_in_aabb`], of the objects able to interact with `groups`.
     pub fn interferences_with_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
@@ -32,6 +31,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The objects whose boxes meet or touch a box, in order of their handles. The boxes are those of
     /// the shapes where the objects are now, without any margin; [`Self::objects_overlapping`] with a
     /// cuboid asks the shapes themselves.
+    #[doc(alias = "interferences_with_aabb")]
     pub fn objects_in_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
@@ -113,8 +113,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// The object nearest to a solid, at most `max_distance` away; of several the one whose handle comes
-    /// first. The first of [`Self::nearest_objects`].
+    /// The same as [`Self::nearest_objects`] for one object: the nearest, and of several the one whose
+    /// handle comes first.
     #[must_use]
     pub fn closest_object(
         &self,
@@ -122,7 +122,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: &dyn Shape<N, D>,
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> Option<Neighbor<'_, N, D, T>> {
+    ) -> Option<NearObject<'_, N, D, T>> {
         self.nearest_objects(position, shape, 1, max_distance, filter).pop()
     }
 
@@ -135,7 +135,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: &dyn Shape<N, D>,
         distance: N,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> Vec<Neighbor<'_, N, D, T>> {
+    ) -> Vec<NearObject<'_, N, D, T>> {
         self.nearest_objects(position, shape, usize::MAX, distance, filter)
     }
 
@@ -179,6 +179,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let from_point = world.nearest_to_point(&Point::origin(), 2, f64::INFINITY, &QueryFilter::new());
     /// assert_eq!(from_point[1].distance, 4.0);
     /// ```
+    #[doc(alias = "closest_object")]
     #[must_use]
     pub fn nearest_objects(
         &self,
@@ -187,7 +188,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         count: usize,
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
-    ) -> Vec<Neighbor<'_, N, D, T>> {
+    ) -> Vec<NearObject<'_, N, D, T>> {
         let Some(aabb) = around(position, shape) else { return Vec::new() };
         let placed = Placed::of_isometry(position, shape.geometry());
         let room = RankRange { count, limit: max_distance };
@@ -198,7 +199,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let neighbor = |(object, distance, found): (_, _, Separation<N, D>)| {
             let apart = ClosestPoints::WithinMargin(found.point1, found.point2);
             let points = if distance > N::ZERO { apart } else { ClosestPoints::Intersecting };
-            Neighbor { object, distance, points }
+            NearObject { object, distance, points }
         };
         found.into_iter().map(neighbor).collect()
     }

@@ -11,4 +11,5 @@ mod dim3;
 mod floors;
 mod memory;
 mod messages;
+mod public_face;
 mod values;

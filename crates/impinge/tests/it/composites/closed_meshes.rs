@@ -5,7 +5,7 @@ use crate::support::query_support;
 use impinge::math::{Point, Real, Vector, cross};
 use impinge::procedural::space as surfaces;
 use impinge::query::PointQuery;
-use impinge::shape::{Ball, CompositeShape, Cuboid, FeatureId, Neighbor, Polyline, TriMesh};
+use impinge::shape::{Ball, CompositeShape, Cuboid, EdgeNeighbor, FeatureId, Polyline, TriMesh};
 use query_support::random::Random;
 
 type Mesh = TriMesh<f64, 3>;
@@ -90,7 +90,7 @@ fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     let sum = match location.feature {
         FeatureId::Face(_) => normal(location.part),
         FeatureId::Edge(side) => match mesh.neighbor(location.part, side) {
-            Neighbor::Triangle { index, .. } => normal(location.part) + normal(index),
+            EdgeNeighbor::Triangle { index, .. } => normal(location.part) + normal(index),
             other => panic!("{other:?} across a side of a manifold"),
         },
         FeatureId::Vertex(corner) => {

@@ -12,7 +12,7 @@ use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{
     CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Segment, Shape, ShapeError,
-    ShapeHandle, Surface,
+    ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Real> HeightField<N, 2> {
@@ -247,6 +247,10 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
 
     fn surface(&self) -> Option<&dyn Surface<N, 2>> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, 2>> {
+        self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
     /// The points of the field, one after the other.

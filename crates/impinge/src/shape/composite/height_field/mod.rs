@@ -48,22 +48,22 @@ use crate::shape::error::finite;
 /// single cells with a diagonal of their own.
 ///
 /// ```
-/// use impinge::dim3::na::{Isometry3, Point3, Vector3};
+/// use impinge::dim3::math::{Isometry, Point, Vector};
 /// use impinge::dim3::query::{Ray, RayCast};
 /// use impinge::dim3::shape::HeightField;
 ///
 /// // A roof: the ridge in the middle runs along x.
 /// let heights = vec![0.0_f32, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
-/// let mut roof = HeightField::<f32>::new(3, 3, heights, Vector3::new(8.0, 2.0, 4.0));
+/// let mut roof = HeightField::<f32>::new(3, 3, heights, Vector::new(8.0, 2.0, 4.0));
 /// assert_eq!(roof.num_cells(), 4);
 /// assert_eq!(roof.height_at(3.0, -1.0), Some(1.0), "half way up to a ridge of 2");
 ///
-/// let down = Ray::new(Point3::new(3.0, 5.0, -1.0), Vector3::new(0.0, -1.0, 0.0));
-/// let hit = roof.toi_with_ray(&Isometry3::identity(), &down, true);
+/// let down = Ray::new(Point::new(3.0, 5.0, -1.0), Vector::new(0.0, -1.0, 0.0));
+/// let hit = roof.toi_with_ray(&Isometry::identity(), &down, true);
 /// assert_eq!(hit, Some(4.0));
 ///
 /// roof.set_hole(0, 1, true);
-/// assert_eq!(roof.toi_with_ray(&Isometry3::identity(), &down, true), None);
+/// assert_eq!(roof.toi_with_ray(&Isometry::identity(), &down, true), None);
 /// ```
 #[derive(Clone)]
 pub struct HeightField<N: Real, const D: usize> {

@@ -13,7 +13,7 @@ use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{
     CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Shape, ShapeError,
-    ShapeHandle, Surface, Triangle,
+    ShapeHandle, Surface, SurfaceAccess, Triangle,
 };
 
 /// A point of the grid: its row and column.
@@ -426,6 +426,10 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
 
     fn surface(&self) -> Option<&dyn Surface<N, 3>> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
+    }
+
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, 3>> {
+        self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
     /// The points of the grid, row by row.

@@ -7,6 +7,7 @@ use super::sheet::GridPoint;
 use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::composite::tri_mesh::{inward_of, normal_of};
 use crate::shape::surface::bend::Bend;
+use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
 use crate::shape::surface::sidedness::Joining;
 use crate::shape::{FeatureId, Sidedness, Surface};
@@ -17,6 +18,21 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         self.face_admits(&own, &mut Beside::unknown(), feature, normal)
     }
 
+    fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        self.snapped_to(&self.front_of(&self.corners(part)), normal)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
+        let is_behind = || {
+            let corners = self.corners(part);
+            let [row, column] = corners[0];
+            self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO
+        };
+        !(self.is_one_sided && is_behind())
+    }
+}
+
+impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     fn admits_in_turn(
         &self,
         part: u32,
@@ -28,22 +44,9 @@ impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
         [is_first, !is_first && self.face_admits(&own, &mut beside, feature, second)]
     }
 
-    fn snapped(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
-        self.snapped_to(&self.front_of(&self.corners(part)), normal)
-    }
-
     /// Points of the grid are at positions of their own unless the field has no extent.
     fn has_plain_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
-    }
-
-    fn faces(&self, part: u32, center: &Point<N, 3>) -> bool {
-        let is_behind = || {
-            let corners = self.corners(part);
-            let [row, column] = corners[0];
-            self.front_of(&corners).dot(&(center - self.grid.point(row, column))) < N::ZERO
-        };
-        !(self.is_one_sided && is_behind())
     }
 }
 
@@ -267,15 +270,17 @@ impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
         Some(if is_front { front } else { -front })
     }
 
+    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
+        self.height_over(part, &(center - self.point(part as usize))) >= N::ZERO
+    }
+}
+
+impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
     fn sidedness(&self) -> Option<Sidedness> {
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
         let (is_left, follows_front) = (!self.is_mirrored(), true);
         let joining = Joining::InRow;
         Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
-    }
-
-    fn faces(&self, part: u32, center: &Point<N, 2>) -> bool {
-        self.height_over(part, &(center - self.point(part as usize))) >= N::ZERO
     }
 }
 

@@ -8,9 +8,10 @@ use crate::bounding_volume::{Aabb, BoundingSphere, Ray};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::partitioning::BoxTree;
 use crate::shape::solids::segment::length_of;
+use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
     CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
-    ShapeHandle, Surface,
+    ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
@@ -40,6 +41,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         (self.is_one_sided || !self.keeps_internal_edges).then_some(self)
     }
 
+    fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
+        self.surface().map(|_| SurfaceAccess::of_own(self))
+    }
+
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let corners = &self.triangles[part as usize];
         corners.iter().for_each(|&vertex| visit(self.topology.joints.of(vertex).into()));
@@ -51,29 +56,8 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
         (table().admits)(self, part, feature, normal)
     }
 
-    fn admits_in_turn(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        normals: [&Vector<N, D>; 2],
-    ) -> [bool; 2] {
-        (table().admits_in_turn)(self, part, feature, normals)
-    }
-
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         (table().snapped)(self, part, normal)
-    }
-
-    fn expect(&self, part: u32) {
-        let beyond = self.topology.all_across(part);
-        let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
-        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
-        // Where there is no triangle across a side there is none of such a number.
-        black_box(beyond.map(normal));
-    }
-
-    fn has_plain_seams(&self) -> bool {
-        !(self.keeps_internal_edges || self.topology.is_moved)
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
@@ -83,6 +67,29 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
             self.normals[part as usize].dot(&(center - corner)) < N::ZERO
         };
         !(self.is_one_sided && is_behind())
+    }
+}
+
+impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        (table().admits_in_turn)(self, part, feature, normals)
+    }
+
+    fn prefetch(&self, part: u32) {
+        let beyond = self.topology.all_across(part);
+        let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
+        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
+        // Where there is no triangle across a side there is none of such a number.
+        black_box(beyond.map(normal));
+    }
+
+    fn has_plain_seams(&self) -> bool {
+        !(self.keeps_internal_edges || self.topology.is_moved)
     }
 }
 

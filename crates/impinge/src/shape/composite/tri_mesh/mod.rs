@@ -14,7 +14,7 @@ pub(in crate::shape) use around::inward_of;
 pub(in crate::shape) use composite::{aabb_at, sphere_around};
 pub(in crate::shape) use surface3::normal_of;
 pub(crate) use table::MeshTable;
-pub use topology::Neighbor;
+pub use topology::EdgeNeighbor;
 
 use self::bends::Bends;
 use self::topology::Topology;
@@ -110,21 +110,21 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// # Panics
     /// If there is no such triangle or side.
     #[must_use]
-    pub fn neighbor(&self, triangle: u32, side: u32) -> Neighbor {
+    pub fn neighbor(&self, triangle: u32, side: u32) -> EdgeNeighbor {
         self.across(triangle, side as usize)
     }
 
-    fn across(&self, triangle: u32, side: usize) -> Neighbor {
+    fn across(&self, triangle: u32, side: usize) -> EdgeNeighbor {
         if self.topology.has_several_across(triangle, side) {
-            return Neighbor::Several;
+            return EdgeNeighbor::Several;
         }
         let Some(index) = self.topology.single_across(triangle, side) else {
-            return Neighbor::Border;
+            return EdgeNeighbor::Border;
         };
         let ends = self.joint_ends(triangle, side);
         let other = self.side_between(index, ends);
         let is_flipped = other.is_some_and(|other| self.joint_ends(index, other) == ends);
-        Neighbor::Triangle { index, is_flipped }
+        EdgeNeighbor::Triangle { index, is_flipped }
     }
 
     /// Every side with a length has a neighbour, so that a surface in 3D has no border. O(n).
@@ -140,9 +140,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.each_side().all(|(triangle, side)| match self.across(triangle, side) {
-            Neighbor::Border => true,
-            Neighbor::Triangle { is_flipped, .. } => !is_flipped,
-            Neighbor::Several => false,
+            EdgeNeighbor::Border => true,
+            EdgeNeighbor::Triangle { is_flipped, .. } => !is_flipped,
+            EdgeNeighbor::Several => false,
         })
     }
 

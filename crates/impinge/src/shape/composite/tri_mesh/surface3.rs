@@ -196,6 +196,7 @@ mod tests {
     use super::*;
     use crate::math::noise::Noise;
     use crate::shape::Surface;
+    use crate::shape::surface::own_surface::OwnSurface;
 
     /// A rough sheet of triangles.
     fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {

@@ -9,15 +9,15 @@ use crate::shape::composite::joints::Joints;
 ///
 /// ```
 /// use impinge::dim2::math::Point;
-/// use impinge::dim2::shape::{Neighbor, TriMesh};
+/// use impinge::dim2::shape::{EdgeNeighbor, TriMesh};
 ///
 /// let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point::<f32>::from);
 /// let square = TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
-/// assert_eq!(square.neighbor(0, 0), Neighbor::Border);
-/// assert_eq!(square.neighbor(0, 2), Neighbor::Triangle { index: 1, is_flipped: false });
+/// assert_eq!(square.neighbor(0, 0), EdgeNeighbor::Border);
+/// assert_eq!(square.neighbor(0, 2), EdgeNeighbor::Triangle { index: 1, is_flipped: false });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Neighbor {
+pub enum EdgeNeighbor {
     /// Nothing: the side is on the border. So is a side without length.
     Border,
     /// One triangle.
@@ -31,7 +31,7 @@ pub enum Neighbor {
     Several,
 }
 
-/// Stored for [`Neighbor::Border`] and [`Neighbor::Several`].
+/// Stored for [`EdgeNeighbor::Border`] and [`EdgeNeighbor::Several`].
 const BORDER: u32 = u32::MAX;
 const SEVERAL: u32 = u32::MAX - 1;
 

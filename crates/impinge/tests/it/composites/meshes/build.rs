@@ -4,7 +4,8 @@ use impinge::dim3::procedural;
 use impinge::math::na::{Isometry3, Point3, Vector3};
 use impinge::math::{Pose, Real, Space, max};
 use impinge::shape::{
-    Ball, CompositeShape, Cone, Cuboid, MeshError, Neighbor, Polyline, Shape, ShapeKind, TriMesh,
+    Ball, CompositeShape, Cone, Cuboid, EdgeNeighbor, MeshError, Polyline, Shape, ShapeKind,
+    TriMesh,
 };
 use impinge_reference::random::Random;
 
@@ -64,11 +65,11 @@ fn check_neighbors<N: Space<D>, const D: usize>(mesh: &TriMesh<N, D>) {
             })
             .collect();
         let expected = match others.as_slice() {
-            [] => Neighbor::Border,
+            [] => EdgeNeighbor::Border,
             &[(index, across)] => {
-                Neighbor::Triangle { index, is_flipped: ends(index, across) == [a, b] }
+                EdgeNeighbor::Triangle { index, is_flipped: ends(index, across) == [a, b] }
             }
-            _ => Neighbor::Several,
+            _ => EdgeNeighbor::Several,
         };
         assert_eq!(mesh.neighbor(triangle, side), expected, "side {side} of {triangle}");
     }
@@ -107,8 +108,8 @@ fn open_flat_and_odd_meshes() {
     let fan = [[0, 1, 2], [1, 0, 3], [0, 1, 4], [2, 2, 4]];
     let fan = mesh::<f64, 3>(&[SQUARE.as_slice(), &[[0.5, 0.5, 3.0]]].concat(), &fan);
     check_neighbors(&fan);
-    assert_eq!(fan.neighbor(0, 0), Neighbor::Several, "three at one edge");
-    assert_eq!(fan.neighbor(3, 0), Neighbor::Border, "no length");
+    assert_eq!(fan.neighbor(0, 0), EdgeNeighbor::Several, "three at one edge");
+    assert_eq!(fan.neighbor(3, 0), EdgeNeighbor::Border, "no length");
     assert!(!fan.is_oriented() && !fan.is_closed(), "neither");
     let flipped = mesh::<f32, 3>(&SQUARE, &[[0, 1, 2], [0, 3, 2], [0, 1, 2]]);
     check_neighbors(&flipped);
@@ -135,7 +136,7 @@ fn a_moebius_strip_has_one_seam_too_many() {
     check_neighbors(&strip);
     assert!(!strip.is_oriented() && !strip.is_closed(), "one side, one border");
     let is_flipped = |side: &(u32, u32)| {
-        matches!(strip.neighbor(side.0, side.1), Neighbor::Triangle { is_flipped: true, .. })
+        matches!(strip.neighbor(side.0, side.1), EdgeNeighbor::Triangle { is_flipped: true, .. })
     };
     let sides = (0..16).flat_map(|triangle| (0..3).map(move |side| (triangle, side)));
     assert_eq!(sides.filter(is_flipped).count(), 2, "one seam, seen from both sides");

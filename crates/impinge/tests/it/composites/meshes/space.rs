@@ -1,7 +1,7 @@
 //! Which normals a surface in space has at its edges and corners.
 
 use impinge::math::{Real, Vector};
-use impinge::shape::{CompositeShape, FeatureId, Neighbor, TriMesh};
+use impinge::shape::{CompositeShape, EdgeNeighbor, FeatureId, TriMesh};
 use impinge_reference::random::Random;
 
 use super::{corner_at, grid, mesh, points, soup, sphere, surface, unit, vector};
@@ -219,7 +219,7 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
         let [a, b] = [edge, (edge + 1) % 3].map(|at| mesh.triangle(part).corners()[at as usize]);
         let outward = (a.coords + b.coords).normalize();
         let admits = |normal| surface(&mesh).admits(part, FeatureId::Edge(edge), &normal);
-        let Neighbor::Triangle { index, is_flipped: false } = mesh.neighbor(part, edge) else {
+        let EdgeNeighbor::Triangle { index, is_flipped: false } = mesh.neighbor(part, edge) else {
             panic!("{part} has a neighbour at {edge}")
         };
         // Squares are cut in two.

@@ -13,7 +13,7 @@ use impinge::query::{
 use impinge::shape::{
     Ball, Capsule, Compound, Cuboid, Plane, Segment, Shape, ShapeHandle, Triangle,
 };
-use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, Neighbor, QueryFilter};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, NearObject, QueryFilter};
 use impinge_reference::random::Random;
 
 /// The data of an object is a number of the test's own.
@@ -190,7 +190,7 @@ pub(crate) fn rows<N: Space<D>, const D: usize, A>(found: Vec<(&Object<N, D>, A)
 }
 
 pub(crate) fn neighbors<N: Space<D>, const D: usize>(
-    found: &[Neighbor<'_, N, D, usize>],
+    found: &[NearObject<'_, N, D, usize>],
 ) -> Vec<Row<(N, ClosestPoints<N, D>)>> {
     found.iter().map(|near| (near.object.handle(), (near.distance, near.points))).collect()
 }
