@@ -170,8 +170,7 @@ impl<V, M> FacesInLanes<V, M> {
         let below = below(simd, boxes, axis);
         let (rotation, shift) = other(boxes, below.is_second);
         let toward = below.in_turn;
-        let facing = seen_from(&rotation, &below.toward);
-        let facing = [-facing[0], -facing[1], -facing[2]];
+        let facing = negated(&seen_from(&rotation, &below.toward));
         let is_m = largest(&facing);
         let [f0, f1, f2] = in_turn(&is_m, &facing);
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
