@@ -4,7 +4,7 @@
 //! ([`crate::query`]). From bottom to top:
 //!
 //! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
-//! - [`separation`] is the one fact about a pair of solids: how far apart or how deep, where and along what;
+//! - [`separation`] computes how far apart or how deep two solids are, at which points and along which normal;
 //! - [`manifold`] makes contact points of it: supporting features, clipping, the choice of points, ids;
 //! - [`batch`] does both for eight pairs at a time, of the kinds that worlds are full of;
 //! - [`parts`] finds the pairs of parts of two composites that matter, and their separation;

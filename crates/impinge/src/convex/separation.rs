@@ -1,4 +1,4 @@
-//! The one fact about a pair that all answers are derived from.
+//! The separation of a pair, from which all other results about it follow.
 
 use crate::math::{Point, Pose, Real, Vector};
 

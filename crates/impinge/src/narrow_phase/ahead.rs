@@ -1,4 +1,4 @@
-//! Memory of pairs with composites, asked for ahead of time.
+//! Prefetching the memory of pairs with composites.
 //!
 //! The states of pairs lie in a row, but what they are about does not: poses, shapes, what shapes are made of,
 //! the parts that are kept and the points of contact lie wherever they were put. Who goes from pair to pair

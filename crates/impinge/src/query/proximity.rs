@@ -1,4 +1,4 @@
-//! How near two solids are, in three words.
+//! Whether two solids intersect, are within a margin, or are disjoint.
 
 use crate::collide::pair::Placed;
 use crate::math::{AbstractRotation, Isometry, Space, max};

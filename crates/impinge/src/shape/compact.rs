@@ -1,5 +1,5 @@
-//! The numbers of a ball or a box without the way to the shape: what lies behind a handle lies elsewhere
-//! in memory.
+//! The sizes of a ball or a box, copied into the object's record: the shape behind a handle is elsewhere in
+//! memory.
 //!
 //! A query of a world reads the copy; the answer is that of the solid itself.
 

@@ -1,4 +1,4 @@
-//! The side or vertex of a solid of the plane that faces a direction.
+//! The supporting feature of a 2D solid in a direction: a side or a vertex.
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};

@@ -2,9 +2,8 @@
 //!
 //! Each lane of a vector is another pair, and never looks at its neighbours: the bits of a pair do not depend on
 //! the batch. The numbers of eight pairs are gathered ([`gather`]), a kernel finds what it can of all of them
-//! ([`Batch`]), then manifold by manifold is replaced. What is unusual about a pair (a centre in a box, cores that
-//! cross, solids too small or too large to be squared, numbers that are none) is declined and falls back to the
-//! builder for one pair.
+//! ([`Batch`]), then manifold by manifold is replaced. Degenerate pairs (a centre in a box, cores that cross, solids
+//! too small or too large to be squared, NaN) fall back to the builder for one pair.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
 

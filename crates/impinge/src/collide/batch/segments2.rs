@@ -1,4 +1,4 @@
-//! Segments and capsules of the plane: the interval in which their cores face each other, as `stretch.rs` has
+//! Segments and capsules in 2D: the interval in which their cores face each other, as `stretch.rs` has
 //! it for all flat-sided solids, in lanes.
 
 use super::PairQuestion;

@@ -1,4 +1,4 @@
-//! Segments and capsules of space: `collide/separation/segments/segment_segment.rs` in lanes.
+//! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
 
 use super::PairQuestion;
 use super::closed_form::{EightContacts, Form};

@@ -1,7 +1,7 @@
-//! The contacts of a segment of a chain and a solid of the plane, in no more room than they take.
+//! The contacts of a segment of a chain and a 2D solid, without intermediate lists.
 //!
-//! The same as [`build_between`](super::build_between) and [`build_along`](super::build_along), which define
-//! them, bit for bit.
+//! The bits are those of [`build_between`](super::build_between) and [`build_along`](super::build_along), which
+//! define them.
 
 use super::along::extremes;
 use super::frame::{Candidate, Candidates, Frame, Which};

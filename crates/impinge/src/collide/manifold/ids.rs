@@ -1,4 +1,4 @@
-//! Names of contacts that last while their features do.
+//! The ids of contact points, which stay while their features do.
 
 use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;

@@ -1,12 +1,12 @@
-//! From the one fact about a pair to a manifold: the points that delimit the area of contact.
+//! From the separation of a pair to its manifold: the points that span the area of contact.
 //!
-//! The separation gives the normal and the witness, the nearest pair of points. Both solids answer
-//! with their supporting features; seen along the normal these are points, segments and convex polygons of the
-//! plane ([`ring`]), and the corners of what they have in common ([`clip`]) are the candidates. In 2D
-//! that is an interval ([`stretch`]), and over a [`half_space`] every corner counts. The witness is
-//! always represented, so the smallest distance of a manifold is that of the separation exactly; with
-//! a ball it is all there is.
-//! At last [`reduce`] chooses a few candidates and [`ids`] numbers them.
+//! The separation has the normal and the witness, the nearest pair of points. The supporting features of both
+//! solids, projected along the normal, are points, segments and convex polygons ([`ring`]), and the corners of
+//! their intersection ([`clip`]) are the candidates. In 2D that is an interval ([`stretch`]), and over a
+//! [`half_space`] every corner counts. [`reduce`] chooses a few candidates and [`ids`] numbers them.
+//!
+//! The witness is always represented, so the smallest distance of a manifold is that of the separation exactly;
+//! with a ball it is the only point.
 
 mod along;
 mod chain;

@@ -1,4 +1,4 @@
-//! How near the parts of a surface are to a convex solid: bounds that cost little.
+//! Lower bounds of the distances of the parts of a surface from a convex solid.
 //!
 //! Most parts whose boxes are near are not near themselves. A plane between the solid and a part says
 //! so for the price of a few products: the one across the shortest way from the part to the solid's

@@ -1,4 +1,4 @@
-//! Where on a triangle a ball touches, where no rounding can change the answer.
+//! The feature of a triangle that a ball touches, if rounding cannot change it.
 //!
 //! What a contact lies on follows in general from the supporting features of a manifold. For a ball over a triangle
 //! that is not thin it is plain to see: the middle lies over the inside, beside one side or beside

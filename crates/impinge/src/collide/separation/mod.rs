@@ -1,4 +1,4 @@
-//! The one fact about a pair: how far apart or how deep, where and along what.
+//! The separation of two convex solids: how far apart or how deep, at which points and along which normal.
 //!
 //! Distance, closest points, proximity, contact and time of impact are all derived from the
 //! [`Separation`] that the functions here compute, so that they cannot contradict each other. A table per

@@ -1,4 +1,4 @@
-//! The distance of two solids, of which an overlap need not be measured.
+//! The distance of two solids where the depth of an overlap is not needed.
 //!
 //! Where the solids are apart the distance is that of the separation, to the bit.
 

@@ -1,4 +1,4 @@
-//! A point seen from a solid of any kind: all that there is to know of a ball around it.
+//! A point in the frame of a solid of any kind: its nearest surface point, which is all that a ball needs.
 
 use super::balls::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,

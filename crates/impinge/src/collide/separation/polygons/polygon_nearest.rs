@@ -1,6 +1,5 @@
-//! What the best axis of two polygons says of their nearest points: mostly that a corner is above a side, or that
-//! two corners are the nearest, and else each end of the sides next to it against each side of the other, eight
-//! at a time.
+//! The nearest points of two polygons, from their best axis: mostly a corner above a side, or two corners. Otherwise
+//! each end of the sides next to it is compared with each side of the other, eight at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};

@@ -1,5 +1,5 @@
-//! What the most aligned face of a box shows of itself, of eight pairs, by the rule of `SupportMap::core_feature`: all
-//! of it, the side that comes nearest, or the corner.
+//! The supporting feature on the most aligned face of a box, of eight pairs, by the rule of
+//! `SupportMap::core_feature`: the face, its nearest side, or its nearest corner.
 
 use super::clip::SIGNS;
 use crate::math::lanes::lit;
