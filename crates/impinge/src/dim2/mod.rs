@@ -149,9 +149,9 @@ pub mod query {
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 2>;
     /// A contact without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 2>;
-    /// A manifold read where it is kept.
+    /// The manifold to read: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 2>;
-    /// Points that delimit a flat area of contact.
+    /// A manifold that is kept by itself.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 2>;
 }
 

@@ -149,9 +149,9 @@ pub mod query {
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
     /// A contact without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 3>;
-    /// A manifold read where it is kept.
+    /// The manifold to read: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 3>;
-    /// Points that delimit a flat area of contact.
+    /// A manifold that is kept by itself.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 3>;
 }
 
