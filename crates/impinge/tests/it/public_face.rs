@@ -329,3 +329,49 @@ macro_rules! programs {
 
 programs!(plane, dim2, 2);
 programs!(space, dim3, 3);
+
+/// Vectors and poses of glam, in and out of a world.
+#[cfg(feature = "glam")]
+mod glam_conversions {
+    use glam::{DQuat, DVec3, Mat4, Quat, Vec2, Vec3};
+
+    /// A ball that a program with vectors of glam drops on a box in 3D.
+    #[test]
+    fn in_space() {
+        use impinge::dim3::prelude::*;
+
+        let mut world = CollisionWorld::<f32, ()>::new(0.02);
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        let floor = ShapeHandle::new(Cuboid::new(Vec3::new(4.0, 1.0, 4.0).into()));
+        world.add(Isometry::identity(), floor, groups, query, ());
+        let (place, turn) = (Vec3::new(0.5, 1.75, -0.25), Quat::from_rotation_y(0.5));
+        let ball =
+            world.add((place, turn).into(), ShapeHandle::new(Ball::new(1.0)), groups, query, ());
+        world.update();
+        let (_, _, view) = world.contact_views().next().expect("it touches");
+        let contact = view.deepest_contact().contact;
+        assert_eq!(Vec3::from(contact.world1), Vec3::new(0.5, 1.0, -0.25), "under the ball");
+        assert_eq!(Vec3::from(*contact.normal), Vec3::Y, "up");
+
+        let object = world.collision_object(ball).expect("it is there");
+        let (back, turned): (Vec3, Quat) = (*object.position()).into();
+        assert_eq!((back, turned), (place, turn), "as it was given");
+        let matrix = Mat4::from(*object.position());
+        assert_eq!(matrix.transform_point3(Vec3::ZERO), place, "and as a matrix");
+        let exact = Isometry::<f64>::from((DVec3::X, DQuat::IDENTITY));
+        assert_eq!(exact.translation.x, 1.0, "of f64 too");
+    }
+
+    /// Points and poses in 2D.
+    #[test]
+    fn in_the_plane() {
+        use impinge::dim2::prelude::*;
+
+        let pose = Isometry::<f32>::from((Vec2::new(2.0, 0.0), 0.25));
+        let (place, angle): (Vec2, f32) = pose.into();
+        assert_eq!(place, Vec2::new(2.0, 0.0), "where it is");
+        assert!((angle - 0.25).abs() < 1e-6, "how it is turned");
+        let ball = Ball::new(1.0_f32);
+        assert!(ball.contains_point(&pose, &Point::from(Vec2::new(2.5, 0.5))), "in the ball");
+    }
+}
