@@ -267,7 +267,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     }
 }
 
-/// What is computed anew each time it is asked for: in about the time of reading ten contacts.
+/// What is computed anew each time it is asked for, from the solids as of the last update.
 impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
     /// How a contact moves with its solids: what it will be at other poses, without a new query.
     ///
