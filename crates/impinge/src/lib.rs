@@ -56,6 +56,7 @@
 //! * `parallel`: an update on several threads, with the same bits.
 //! * `serde`: `Serialize` and `Deserialize` for plain values.
 //! * `mint`: conversions to and from other vector libraries, through nalgebra.
+//! * `glam`: the same to and from glam 0.33: points, vectors, rotations and isometries by `into`.
 #![forbid(unsafe_code)]
 
 pub mod bounding_volume;

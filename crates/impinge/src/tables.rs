@@ -35,8 +35,9 @@ use crate::query::composite::{PartPoint, RayQuestion, each_hit, is_crossed, near
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::{
-    ContactManifold, Flight, Impact, ImpactOptions, Moving, PointProjection, Proximity,
-    RayIntersection, Witness, impact_of_flight, impact_of_pair, time_of_pair, witness_in_world,
+    ContactManifold, Flight, Impact, ImpactOptions, ManifoldView, Moving, PointProjection,
+    Proximity, RayIntersection, TrackedContact, Witness, impact_of_flight, impact_of_pair,
+    time_of_pair, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
 use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
@@ -98,6 +99,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) update_composites:
         fn(&mut CompositeState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
     pub(crate) composite_manifolds: CompositeManifoldsFn<N, D>,
+    /// A contact of a manifold that is read in place, with its kinematic.
+    pub(crate) tracked_contact: fn(&ManifoldView<'_, N, D>, usize) -> TrackedContact<N, D>,
     pub(crate) proximity: fn(&Posed<'_, N, D>, N) -> Proximity,
     pub(crate) update_pairs: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &mut Events),
     /// The step of a broad phase: what is pending, the filter, and what hears of changes.
@@ -341,6 +344,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             public_manifold: ContactState::manifolds,
             update_composites: CompositeState::update,
             composite_manifolds: CompositeState::manifolds,
+            tracked_contact: |view, index| view.tracked(index),
             proximity: proximity_of,
             update_pairs: DefaultNarrowPhase::update_pairs_here,
             find_pairs: PairFinder::update,

@@ -149,9 +149,9 @@ pub mod query {
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 2>;
     /// A contact without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 2>;
-    /// A manifold read where it is kept.
+    /// The manifold to read: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 2>;
-    /// Points that delimit a flat area of contact.
+    /// A manifold that is kept by itself.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 2>;
 }
 
@@ -245,7 +245,7 @@ pub mod partitioning {
 
 /// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
 ///
-/// They are nalgebra's types, and [`na`](super::na) is the way to all else that it has.
+/// They are nalgebra's types, and [`na`](crate::dim2::na) is the way to all else that it has.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Rotation, Vector};

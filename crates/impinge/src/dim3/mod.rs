@@ -149,9 +149,9 @@ pub mod query {
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
     /// A contact without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 3>;
-    /// A manifold read where it is kept.
+    /// The manifold to read: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 3>;
-    /// Points that delimit a flat area of contact.
+    /// A manifold that is kept by itself.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 3>;
 }
 
@@ -247,7 +247,7 @@ pub mod partitioning {
 
 /// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
 ///
-/// They are nalgebra's types, and [`na`](super::na) is the way to all else that it has.
+/// They are nalgebra's types, and [`na`](crate::dim3::na) is the way to all else that it has.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Rotation, Vector};

@@ -8,6 +8,11 @@ use crate::tables::Compiled;
 /// A floating-point scalar of the library: `f32` or `f64`.
 ///
 /// Sealed: the kernels are compiled in this crate for these two types and no other.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scalar of impinge",
+    label = "neither `f32` nor `f64`",
+    note = "scalars are `f32` and, with the feature `f64`, `f64`; generic code asks for `N: Real`"
+)]
 pub trait Real: RealField + Scalar + Copy + Default + Compiled + Eight {
     /// 0.
     const ZERO: Self;

@@ -9,6 +9,13 @@ use core::fmt::Debug;
 ///
 /// Generic code that needs an algorithm of one dimension asks for `N: Space<D>`; a function for one
 /// dimension only needs `N: Real`, which implies it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not known to be a scalar of impinge in {D} dimensions",
+    label = "`Space<{D}>` is not implemented for `{Self}`",
+    note = "there are 2 and 3 dimensions, of `f32` and `f64`",
+    note = "code for one dimension uses the types of `dim2` or `dim3` and asks for `N: Real`; code for both asks \
+            for `N: Space<D>`"
+)]
 pub trait Space<const D: usize>: Real {
     /// The user's type of a pose: nalgebra's `Isometry2` or `Isometry3`.
     type Isometry: Copy + Debug + PartialEq + Send + Sync + 'static;

@@ -74,8 +74,7 @@ impl<'a, N: Space<D>, const D: usize> Iterator for CompositeViews<'a, N, D> {
             if self.patch != usize::MAX {
                 let (key, entry) =
                     (self.group.keys()[self.place], &self.group.states()[self.place]);
-                let home = self.table.pose(entry.state.home(key));
-                let view = entry.state.view(self.patch, home, entry.number);
+                let view = entry.state.view(self.table, key, entry.number, self.patch);
                 self.patch += 1;
                 if let Some(view) = view {
                     return Some((key[0], key[1], view));

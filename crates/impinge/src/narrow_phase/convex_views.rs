@@ -93,8 +93,7 @@ impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
         let group = if self.flags == 0 { self.next_word()? } else { self.group? };
         let place = place(self.word, &mut self.flags);
         let (key, entry) = (group.keys()[place], &group.states()[place]);
-        let home = self.table.pose(entry.state.home(key));
         debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
-        Some((key[0], key[1], entry.state.view(home, entry.number)))
+        Some((key[0], key[1], entry.state.view(self.table, key, entry.number)))
     }
 }

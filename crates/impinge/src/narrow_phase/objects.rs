@@ -7,7 +7,8 @@ use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::collide::far::ReachBounds;
 use crate::math::{Pose, Real, Space};
 use crate::memory::Look;
-use crate::shape::ShapeHandle;
+use crate::query::PlacedSolids;
+use crate::shape::{Geometry, ShapeHandle};
 
 /// The row of an object that has none.
 const NONE: u32 = u32::MAX;
@@ -88,6 +89,12 @@ pub(crate) struct ObjectRow<N: Space<D>, const D: usize> {
     pub(crate) isometry: N::Isometry,
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) query: GeometricQueryType<N>,
+}
+
+impl<N: Space<D>, const D: usize> PlacedSolids<N, D> for ObjectTable<N, D> {
+    fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
+        (self.pose(object), self.shape(object).geometry())
+    }
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {

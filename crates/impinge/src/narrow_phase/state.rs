@@ -2,6 +2,7 @@
 //!
 //! What a world computes of a pair has the bits of a generator that follows that pair alone.
 
+use super::ObjectTable;
 use super::group::PairKey;
 use crate::collide::far::{Apart, ReachBounds};
 use crate::collide::pair::is_swapped;
@@ -11,7 +12,7 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
+use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
@@ -276,12 +277,17 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         names.fold(0, u32::wrapping_add)
     }
 
-    /// The contacts, which are not none, read in place; the pose is that of [`Self::home`] at the last
-    /// update.
+    /// The contacts, which are not none, read in place.
     #[inline]
-    pub(crate) fn view<'a>(&'a self, pose1: &'a Pose<N, D>, pair: u64) -> ManifoldView<'a, N, D> {
-        let placement = Placement { pose1, pair, is_swapped: self.kept.swapped };
-        ManifoldView::of_convex(&self.kept.contacts, placement)
+    pub(super) fn view<'a>(
+        &'a self,
+        table: &'a ObjectTable<N, D>,
+        key: PairKey,
+        number: u64,
+    ) -> ManifoldView<'a, N, D> {
+        let pose1 = table.pose(self.home(key));
+        let placement = Placement { pose1, pair: number, is_swapped: self.kept.swapped };
+        ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(table, key))
     }
 }
 
@@ -307,14 +313,16 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     /// As [`ContactState::view`], of one patch of several; `None` behind the last.
     #[inline]
-    pub(crate) fn view<'a>(
+    pub(super) fn view<'a>(
         &'a self,
+        table: &'a ObjectTable<N, D>,
+        key: PairKey,
+        number: u64,
         patch: usize,
-        pose1: &'a Pose<N, D>,
-        pair: u64,
     ) -> Option<ManifoldView<'a, N, D>> {
-        let placement = Placement { pose1, pair, is_swapped: self.swapped };
-        self.contacts.view(patch, placement)
+        let pose1 = table.pose(self.home(key));
+        let placement = Placement { pose1, pair: number, is_swapped: self.swapped };
+        self.contacts.view(patch, placement, PairRef::new(table, key))
     }
 }
 

@@ -52,6 +52,8 @@ impl<'a, N: Space<D>, I: Iterator<Item = View<'a, N, D>>, const D: usize> Iterat
 /// world.update();
 ///
 /// let pair = world.contact_pair(a, b).expect("their boxes meet");
+/// let depths = pair.views().flat_map(|view| view.contacts()).map(|point| point.contact.depth);
+/// assert_eq!(depths.collect::<Vec<_>>(), [0.25, 0.25]);
 /// let mut manifolds = Vec::new();
 /// pair.contacts(&mut manifolds);
 /// assert_eq!((manifolds.len(), pair.num_contacts()), (1, 2));
@@ -94,6 +96,14 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         let make = |old| (N::tables().public_manifold)(&entry.state, &posed(), entry.number, old);
         Some(group.view(place).manifolds(make))
     }
+
+    /// The same, read in place.
+    fn view(&self) -> Option<ManifoldView<'a, N, D>> {
+        let (group, place) = (self.group, self.place);
+        let entry = group.state(place);
+        let view = || entry.state.view(self.table, group.key(place), entry.number);
+        group.is_touching(place).then(view)
+    }
 }
 
 impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
@@ -105,6 +115,12 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
         let make =
             |old| (N::tables().composite_manifolds)(&entry.state, &posed(), entry.number, old);
         group.view(place).manifolds(make)
+    }
+
+    /// The same, read in place.
+    fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
+        let (key, entry) = (self.group.key(self.place), self.group.state(self.place));
+        (0..).map_while(move |patch| entry.state.view(self.table, key, entry.number, patch))
     }
 }
 
@@ -135,6 +151,19 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
             ViewedContacts::Custom(algorithm) => algorithm.contacts(&mut others),
         }
         own.into_iter().chain(parts).chain(others)
+    }
+
+    /// The manifolds that hold a contact, read where they are kept: the same contacts as
+    /// [`Self::contacts`] gives, in the same order.
+    pub fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
+        let (mut own, mut patches, mut others) = (None, None, Vec::new());
+        match self.0 {
+            ViewedContacts::BuiltIn(pair) => own = pair.view(),
+            ViewedContacts::Composite(pair) => patches = Some(pair.views()),
+            ViewedContacts::Custom(algorithm) => algorithm.contacts(&mut others),
+        }
+        let others = others.into_iter().filter_map(ManifoldView::of_manifold);
+        own.into_iter().chain(patches.into_iter().flatten()).chain(others)
     }
 
     /// Pushes the manifolds that hold a contact.

@@ -51,7 +51,8 @@ impl ContactId {
     }
 }
 
-/// A contact, how it moves, and its name.
+/// A contact, how it moves, and its name: what [`ManifoldView::tracked_contact`](super::ManifoldView::tracked_contact)
+/// gives, and what a [`ContactManifold`] holds.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -102,7 +103,11 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
     }
 }
 
-/// Points that delimit a flat area of contact, with one common normal.
+/// Points that delimit a flat area of contact, with one common normal: a manifold that is kept by itself.
+///
+/// [`ManifoldView`](super::ManifoldView) is the manifold to read in a world, and
+/// [`ManifoldView::to_manifold`](super::ManifoldView::to_manifold) makes one of these of it, to be kept over an
+/// update; algorithms of one's own make them, too.
 ///
 /// Two convex solids have one manifold, composites one for each flat patch that they touch in. A box
 /// that rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives
@@ -209,18 +214,25 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     old: ContactManifold<N, D>,
 ) -> ContactManifold<N, D> {
     let mut sides = KinematicSides::new(pair, &raw.normal);
-    let normal = placement.pose1.vector(&raw.normal);
-    let tracked = |point: &RawPoint<N, D>| {
-        let contact = placed(&raw.normal, point, placement.pose1, normal);
-        let kinematic = sides.kinematic(point);
-        let id = ContactId { pair: placement.pair, number: point.id };
-        let tracked = TrackedContact { contact, kinematic, id, part1: 0, part2: 0 };
-        if placement.is_swapped { tracked.flipped() } else { tracked }
-    };
     let mut contacts = old.contacts;
     contacts.clear();
-    contacts.extend(raw.points.iter().map(tracked));
+    let points = raw.points.iter();
+    contacts.extend(points.map(|point| tracked(&mut sides, &raw.normal, point, placement)));
     ContactManifold { contacts }
+}
+
+/// A contact of two convex solids as users see it; `sides` and `normal` are those of its manifold.
+pub(super) fn tracked<N: Real, const D: usize>(
+    sides: &mut KinematicSides<'_, N, D>,
+    normal: &Vector<N, D>,
+    point: &RawPoint<N, D>,
+    placement: &Placement<'_, N, D>,
+) -> TrackedContact<N, D> {
+    let contact = placed(normal, point, placement.pose1, placement.pose1.vector(normal));
+    let kinematic = sides.kinematic(point);
+    let id = ContactId { pair: placement.pair, number: point.id };
+    let tracked = TrackedContact { contact, kinematic, id, part1: 0, part2: 0 };
+    if placement.is_swapped { tracked.flipped() } else { tracked }
 }
 
 /// A point in the world; `own` is the manifold's normal, `normal` that in the world.

@@ -4,15 +4,18 @@
 
 use core::fmt;
 
-use super::manifold::placed;
-use super::{Contact, ContactId, ContactManifold, Placement};
+use super::kinematic::KinematicSides;
+use super::manifold::{placed, tracked};
+use super::{
+    Contact, ContactId, ContactKinematic, ContactManifold, Placement, TrackedContact, composite,
+};
 use crate::collide::mesh::Patch;
-use crate::collide::{RawManifold, RawPoint};
-use crate::math::{Real, Unit, Vector};
-use crate::shape::FeatureId;
+use crate::collide::{Pair, RawManifold, RawPoint};
+use crate::math::{Pose, Real, Space, Unit, Vector};
+use crate::shape::{FeatureId, Geometry};
 
-/// A contact as [`ManifoldView`] gives it: a [`TrackedContact`](super::TrackedContact) without its
-/// kinematic.
+/// A contact as [`ManifoldView::contacts`] gives it: where it is, its name, and what touches. How it moves
+/// is [`ManifoldView::kinematic`].
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -64,12 +67,27 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
     }
 }
 
-/// A [`ContactManifold`] read where the narrow phase keeps it: each contact is placed in the world
-/// when it is asked for, and nothing is stored.
+/// Points that delimit a flat area of contact, with one common normal: the manifold to read.
 ///
-/// It gives the same contacts, to the bit and in the same order, as the manifold that it stands for,
-/// but not their kinematics. To read every contact of a world once, as a solver does, it is
-/// several times faster: it moves a fifth of the memory. It always holds a contact.
+/// It is read where the narrow phase keeps it. Each contact is placed in the world when it is asked for,
+/// and nothing is stored: to read every contact of a world once, as a solver does, moves a fifth of the
+/// memory that a [`ContactManifold`] for each pair would. It always holds a contact.
+///
+/// | to read | ask |
+/// |---|---|
+/// | the common normal, from the first solid to the second | [`Self::normal`] |
+/// | points, depth, id, features and parts of each contact | [`Self::contacts`], a [`ContactPoint`] for each |
+/// | the deepest of them | [`Self::deepest_contact`] |
+/// | how a contact moves with its solids | [`Self::kinematic`] |
+/// | both at once, as the guide of ncollide has it | [`Self::tracked_contact`], a [`TrackedContact`] |
+/// | the manifold to keep over an update | [`Self::to_manifold`], a [`ContactManifold`] |
+///
+/// A world gives views of all its manifolds
+/// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of those of a pair
+/// ([`ContactPair::views`](crate::narrow_phase::ContactPair::views));
+/// [`CollisionWorld::contact_manifolds`](crate::world::CollisionWorld::contact_manifolds) and
+/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) give the same contacts, to the bit
+/// and in the same order, as manifolds that are made when first asked for.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -87,18 +105,50 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 /// let (_, _, view) = world.contact_views().next().expect("they overlap");
 /// assert_eq!((view.len(), *view.normal()), (2, Vector::y()));
 /// assert!(view.contacts().all(|point| point.contact.depth == 0.25));
+/// // Had the upper one been lifted by an eighth:
+/// let lifted = view.kinematic(0).contact(&Isometry::identity(), &Isometry::translation(0.0, 1.875));
+/// assert_eq!(lifted.depth, 0.125);
 /// # assert!(world.contains(a) && world.contains(b));
 /// ```
 #[derive(Clone, Copy)]
 pub struct ManifoldView<'a, N: Real, const D: usize>(ViewSource<'a, N, D>);
 
+/// The objects of a pair, of which no view needs more than the pose of one until it is asked how contacts move.
+#[derive(Clone, Copy)]
+pub(crate) struct PairRef<'a, N: Real, const D: usize> {
+    solids: &'a dyn PlacedSolids<N, D>,
+    /// In the user's order.
+    key: [u32; 2],
+}
+
+/// Objects by number, as of the last update.
+pub(crate) trait PlacedSolids<N: Real, const D: usize>: Sync {
+    /// Where an object is, and what it is.
+    fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>);
+}
+
+impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {
+    #[inline]
+    pub(crate) fn new(solids: &'a dyn PlacedSolids<N, D>, key: [u32; 2]) -> Self {
+        Self { solids, key }
+    }
+
+    /// The solids in the order in which their contacts are kept.
+    fn in_order(&self, is_swapped: bool) -> Pair<'a, N, D> {
+        let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
+        let (pose1, solid1) = self.solids.placed(self.key[first]);
+        let (pose2, solid2) = self.solids.placed(self.key[second]);
+        Pair::new([solid1, solid2], [pose1, pose2])
+    }
+}
+
 /// What a view looks at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 enum ViewSource<'a, N: Real, const D: usize> {
     /// The contacts of two convex solids.
-    Convex(&'a RawManifold<N, D>, Placement<'a, N, D>),
+    Convex(&'a RawManifold<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
     /// Some of the contacts of a composite.
-    Patch(&'a Patch<N, D>, Placement<'a, N, D>),
+    Patch(&'a Patch<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
     /// What an algorithm of the user's own has found.
     Made(&'a ContactManifold<N, D>),
 }
@@ -111,12 +161,22 @@ impl<N: Real, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
 }
 
 impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
-    pub(crate) fn of_convex(raw: &'a RawManifold<N, D>, placement: Placement<'a, N, D>) -> Self {
-        Self(ViewSource::Convex(raw, placement))
+    #[inline]
+    pub(crate) fn of_convex(
+        raw: &'a RawManifold<N, D>,
+        placement: Placement<'a, N, D>,
+        pair: PairRef<'a, N, D>,
+    ) -> Self {
+        Self(ViewSource::Convex(raw, placement, pair))
     }
 
-    pub(super) fn of_patch(patch: &'a Patch<N, D>, placement: Placement<'a, N, D>) -> Self {
-        Self(ViewSource::Patch(patch, placement))
+    #[inline]
+    pub(super) fn of_patch(
+        patch: &'a Patch<N, D>,
+        placement: Placement<'a, N, D>,
+        pair: PairRef<'a, N, D>,
+    ) -> Self {
+        Self(ViewSource::Patch(patch, placement, pair))
     }
 
     /// A view of a manifold; `None` if it is empty.
@@ -131,8 +191,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
     pub fn len(&self) -> usize {
         match self.0 {
-            ViewSource::Convex(raw, _) => raw.points.len(),
-            ViewSource::Patch(patch, _) => patch.points.len(),
+            ViewSource::Convex(raw, ..) => raw.points.len(),
+            ViewSource::Patch(patch, ..) => patch.points.len(),
             ViewSource::Made(manifold) => manifold.len(),
         }
     }
@@ -146,8 +206,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
             Unit::new_unchecked(if placement.is_swapped { -normal } else { normal })
         };
         match self.0 {
-            ViewSource::Convex(raw, placement) => world(&raw.normal, &placement),
-            ViewSource::Patch(patch, placement) => world(&patch.normal, &placement),
+            ViewSource::Convex(raw, placement, _) => world(&raw.normal, &placement),
+            ViewSource::Patch(patch, placement, _) => world(&patch.normal, &placement),
             ViewSource::Made(manifold) => manifold.contacts()[0].contact.normal,
         }
     }
@@ -163,8 +223,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[must_use]
     pub fn deepest_contact(&self) -> ContactPoint<N, D> {
         let depth = |index: usize| match self.0 {
-            ViewSource::Convex(raw, _) => -raw.points[index].distance,
-            ViewSource::Patch(patch, _) => -patch.points[index].raw.distance,
+            ViewSource::Convex(raw, ..) => -raw.points[index].distance,
+            ViewSource::Patch(patch, ..) => -patch.points[index].raw.distance,
             ViewSource::Made(manifold) => manifold.contacts()[index].contact.depth,
         };
         let deeper = |best, index| if depth(index) > depth(best) { index } else { best };
@@ -176,8 +236,8 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[inline]
     fn own_normal(&self) -> [Vector<N, D>; 2] {
         let (own, pose1) = match self.0 {
-            ViewSource::Convex(raw, placement) => (raw.normal, placement.pose1),
-            ViewSource::Patch(patch, placement) => (patch.normal, placement.pose1),
+            ViewSource::Convex(raw, placement, _) => (raw.normal, placement.pose1),
+            ViewSource::Patch(patch, placement, _) => (patch.normal, placement.pose1),
             ViewSource::Made(_) => return [Vector::<N, D>::zeros(); 2],
         };
         [own, pose1.vector(&own)]
@@ -187,10 +247,10 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     #[inline]
     fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
-            ViewSource::Convex(raw, placement) => {
+            ViewSource::Convex(raw, placement, _) => {
                 point(normal, &raw.points[index], [0; 2], &placement)
             }
-            ViewSource::Patch(patch, placement) => {
+            ViewSource::Patch(patch, placement, _) => {
                 let found = &patch.points[index];
                 point(normal, &found.raw, found.parts, &placement)
             }
@@ -205,6 +265,49 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
                     part2: made.part2,
                 }
             }
+        }
+    }
+}
+
+/// What is computed anew each time it is asked for, from the solids as of the last update.
+impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
+    /// How a contact moves with its solids: what it will be at other poses, without a new query.
+    ///
+    /// # Panics
+    /// If there is no contact of this index; the order is that of [`Self::contacts`].
+    #[must_use]
+    pub fn kinematic(&self, index: usize) -> ContactKinematic<N, D> {
+        self.tracked_contact(index).kinematic
+    }
+
+    /// A contact with its kinematic.
+    ///
+    /// # Panics
+    /// If there is no contact of this index; the order is that of [`Self::contacts`].
+    #[must_use]
+    pub fn tracked_contact(&self, index: usize) -> TrackedContact<N, D> {
+        (N::tables().tracked_contact)(self, index)
+    }
+
+    /// The manifold by itself: all contacts with their kinematics.
+    #[must_use]
+    pub fn to_manifold(&self) -> ContactManifold<N, D> {
+        ContactManifold::from_contacts((0..self.len()).map(|index| self.tracked_contact(index)))
+    }
+
+    /// See [`Self::tracked_contact`].
+    pub(crate) fn tracked(&self, index: usize) -> TrackedContact<N, D> {
+        match self.0 {
+            ViewSource::Convex(raw, placement, pair) => {
+                let pair = pair.in_order(placement.is_swapped);
+                let mut sides = KinematicSides::new(&pair, &raw.normal);
+                tracked(&mut sides, &raw.normal, &raw.points[index], &placement)
+            }
+            ViewSource::Patch(patch, placement, pair) => {
+                let pair = pair.in_order(placement.is_swapped);
+                composite::tracked(&pair, patch, &patch.points[index], &placement)
+            }
+            ViewSource::Made(manifold) => manifold.contacts()[index],
         }
     }
 }

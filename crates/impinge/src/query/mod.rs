@@ -26,6 +26,7 @@ pub use kinematic::{ContactKinematic, ContactSide, NeighborhoodGeometry};
 pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub use manifold_view::{ContactPoint, ManifoldView};
+pub(crate) use manifold_view::{PairRef, PlacedSolids};
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub use proximity::{Proximity, proximity};
 pub use ray::{RayBatch, RayCast, RayIntersection};

@@ -89,6 +89,13 @@ use crate::math::{Pose, Real, Vector};
 /// let widths = shapes.each_ref().map(|shape| 2.0 * shape.local_aabb().half_extents().x);
 /// assert_eq!(widths, [2.0, 4.0]);
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a shape in {D} dimensions with the scalar `{N}`",
+    label = "not a `Shape<{N}, {D}>`",
+    note = "a world, its shapes and its poses have one dimension and one scalar: all from `dim2` or all from `dim3`",
+    note = "of a `ShapeHandle` the shape is `&*handle`; a type of your own implements `Shape`, beside `SupportMap` \
+            or `CompositeShape`"
+)]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
     /// geometry of a built-in shape that yours stands for.

@@ -37,6 +37,12 @@ pub struct CurvedSupport<N: Real, const D: usize> {
 /// assert_eq!(capsule.core_support(&Vector::new(1.0, 1.0, 0.0)).y, 2.0, "of the segment");
 /// assert_eq!(capsule.rounding(), 0.5, "by which it is inflated");
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no support points in {D} dimensions with the scalar `{N}`",
+    label = "not a `SupportMap<{N}, {D}>`",
+    note = "convex shapes have them, in their own dimension and scalar; half-spaces and composites have none",
+    note = "a convex shape of your own implements `SupportMap`, whose one required method is `core_support`"
+)]
 pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     /// A point of the core farthest along `direction`.
     ///

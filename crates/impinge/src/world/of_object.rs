@@ -41,9 +41,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = (&CollisionObject<N, D, T>, ContactPoint<N, D>)> {
         self.partners(handle).flat_map(move |other| {
             let pair = self.contact_pair(handle, other.handle());
-            let views = pair.into_iter().flat_map(ContactPair::manifolds);
             let points =
-                views.filter_map(ManifoldView::of_manifold).flat_map(ManifoldView::contacts);
+                pair.into_iter().flat_map(ContactPair::views).flat_map(ManifoldView::contacts);
             let is_second = other.handle() < handle;
             points.map(move |point| (other, if is_second { point.flipped() } else { point }))
         })

@@ -103,7 +103,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// All manifolds that hold a contact.
+    /// All manifolds that hold a contact, each made when first asked for: the contacts of
+    /// [`Self::contact_views`], in order of the pairs.
     pub fn contact_manifolds(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, &ContactManifold<N, D>)> {
@@ -113,8 +114,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// All manifolds that hold a contact, read where they are kept: the quick way to read every
-    /// contact once, for those who need no [`ContactKinematic`](crate::query::ContactKinematic).
+    /// All manifolds that hold a contact, read where they are kept: [`ManifoldView`] says what there is to
+    /// read.
     ///
     /// The order is that of the library's memory: no particular one, but the same for the same
     /// history, on every machine and number of threads.
@@ -139,6 +140,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// }
     /// # assert_eq!(world.contact_views().count(), 1);
     /// ```
+    #[doc(alias = "contact_manifolds")]
     pub fn contact_views(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ManifoldView<'_, N, D>)> {

@@ -6,7 +6,7 @@ use crate::collide::mesh::{Patch, PatchPoint};
 use crate::math::{Pose, Space, Vector};
 use crate::query::kinematic::{ContactKinematic, KinematicSides};
 use crate::query::manifold::{TrackedContact, placed};
-use crate::query::{ContactId, ContactManifold, ManifoldView, Placement};
+use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement};
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 
 /// Normals that differ by no more than so many rounding units are the same.
@@ -19,8 +19,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         &'a self,
         patch: usize,
         placement: Placement<'a, N, D>,
+        pair: PairRef<'a, N, D>,
     ) -> Option<ManifoldView<'a, N, D>> {
-        Some(ManifoldView::of_patch(self.patches().get(patch)?, placement))
+        Some(ManifoldView::of_patch(self.patches().get(patch)?, placement, pair))
     }
 
     /// One manifold for each patch; `pair` is that of the last update. They are written over the
@@ -41,7 +42,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// One contact in the world.
-fn tracked<N: Space<D>, const D: usize>(
+pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
     point: &PatchPoint<N, D>,

@@ -41,6 +41,12 @@ pub type PartPath = SmallVec<[u32; 4]>;
 /// assert_eq!(last.b().x, 2.0);
 /// assert!(line.are_adjacent(0, 1));
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not made of parts in {D} dimensions with the scalar `{N}`",
+    label = "not a `CompositeShape<{N}, {D}>`",
+    note = "composites are `TriMesh`, `Polyline`, `HeightField`, `Compound`, and types of your own that implement \
+            `CompositeShape`"
+)]
 pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// How many parts there are; they are numbered from 0.
     fn num_parts(&self) -> u32;

@@ -1,7 +1,61 @@
 //! Programs as a user writes them who begins with the prelude: the names that there are, in both dimensions and for
 //! both scalars, and that short names are the generic types.
 
-use impinge::math::Real;
+use impinge::bounding_volume::Aabb;
+use impinge::math::{Point, Real, Space, Vector};
+use impinge::shape::{
+    CompositeShape, FeatureId, Geometry, Part, PartSearch, Polyline, Shape, Surface,
+};
+
+/// A line behind a type of one's own: all that a user's surface has to answer, and no more.
+#[derive(Debug)]
+struct Ground<N: Space<D>, const D: usize>(Polyline<N, D>);
+
+impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Ground<N, D> {
+    fn num_parts(&self) -> u32 {
+        self.0.num_parts()
+    }
+
+    fn part(&self, part: u32) -> Part<'_, N, D> {
+        self.0.part(part)
+    }
+
+    fn search(&self) -> &dyn PartSearch<N, D> {
+        self.0.search()
+    }
+
+    fn surface(&self) -> Option<&dyn Surface<N, D>> {
+        Some(self)
+    }
+
+    fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
+        self.0.each_corner(part, visit);
+    }
+}
+
+impl<N: Space<D>, const D: usize> Surface<N, D> for Ground<N, D> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
+        self.0.admits(part, feature, normal)
+    }
+
+    fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.0.snapped(part, normal)
+    }
+
+    fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
+        self.0.faces(part, center)
+    }
+}
+
+impl<N: Space<D>, const D: usize> Shape<N, D> for Ground<N, D> {
+    fn geometry(&self) -> Geometry<'_, N, D> {
+        Geometry::composite(self)
+    }
+
+    fn local_aabb(&self) -> Aabb<N, D> {
+        self.0.local_aabb()
+    }
+}
 
 /// The programs of one dimension; they are the same source for both.
 macro_rules! programs {
@@ -9,7 +63,7 @@ macro_rules! programs {
         mod $name {
             use impinge::$dim::prelude::*;
 
-            use super::Real;
+            use super::{Ground, Real};
 
             fn at<N: Real>(height: f64) -> Isometry<N> {
                 Isometry::from_parts((Vector::y() * N::lit(height)).into(), Rotation::identity())
@@ -141,6 +195,111 @@ macro_rules! programs {
                 assert_eq!(found.map(|hit| hit.toi), ball.toi_with_ray(&here, &ray, true), "time");
             }
 
+            /// A line along the first axis.
+            fn line<N: Real>() -> Polyline<N> {
+                let at = |x: i32| Point::from(Vector::x() * N::lit(f64::from(x)));
+                Polyline::open((-3..4).map(at).collect())
+            }
+
+            fn surfaces<N: Real>() {
+                let grounds = [ShapeHandle::new(line()), ShapeHandle::new(Ground(line()))];
+                let probes: [ShapeHandle<N>; 3] = [
+                    ShapeHandle::new(Ball::new(N::ONE)),
+                    ShapeHandle::new(square(1.0)),
+                    ShapeHandle::new(Capsule::new(N::HALF, N::HALF)),
+                ];
+                for probe in probes {
+                    let found = grounds.each_ref().map(|ground| {
+                        let mut world = CollisionWorld::new(N::lit(0.02));
+                        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+                        world.add(at(0.0), ground.clone(), groups, query, ());
+                        world.add(at(0.875), probe.clone(), groups, query, ());
+                        world.update();
+                        let views = world.contact_views();
+                        let points = views.flat_map(|(_, _, view)| view.contacts());
+                        points.map(|p| (p.contact, p.feature1, p.part1)).collect::<Vec<_>>()
+                    });
+                    assert!(!found[0].is_empty(), "they touch");
+                    assert_eq!(found[0], found[1], "a user's line is touched as the library's is");
+                }
+            }
+
+            /// A world with pairs of all ways that contacts are kept, in both orders.
+            fn crowd<N: Real>() -> CollisionWorld<N, ()> {
+                let mut world = CollisionWorld::new(N::lit(0.02));
+                let query = ContactQuery::new(N::lit(0.125)).with_angular_prediction(N::lit(0.09));
+                let shapes: [ShapeHandle<N>; 6] = [
+                    ShapeHandle::new(square(1.0)),
+                    ShapeHandle::new(Ball::new(N::ONE)),
+                    ShapeHandle::new(line()),
+                    ShapeHandle::new(Capsule::new(N::ONE, N::HALF)),
+                    ShapeHandle::new(HalfSpace::new(Vector::y_axis())),
+                    ShapeHandle::new(square(0.75)),
+                ];
+                for (index, shape) in (0..).zip(shapes.iter().cycle()).take(18) {
+                    let place = Vector::x() * N::lit(0.75 * f64::from(index % 5))
+                        + Vector::y() * N::lit(0.8 * f64::from(index % 3));
+                    let turned = if index % 2 == 0 { at::<N>(0.0) } else { tilted() };
+                    let pose = Isometry::from_parts(place.into(), turned.rotation);
+                    world.add(pose, shape.clone(), CollisionGroups::new(), query, ());
+                }
+                world.update();
+                world
+            }
+
+            /// A turn by a tenth of a radian, all in the plane of the first two axes.
+            fn tilted<N: Real>() -> Isometry<N> {
+                let (from, to) = (Vector::x(), Vector::x() + Vector::y() * N::lit(0.1));
+                let turn = Rotation::rotation_between(&from, &to);
+                Isometry::from_parts(
+                    Vector::zeros().into(),
+                    Option::from(turn).expect("no half turn"),
+                )
+            }
+
+            fn views<N: Real>() {
+                let world = crowd::<N>();
+                let name = |one: &CollisionObject<N, ()>, two: &CollisionObject<N, ()>| {
+                    (one.handle(), two.handle())
+                };
+                let views = world.contact_views();
+                let mut read: Vec<_> =
+                    views.map(|(one, two, view)| (name(one, two), view.to_manifold())).collect();
+                read.sort_by_key(|(name, _)| *name);
+                let manifolds = world.contact_manifolds();
+                let made: Vec<_> =
+                    manifolds.map(|(one, two, m)| (name(one, two), m.clone())).collect();
+                assert!(made.len() > 30, "most of them touch: {}", made.len());
+                assert_eq!(read, made, "to the bit");
+                for (one, two, pair) in world.contact_pairs() {
+                    let mut expected = Vec::new();
+                    pair.contacts(&mut expected);
+                    assert_eq!(pair.views().count(), expected.len(), "as many of a pair");
+                    for (view, manifold) in pair.views().zip(expected) {
+                        assert_eq!(&view.to_manifold(), manifold, "those of a pair");
+                        for (index, tracked) in manifold.contacts().iter().enumerate() {
+                            assert_eq!(&view.tracked_contact(index), tracked, "each by itself");
+                            let kinematic = view.kinematic(index);
+                            let now = kinematic.contact(one.position(), two.position());
+                            let error = (now.depth - tracked.contact.depth).abs();
+                            assert!(error <= N::EPSILON * N::lit(256.0), "where it is: {error}");
+                        }
+                    }
+                }
+            }
+
+            #[test]
+            fn surfaces_of_ones_own() {
+                surfaces::<f32>();
+                surfaces::<f64>();
+            }
+
+            #[test]
+            fn a_view_has_all_that_a_manifold_has() {
+                views::<f32>();
+                views::<f64>();
+            }
+
             #[test]
             fn query_types_by_name() {
                 query_types::<f32>();
@@ -170,3 +329,49 @@ macro_rules! programs {
 
 programs!(plane, dim2, 2);
 programs!(space, dim3, 3);
+
+/// Vectors and poses of glam, in and out of a world.
+#[cfg(feature = "glam")]
+mod glam_conversions {
+    use glam::{DQuat, DVec3, Mat4, Quat, Vec2, Vec3};
+
+    /// A ball that a program with vectors of glam drops on a box in 3D.
+    #[test]
+    fn in_space() {
+        use impinge::dim3::prelude::*;
+
+        let mut world = CollisionWorld::<f32, ()>::new(0.02);
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        let floor = ShapeHandle::new(Cuboid::new(Vec3::new(4.0, 1.0, 4.0).into()));
+        world.add(Isometry::identity(), floor, groups, query, ());
+        let (place, turn) = (Vec3::new(0.5, 1.75, -0.25), Quat::from_rotation_y(0.5));
+        let ball =
+            world.add((place, turn).into(), ShapeHandle::new(Ball::new(1.0)), groups, query, ());
+        world.update();
+        let (_, _, view) = world.contact_views().next().expect("it touches");
+        let contact = view.deepest_contact().contact;
+        assert_eq!(Vec3::from(contact.world1), Vec3::new(0.5, 1.0, -0.25), "under the ball");
+        assert_eq!(Vec3::from(*contact.normal), Vec3::Y, "up");
+
+        let object = world.collision_object(ball).expect("it is there");
+        let (back, turned): (Vec3, Quat) = (*object.position()).into();
+        assert_eq!((back, turned), (place, turn), "as it was given");
+        let matrix = Mat4::from(*object.position());
+        assert_eq!(matrix.transform_point3(Vec3::ZERO), place, "and as a matrix");
+        let exact = Isometry::<f64>::from((DVec3::X, DQuat::IDENTITY));
+        assert_eq!(exact.translation.x, 1.0, "of f64 too");
+    }
+
+    /// Points and poses in 2D.
+    #[test]
+    fn in_the_plane() {
+        use impinge::dim2::prelude::*;
+
+        let pose = Isometry::<f32>::from((Vec2::new(2.0, 0.0), 0.25));
+        let (place, angle): (Vec2, f32) = pose.into();
+        assert_eq!(place, Vec2::new(2.0, 0.0), "where it is");
+        assert!((angle - 0.25).abs() < 1e-6, "how it is turned");
+        let ball = Ball::new(1.0_f32);
+        assert!(ball.contains_point(&pose, &Point::from(Vec2::new(2.5, 0.5))), "in the ball");
+    }
+}
