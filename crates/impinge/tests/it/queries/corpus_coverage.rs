@@ -11,18 +11,18 @@ use query_support::corpus::{narrow_phase, regression};
 
 /// By kind of question: the file that runs all cases of it, in both scalars, and how many there are.
 const RUN: [(&str, &str, usize); 12] = [
-    ("convex_hull", "hull/corpus.rs", 8),
-    ("linear_cast", "query_corpus.rs", 27),
-    ("local_aabb", "ray_corpus.rs", 1),
-    ("nonlinear_cast", "case_sweeps.rs", 1),
-    ("point_projection", "ray_corpus.rs", 8),
-    ("point_sign_grid", "ray_corpus.rs", 1),
-    ("ray", "ray_corpus.rs", 19),
-    ("ray_aabb", "ray_corpus.rs", 3),
-    ("segment_segment", "query_corpus.rs", 5),
-    ("signed_distance", "query_corpus.rs", 89),
-    ("world_point_projection", "world_corpus.rs", 1),
-    ("world_scenario", "world_corpus.rs", 14),
+    ("convex_hull", "queries/hull/corpus.rs", 8),
+    ("linear_cast", "queries/query_corpus.rs", 27),
+    ("local_aabb", "queries/ray_corpus.rs", 1),
+    ("nonlinear_cast", "cases/sweeps.rs", 1),
+    ("point_projection", "queries/ray_corpus.rs", 8),
+    ("point_sign_grid", "queries/ray_corpus.rs", 1),
+    ("ray", "queries/ray_corpus.rs", 19),
+    ("ray_aabb", "queries/ray_corpus.rs", 3),
+    ("segment_segment", "queries/query_corpus.rs", 5),
+    ("signed_distance", "queries/query_corpus.rs", 89),
+    ("world_point_projection", "worlds/world_corpus.rs", 1),
+    ("world_scenario", "worlds/world_corpus.rs", 14),
 ];
 
 /// Cases that are not run, and why not.

@@ -252,7 +252,7 @@ in_tests! {
 }
 
 #[test]
-#[should_panic(expected = "CollisionObjectHandle { index: 1, generation: 0 } names no object")]
+#[should_panic(expected = "CollisionObjectHandle { index: 1, generation: 0 } is stale")]
 fn panics_name_the_handle() {
     let (mut world, [_, _, stale]) = pair::<f32, 2>();
     world.set_position(stale, <f32 as Stage<2>>::on_x(0.0));
