@@ -245,7 +245,7 @@ pub mod partitioning {
 
 /// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
 ///
-/// They are nalgebra's types, and [`na`](crate::dim2::na) is the way to all else that it has.
+/// They are nalgebra's types, and [`na`] is the way to all else that it has.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Rotation, Vector};

@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 
-/// Why a [`TriMesh`](super::TriMesh) or a [`Polyline`](super::Polyline) refused its input. Parts are
+/// Why a [`TriMesh`](crate::shape::TriMesh) or a [`Polyline`](crate::shape::Polyline) refused its input. Parts are
 /// its triangles or segments.
 ///
 /// ```

@@ -20,7 +20,7 @@ use crate::shape::composite::polyline_parts;
 /// then what is solid lies on its left, as for an outline that runs counter-clockwise, and nothing
 /// touches it from there.
 ///
-/// **Seams.** Contacts see the line as one (see [`Surface`](super::Surface)): at a joint only those
+/// **Seams.** Contacts see the line as one (see [`Surface`](crate::shape::Surface)): at a joint only those
 /// normals count that the whole line has there, so that nothing catches on the joints of a floor.
 /// Segments that bend by less than 0.57 degrees (a sine of 0.01) count as straight.
 /// [`Self::with_internal_edges_kept`] switches this off.

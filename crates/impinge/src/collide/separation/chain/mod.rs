@@ -1,7 +1,7 @@
 //! The segments of a chain in 2D against one solid, eight side by side.
 //!
-//! The algorithms of [`polygon_polygon`](super::polygon_polygon), [`segment_lanes`](super::segments::segment_lanes) and
-//! [`ball_segment`](super::ball_segment), in the same order of operations, so that the answers have the same bits:
+//! The algorithms of [`polygon_polygon`](super::polygons::polygon_polygon), [`segment_lanes`](super::segments::segment_lanes) and
+//! [`ball_segment`](super::balls::ball_segment), in the same order of operations, so that the answers have the same bits:
 //! most segments are culled as beyond the limit, the rest computed from what is known then.
 
 mod ball;

@@ -33,8 +33,8 @@ use crate::shape::error::finite;
 /// **Front.** The front is the side that heights grow towards: that of +y, or of −y if the scale's y
 /// component is negative. Both sides can be touched, or the front alone if asked by `one_sided`.
 ///
-/// **Seams.** Contacts see the field as one surface (see [`Surface`](super::Surface)), with the rule and
-/// the tolerance that [`TriMesh`](super::TriMesh) has. [`Self::with_internal_edges_kept`] switches
+/// **Seams.** Contacts see the field as one surface (see [`Surface`](crate::shape::Surface)), with the rule and
+/// the tolerance that [`TriMesh`](crate::shape::TriMesh) has. [`Self::with_internal_edges_kept`] switches
 /// this off.
 ///
 /// **Cells.** Between four neighbouring heights lies a cell of two triangles, parts `2 · cell` and

@@ -36,7 +36,7 @@ use crate::shape::Triangle;
 /// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In 2D
 /// triangles are filled, and their winding means nothing.
 ///
-/// **Seams.** Contacts see the mesh as one surface (see [`Surface`](super::Surface)): at an edge or
+/// **Seams.** Contacts see the mesh as one surface (see [`Surface`](crate::shape::Surface)): at an edge or
 /// corner only those normals count that the whole has there, so that nothing catches on the edges of
 /// a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as one flat.
 /// [`Self::with_internal_edges_kept`] switches this off.
