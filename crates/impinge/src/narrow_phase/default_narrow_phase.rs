@@ -124,14 +124,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// The same without its pairs, but pairs of the library's own algorithms that have hardly moved keep
     /// their contacts.
     ///
-    /// While no point of the solid has moved farther than `tolerance` beside the other since the contacts
-    /// of a pair were last computed, these stay fixed to the solids, and only their depths are measured
-    /// anew, along the normal that was; a pair without contacts has none. A depth is then at most twice
-    /// the tolerance off that of a query, and contacts may begin and end late by as much: beside one within
-    /// the prediction others may be that far beyond it. Solids that overlap are never missed, as no more than the prediction of the pair counts as little. Numbers,
-    /// features and the order of contacts stay. Balls beside balls, boxes, segments and capsules, whose
-    /// closed forms are as quick, are computed anew. The answers are the same on every machine and any number
-    /// of threads, but depend on where objects were before.
+    /// While no point of the solid has moved farther than `tolerance` beside the other since the contacts of a
+    /// pair were last computed, these stay fixed to the solids, and only their depths are measured anew, along
+    /// the normal that was; a pair without contacts has none. A depth is then at most twice the tolerance off
+    /// that of a query, and contacts may begin and end late by as much: beside one within the prediction others
+    /// may be that far beyond it. Solids that overlap are never missed, as no more than the prediction of the
+    /// pair counts as little. Numbers, features and the order of contacts stay. Balls beside balls, boxes,
+    /// segments and capsules, whose closed forms are as quick, are computed anew. The answers are the same on
+    /// every machine and any number of threads, but depend on where objects were before.
     ///
     /// Worth it where most pairs move by less than a tenth of the tolerance in a step: a pair of hulls or
     /// cylinders costs as little as one of boxes then, and an object on a mesh as little as one

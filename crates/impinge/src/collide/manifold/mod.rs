@@ -141,8 +141,8 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in 3D: by the fused algorithm of its kinds where there is one and it does not
-/// decline, else from the separation.
+/// The manifold of a pair in 3D: by the batch of its kinds where there is one and it serves the pair,
+/// else from the separation.
 pub(crate) fn contacts3<N: Space<3>>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,

@@ -25,7 +25,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         let _ = part;
     }
 
-    /// Which sides all segments of a chain in 2D have; `None` of what is no chain.
+    /// Which sides all segments of a chain in 2D have; `None` of surfaces in 3D.
     fn sidedness(&self) -> Option<Sidedness> {
         None
     }
