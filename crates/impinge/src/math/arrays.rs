@@ -21,11 +21,13 @@ pub(crate) struct Arrays;
 
 /// Eight numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Array<N>([N; LANES]);
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub struct Array<N>([N; LANES]);
 
 /// A bit for each lane, the first lowest.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bits(u8);
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub struct Bits(u8);
 
 impl Simd for Arrays {
     type F32x8 = Array<f32>;
@@ -105,17 +107,17 @@ impl<N: Real> Neg for Array<N> {
     }
 }
 
-impl<N: Real> Wide<Arrays> for Array<N> {
+impl<N: Real, S: Simd> Wide<S> for Array<N> {
     type Scalar = N;
     type Mask = Bits;
 
     #[inline(always)]
-    fn all(_: Arrays, value: N) -> Self {
+    fn all(_: S, value: N) -> Self {
         Self([value; LANES])
     }
 
     #[inline(always)]
-    fn load(_: Arrays, numbers: &[N]) -> Self {
+    fn load(_: S, numbers: &[N]) -> Self {
         let mut all = [N::ZERO; LANES];
         all.copy_from_slice(numbers);
         Self(all)
@@ -177,7 +179,9 @@ impl<N: Real> Wide<Arrays> for Array<N> {
     }
 }
 
-impl SimdMask<Arrays> for Bits {
+impl<S: Simd> SimdMask<S> for Bits {
+    const LEN: usize = LANES;
+
     #[inline(always)]
     fn to_bitmask(self) -> u64 {
         u64::from(self.0)

@@ -9,6 +9,7 @@
 
 pub(crate) mod arrays;
 pub(crate) mod exact;
+pub(crate) mod halves;
 pub(crate) mod lanes;
 #[cfg(test)]
 pub(crate) mod noise;

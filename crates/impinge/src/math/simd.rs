@@ -8,7 +8,10 @@ use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
 };
 
-use fearless_simd::{Select, SimdBase, SimdFloat, f32x8};
+use fearless_simd::{Select, SimdBase, SimdFloat};
+
+use super::arrays::Array;
+use super::halves::Halves;
 
 /// The vectors that kernels use: those of an instruction set, or none. No result depends on it.
 #[derive(Clone, Copy, Debug)]
@@ -121,6 +124,9 @@ pub trait SimdMask<S: Simd>:
     + BitXor<Output = Self>
     + Not<Output = Self>
 {
+    /// How many lanes there are.
+    const LEN: usize;
+
     /// A bit for each lane, the first lowest.
     fn to_bitmask(self) -> u64;
     /// It is true in some lane.
@@ -190,13 +196,39 @@ pub trait Wide<S: Simd>:
     }
 }
 
-impl<S: fearless_simd::Simd> Simd for S {
-    type F32x8 = f32x8<S>;
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+impl Simd for fearless_simd::Avx2 {
+    type F32x8 = fearless_simd::f32x8<Self>;
     #[cfg(feature = "f64")]
-    type F64x8 = fearless_simd::f64x8<S>;
+    type F64x8 = Halves<fearless_simd::f64x4<Self>>;
 }
 
-impl<S: fearless_simd::Simd, M: fearless_simd::SimdMask<S>> SimdMask<S> for M {
+/// Eight `f64` are arrays: four registers of the sixteen for one vector gain little, and these kernels were a
+/// tenth of the time that the library takes to compile.
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+impl Simd for fearless_simd::Sse2 {
+    type F32x8 = Halves<fearless_simd::f32x4<Self>>;
+    #[cfg(feature = "f64")]
+    type F64x8 = Array<f64>;
+}
+
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+impl Simd for fearless_simd::Neon {
+    type F32x8 = Halves<fearless_simd::f32x4<Self>>;
+    #[cfg(feature = "f64")]
+    type F64x8 = Halves<Halves<fearless_simd::f64x2<Self>>>;
+}
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+impl Simd for fearless_simd::WasmSimd128 {
+    type F32x8 = Halves<fearless_simd::f32x4<Self>>;
+    #[cfg(feature = "f64")]
+    type F64x8 = Halves<Halves<fearless_simd::f64x2<Self>>>;
+}
+
+impl<S: fearless_simd::Simd + Simd, M: fearless_simd::SimdMask<S>> SimdMask<S> for M {
+    const LEN: usize = M::LEN;
+
     #[inline(always)]
     fn to_bitmask(self) -> u64 {
         fearless_simd::SimdMask::to_bitmask(self)
@@ -213,7 +245,7 @@ impl<S: fearless_simd::Simd, M: fearless_simd::SimdMask<S>> SimdMask<S> for M {
     }
 }
 
-impl<S: fearless_simd::Simd, V: SimdFloat<S>> Wide<S> for V {
+impl<S: fearless_simd::Simd + Simd, V: SimdFloat<S>> Wide<S> for V {
     type Scalar = V::Element;
     type Mask = <V as SimdBase<S>>::Mask;
 
