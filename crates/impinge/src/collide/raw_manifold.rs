@@ -94,6 +94,18 @@ impl<N: Real, const D: usize> Default for RawManifold<N, D> {
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
+    /// Puts the points in the order of their numbers: few, and most are.
+    #[inline(never)]
+    pub(crate) fn sort_points(&mut self) {
+        for next in 1..self.points.len() {
+            let mut at = next;
+            while at > 0 && self.points[at].id < self.points[at - 1].id {
+                self.points.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+    }
+
     /// The points named from the other side, so that they are found again when the solids change
     /// places.
     pub(crate) fn flip_names(&mut self) {

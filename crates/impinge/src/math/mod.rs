@@ -13,6 +13,7 @@ pub(crate) mod halves;
 pub(crate) mod lanes;
 #[cfg(test)]
 pub(crate) mod noise;
+pub(crate) mod order;
 pub(crate) mod outward;
 mod pose;
 mod real;

@@ -66,9 +66,7 @@ pub(in crate::collide) fn settle<N: Real, const D: usize>(
         let id = candidates[index].kept_id.unwrap_or_else(|| out.ids.next());
         out.points.push(candidates[index].named(id));
     }
-    if !out.points.is_sorted_by_key(|point| point.id) {
-        out.points.sort_by_key(|point| point.id);
-    }
+    out.sort_points();
 }
 
 /// Makes a point the only one of a manifold. It has the number of the old point on its features.

@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use super::part_cache::corners_of;
 use super::part_contact::{PartContact, PartStatus};
 use super::scene::Scene;
+use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Point, Real, Space, Vector, max, min};
 
 /// Faces whose normals' cosine is above this hide nothing from each other.
@@ -43,7 +44,7 @@ struct TouchedFace<N: Real, const D: usize> {
 
 /// The faces, and for each corner of each the number of the corner and the index of the face; in order.
 type TouchedFaces<N, const D: usize> =
-    (SmallVec<[TouchedFace<N, D>; 8]>, SmallVec<[(u64, usize); 24]>);
+    (SmallVec<[TouchedFace<N, D>; 8]>, SmallVec<[(u64, u32); 24]>);
 
 /// Leaves out the contacts of a convex solid with faces that others hide, with which they share a corner.
 ///
@@ -64,12 +65,14 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     let (faces, mut corners) = faces_of(scene, contacts);
     for star in corners.chunk_by_mut(|a, b| a.0 == b.0) {
         if star.len() > MAX_HIDING {
-            let distance = |&(_, face): &(u64, usize)| faces[face].distance.as_f64();
-            star.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            for (corner, face) in &mut *star {
+                *corner = order_of(faces[*face as usize].distance);
+            }
+            sort_keyed(star);
         }
         for (at, (_, first)) in star.iter().enumerate().take(MAX_HIDING) {
             for (_, second) in &star[at + 1..] {
-                if let Some(hidden) = hidden_of(&faces[*first], &faces[*second]) {
+                if let Some(hidden) = hidden_of(&faces[*first as usize], &faces[*second as usize]) {
                     contacts[hidden].status = PartStatus::Left;
                 }
             }
@@ -85,6 +88,7 @@ fn faces_of<N: Space<D>, const D: usize>(
     let (mut faces, mut shared) = TouchedFaces::default();
     faces.reserve(contacts.len());
     shared.reserve(3 * contacts.len());
+    let mut next_face = 0;
     for (contact, PartContact { distance, face, piece, .. }) in contacts.iter().enumerate() {
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
@@ -92,10 +96,11 @@ fn faces_of<N: Space<D>, const D: usize>(
         // What has no corners, as parts of a user's surface may be, hides nothing.
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.map(|corner| part.pose.point(&corner));
-        scene.each_corner(piece.parts[1], |corner| shared.push((corner, faces.len())));
+        scene.each_corner(piece.parts[1], |corner| shared.push((corner, next_face)));
+        next_face += 1;
         faces.push(TouchedFace { contact, distance: *distance, normal, corners });
     }
-    shared.sort_unstable();
+    sort_keyed(&mut shared);
     (faces, shared)
 }
 

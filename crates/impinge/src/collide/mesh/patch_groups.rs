@@ -9,7 +9,8 @@ use core::ops::Range;
 use smallvec::SmallVec;
 
 use super::super::RawPoint;
-use super::patch::{Merging, Piece, by_depth};
+use super::patch::{Merging, Piece};
+use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Vector, min};
 
 /// Normals that differ by more than this, as vectors, are those of different patches; points that
@@ -44,6 +45,31 @@ pub(super) struct PieceGroup {
     pieces: Range<usize>,
 }
 
+/// The pieces of each group together, given how many each has, and pieces with their groups.
+fn pieces_by_group(
+    groups: &mut [PieceGroup],
+    pieces: impl Iterator<Item = (usize, usize)>,
+) -> SmallVec<[usize; 16]> {
+    let mut start = 0;
+    for group in &mut *groups {
+        let count = group.pieces.len();
+        group.pieces = start..start;
+        start += count;
+    }
+    let mut order = SmallVec::from_elem(0, start);
+    for (piece, group) in pieces {
+        let place = &mut groups[group].pieces.end;
+        order[*place] = piece;
+        *place += 1;
+    }
+    order
+}
+
+/// In the order of the first parts.
+fn sort_by_parts(groups: &mut [PieceGroup]) {
+    groups.sort_unstable_by_key(|group| group.first);
+}
+
 /// The patches that some pieces make.
 pub(super) struct Groups {
     /// Those within the prediction, in the order of their first parts.
@@ -64,10 +90,6 @@ impl Groups {
         let mut all = if cells.have_own_normals(pieces) {
             Self::of_one_each(merging, &leads)
         } else {
-            leads.sort_by(|a, b| {
-                let by_value = by_depth(&merging.points[a.deepest], &merging.points[b.deepest]);
-                by_value.then_with(|| a.piece.cmp(&b.piece))
-            });
             Self::of_level(merging, &leads, &mut cells)
         };
         let is_near =
@@ -87,34 +109,35 @@ impl Groups {
         Self { groups: leads.iter().enumerate().map(group).collect(), order }
     }
 
-    /// Of pieces, deepest first: those are one patch that are level with its first.
+    /// The deepest first, pieces join the patch whose first piece they are level with.
     fn of_level<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
         cells: &mut NormalCells,
     ) -> Self {
-        let (mut groups, pieces) = (SmallVec::<[PieceGroup; 8]>::new(), merging.pieces);
-        let mut of_leads = SmallVec::<[(usize, usize); 16]>::with_capacity(leads.len());
-        for lead in leads {
+        let mut by_depth = SmallVec::<[(u64, u32); 16]>::with_capacity(leads.len());
+        let distances = leads.iter().map(|lead| merging.points[lead.deepest].distance);
+        by_depth.extend(distances.map(order_of).zip(0..));
+        sort_keyed(&mut by_depth);
+        let mut groups = SmallVec::<[PieceGroup; 8]>::new();
+        let mut group_of = SmallVec::<[usize; 16]>::with_capacity(leads.len());
+        for &(_, lead) in &by_depth {
+            let lead = &leads[lead as usize];
             let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
             let known = cells.near(lead.piece).find(is_level);
-            let group = known.unwrap_or(groups.len());
-            let parts = pieces[lead.piece].parts;
+            let (group, parts) = (known.unwrap_or(groups.len()), merging.pieces[lead.piece].parts);
             if known.is_none() {
                 cells.put(group, lead.piece);
                 groups.push(PieceGroup { lead: *lead, first: parts, pieces: 0..0 });
             }
             groups[group].first = groups[group].first.min(parts);
-            of_leads.push((group, lead.piece));
+            groups[group].pieces.end += 1;
+            group_of.push(group);
         }
-        of_leads.sort_by_key(|&(group, _)| group);
-        let mut end = 0;
-        for own in of_leads.chunk_by(|a, b| a.0 == b.0) {
-            groups[own[0].0].pieces = end..end + own.len();
-            end += own.len();
-        }
-        groups.sort_by_key(|group| group.first);
-        Self { groups, order: of_leads.iter().map(|&(_, piece)| piece).collect() }
+        let pieces = by_depth.iter().map(|&(_, lead)| leads[lead as usize].piece);
+        let order = pieces_by_group(&mut groups, pieces.zip(group_of));
+        sort_by_parts(&mut groups);
+        Self { groups, order }
     }
 
     /// The pieces of one of the groups.

@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use super::part_contact::{Arena, PartContact, PartStatus};
 use super::scene::Scene;
+use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
 /// Normals whose cosine is above this say the same.
@@ -58,11 +59,11 @@ fn leave_explained<N: Space<D>, const D: usize>(
     for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
         let known = shallowest_first(contacts, |status| explaining.contains(&status));
         let (mut known, mut ways) = (known.into_iter().peekable(), Ways(SmallVec::new()));
-        for index in shallowest_first(contacts, |status| status == asked) {
-            let is_shallower = |&other: &usize| depth(&contacts[other]) <= depth(&contacts[index]);
-            while let Some(other) = known.next_if(is_shallower) {
-                ways.add(&contacts[other]);
+        for (shallowness, index) in shallowest_first(contacts, |status| status == asked) {
+            while let Some((_, other)) = known.next_if(|&(other, _)| other <= shallowness) {
+                ways.add(&contacts[other as usize]);
             }
+            let index = index as usize;
             if is_explained(scene, &contacts[index], &ways, arena) {
                 contacts[index].status = PartStatus::Left;
             } else {
@@ -77,15 +78,19 @@ fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
     -contact.lowest
 }
 
-/// The contacts with some statuses.
+/// The indices of the contacts with some statuses, each with its place in the order of depths; of equals that
+/// with the first parts comes first.
 fn shallowest_first<N: Real, const D: usize>(
     contacts: &[PartContact<N, D>],
     is_meant: impl Fn(PartStatus) -> bool,
-) -> SmallVec<[usize; 16]> {
-    let mut order = SmallVec::<[usize; 16]>::with_capacity(contacts.len());
-    order.extend((0..contacts.len()).filter(|&index| is_meant(contacts[index].status)));
-    // Contacts come in the order of their parts.
-    order.sort_by(|&a, &b| depth(&contacts[a]).as_f64().total_cmp(&depth(&contacts[b]).as_f64()));
+) -> SmallVec<[(u64, u32); 16]> {
+    let mut order = SmallVec::with_capacity(contacts.len());
+    for (contact, index) in contacts.iter().zip(0..) {
+        if is_meant(contact.status) {
+            order.push((order_of(depth(contact)), index));
+        }
+    }
+    sort_keyed(&mut order);
     order
 }
 

@@ -149,7 +149,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             point.code = naming.code(slot);
         }
         if !is_sorted {
-            raw.points.sort_by_key(|point| point.id);
+            raw.sort_points();
         }
     }
 

@@ -52,8 +52,8 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// The clipping of eight pairs under way; `PARTIAL` if one of the faces leans too far.
-pub(super) struct Clip<'a, S, N: Real, V, M, const PARTIAL: bool> {
+/// The clipping of eight pairs under way.
+pub(super) struct Clip<'a, S, N: Real, V, M> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// What is shown of the rectangle, and of the parallelogram.
@@ -61,9 +61,11 @@ pub(super) struct Clip<'a, S, N: Real, V, M, const PARTIAL: bool> {
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS>,
     corners: &'a mut Corners,
+    /// One of the faces leans too far in some lane.
+    is_partial: bool,
 }
 
-impl<'a, S, N, V, M, const PARTIAL: bool> Clip<'a, S, N, V, M, PARTIAL>
+impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
 where
     S: Simd,
     N: Real,
@@ -77,9 +79,10 @@ where
         limits: &Limits<V>,
         slots: &'a mut Slots<N, 3, SLOTS>,
         corners: &'a mut Corners,
+        is_partial: bool,
     ) -> Self {
         let (shown, admission) = (faces.shown(simd), Admission::new(simd, *limits));
-        Self { simd, faces, shown, admission, slots, corners }
+        Self { simd, faces, shown, admission, slots, corners, is_partial }
     }
 
     /// Fills the slots with the candidates.
@@ -122,7 +125,7 @@ where
         let across = &self.faces.across;
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut place = self.place((flat, height), inside, flat);
-        if PARTIAL {
+        if self.is_partial {
             place.is_inside &= self.shown[0].is_whole() & self.shown[1].has_corner(corner);
         }
         place
@@ -141,7 +144,7 @@ where
             [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
         let mut place = self.place((flat, height), inside, along);
-        if PARTIAL {
+        if self.is_partial {
             place.is_inside &=
                 self.shown[0].is_whole() & self.shown[1].has_place(&place.at_end, &place.beyond);
         }
@@ -211,7 +214,7 @@ where
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
         let height = from.1 + side.1 * along;
         let mut is_there = (leaves | enters) & is_within;
-        if PARTIAL {
+        if self.is_partial {
             is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
         }
         self.store(slot, &flat, height, is_there);

@@ -232,13 +232,14 @@ impl<V, M> FacesInLanes<V, M> {
 
     /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
     /// `Pose::point` has it for a rectangle of the second box, above which the first one is. That
-    /// rectangle does not lean unless `PARTIAL`, when a face may lean too far.
+    /// rectangle does not lean unless `is_partial`, when a face may lean too far.
     #[inline(always)]
-    pub(super) fn point1<S: Simd, N: Real, const PARTIAL: bool>(
+    pub(super) fn point1<S: Simd, N: Real>(
         &self,
         simd: S,
         boxes: &Boxes<V, 3>,
         ([mut u, mut v], height): ([V; 2], V),
+        is_partial: bool,
     ) -> [V; 3]
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -247,7 +248,7 @@ impl<V, M> FacesInLanes<V, M> {
         let is_second = self.is_second;
         let level = self.half + is_second.select(height, V::all(simd, N::ZERO));
         let mut w = self.is_upward.select(level, -level);
-        if PARTIAL {
+        if is_partial {
             let (is_leaning, toward) = (self.is_leaning, &self.toward);
             let ground = self.is_upward.select(self.half, -self.half);
             w = is_leaning.select(ground + toward[0] * height, w);

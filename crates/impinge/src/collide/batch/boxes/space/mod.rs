@@ -109,11 +109,8 @@ impl<N: Real> EightFaces<N> {
         let faces = FacesInLanes::meeting(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
-        let is_found = if bits(!faces.is_whole) & is_asked == 0 {
-            self.fill::<S, V, false>(simd, &boxes, &faces, &limits)
-        } else {
-            self.fill::<S, V, true>(simd, &boxes, &faces, &limits)
-        };
+        let is_partial = bits(!faces.is_whole) & is_asked != 0;
+        let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
         self.is_built = bits(is_found & faces.is_fit) & is_asked;
         self.sides = [
             bits(faces.is_w[0]),
@@ -150,23 +147,24 @@ impl<N: Real> EightFaces<N> {
         is_apart | is_built
     }
 
-    /// Fills the slots, `PARTIAL` where one of the faces leans too far; answers where they hold the
-    /// separation.
+    /// Fills the slots; answers where they hold the separation. `is_partial` where some face leans too far.
     #[inline(always)]
-    fn fill<S: Simd, V: Wide<S, Scalar = N>, const PARTIAL: bool>(
+    fn fill<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
         boxes: &Boxes<V, 3>,
         faces: &FacesInLanes<V, V::Mask>,
         limits: &Limits<V>,
+        is_partial: bool,
     ) -> V::Mask {
         let (slots, corners) = (&mut self.slots, &mut self.corners);
-        let found = Clip::<_, _, _, _, PARTIAL>::new(simd, faces, limits, slots, corners).run();
+        let clip = Clip::new(simd, faces, limits, slots, corners, is_partial);
+        let found = clip.run();
         found.admit(
             simd,
             &mut self.slots,
             #[inline(always)]
-            |flat, height| faces.point1::<_, _, PARTIAL>(simd, boxes, (flat, height)),
+            |flat, height| faces.point1(simd, boxes, (flat, height), is_partial),
         );
         found.is_found()
     }
