@@ -54,6 +54,7 @@
 //!
 //! * `f64` (default): the library compiled for `f64` too.
 //! * `parallel`: an update on several threads, with the same bits.
+//! * `debug_render`: drawing worlds, shapes and queries with a back end of yours.
 //! * `serde`: `Serialize` and `Deserialize` for plain values.
 //! * `mint`: conversions to and from other vector libraries, through nalgebra.
 //! * `glam`: the same to and from glam 0.33: points, vectors, rotations and isometries by `into`.
@@ -64,6 +65,8 @@ pub mod broad_phase;
 pub mod bvh;
 mod collide;
 pub(crate) mod convex;
+#[cfg(feature = "debug_render")]
+pub mod debug_render;
 pub mod dim2;
 pub mod dim3;
 pub(crate) mod generation;

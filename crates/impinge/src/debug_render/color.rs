@@ -1,0 +1,24 @@
+//! Colours.
+
+/// A colour of the sRGB space and how opaque it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Color {
+    /// Red, green and blue, 255 for the most.
+    pub rgb: [u8; 3],
+    /// 255 is opaque, 0 invisible.
+    pub alpha: u8,
+}
+
+impl Color {
+    /// An opaque colour.
+    #[must_use]
+    pub const fn rgb(red: u8, green: u8, blue: u8) -> Self {
+        Self { rgb: [red, green, blue], alpha: u8::MAX }
+    }
+
+    /// The same colour, more or less opaque.
+    #[must_use]
+    pub const fn with_alpha(self, alpha: u8) -> Self {
+        Self { alpha, ..self }
+    }
+}
