@@ -62,7 +62,7 @@
 
 pub mod bounding_volume;
 pub mod broad_phase;
-pub mod bvh;
+mod bvh;
 mod collide;
 pub(crate) mod convex;
 #[cfg(feature = "debug_render")]
@@ -75,7 +75,7 @@ pub mod guide;
 pub mod math;
 pub(crate) mod memory;
 pub mod narrow_phase;
-pub mod pairs;
+mod pairs;
 pub mod partitioning;
 pub mod procedural;
 pub mod query;

@@ -20,7 +20,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
-use impinge::bvh::Lanes;
+use impinge::broad_phase::Lanes;
 use impinge_scenes::{
     few_moving, mixed_shapes, mixed_sizes, pile, sparse_drift, spawn_and_despawn, tower,
 };

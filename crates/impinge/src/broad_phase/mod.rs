@@ -27,6 +27,7 @@ mod sieve;
 #[cfg(all(test, feature = "f64"))]
 mod tests;
 
+pub use crate::bvh::{Bounds, Lanes};
 pub use dbvt::{DBVTBroadPhase, TreeVolume};
 pub use error::BroadPhaseError;
 pub use finder::PairFinder;

@@ -3,7 +3,7 @@
 use super::Bounds;
 
 /// Boxes in a block.
-pub const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// Sixteen boxes as a structure of arrays: by axis, all least coordinates, then all greatest.
 ///
@@ -12,6 +12,7 @@ pub const LANES: usize = 16;
 /// so that no count of lanes is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
+#[expect(unnameable_types, reason = "for this crate alone")]
 pub struct Block<const D: usize> {
     pub(crate) lo: [[f32; LANES]; D],
     pub(crate) hi: [[f32; LANES]; D],

@@ -37,7 +37,7 @@ pub(super) struct JoinSides<'a, const D: usize> {
 
 /// Pairs of ids, [`pack`]ed, that differ between the boxes of before and those of now.
 #[derive(Clone, Debug, Default)]
-pub struct Changes {
+pub(crate) struct Changes {
     /// Overlap now and did not before.
     pub began: Vec<u64>,
     /// Overlapped before and do not now.
@@ -46,7 +46,7 @@ pub struct Changes {
 
 impl Changes {
     /// Forgets every pair and keeps the memory.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.began.clear();
         self.ended.clear();
     }
@@ -54,7 +54,7 @@ impl Changes {
 
 /// Finds what began and ended; keeps the task lists from call to call.
 #[derive(Clone, Debug, Default)]
-pub struct Joiner<const D: usize> {
+pub(crate) struct Joiner<const D: usize> {
     tasks: TaskList,
     next: TaskList,
     found: TaskList,
@@ -107,7 +107,7 @@ impl<const D: usize> Joiner<D> {
     /// Appends the pairs within the tree that began or ended, each once, in no particular (but
     /// always the same) order. Of those that ended, some of [`Tree::escaped`] objects may be
     /// missing. The tree must be refitted.
-    pub fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
+    pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
             self.ask_changed(sides);
@@ -119,7 +119,7 @@ impl<const D: usize> Joiner<D> {
 
     /// Appends the pairs of an object of `first` with one of `second` that began or ended, like
     /// [`Self::self_join`].
-    pub fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
+    pub(crate) fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first, second, is_self: false };
         let flipped = JoinSides { first: second, second: first, is_self: false };
         let all = first.live + second.live;

@@ -10,7 +10,7 @@
 //!   stay, as long as they do), and the maps between slots (positions) and ids (the caller's numbers).
 //!
 //! Slots are in a balanced k-d order, so that a block holds neighbours; which lane an object has
-//! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set`],
+//! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set_later`],
 //! [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`], then the [`Joiner`] for the pairs that
 //! began and ended, then [`Tree::settle`] and [`Tree::maintain`].
 //!
@@ -54,16 +54,16 @@ mod visit;
 #[cfg(all(test, feature = "f64"))]
 mod tests;
 
-pub use block::{Block, LANES};
+pub(crate) use block::{Block, LANES};
 pub use bounds::Bounds;
 pub(crate) use gaps::Gaps;
-pub use join::{Changes, Joiner};
+pub(crate) use join::{Changes, Joiner};
 pub use kernel::Lanes;
 pub(crate) use near_first::{GROUP, RayProbe};
 pub(crate) use near_pairs::{TreePair, visit_pairs};
-pub use ordered::{Frontier, Keys};
+pub(crate) use ordered::{Frontier, Keys};
 pub(crate) use slabs::Slabs;
-pub use tree::{NONE, Tree};
+pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, Triangles};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.

@@ -29,7 +29,7 @@ enum Entry {
 
 /// The keys of a search: zero or more.
 #[derive(Clone, Copy, Debug)]
-pub struct Keys<B, O> {
+pub(crate) struct Keys<B, O> {
     /// Gives the keys of the lanes of a block, none above the key of anything that it encloses,
     /// and the mask of the lanes that count.
     pub block: B,
@@ -41,19 +41,19 @@ pub struct Keys<B, O> {
 ///
 /// Keys are zero or more, so that their bits order as they do.
 #[derive(Clone, Debug, Default)]
-pub struct Frontier {
+pub(crate) struct Frontier {
     queue: BinaryHeap<Reverse<(u64, Entry)>>,
 }
 
 impl Frontier {
     /// An empty queue.
     #[must_use]
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { queue: BinaryHeap::with_capacity(EXPECTED) }
     }
 
     /// Adds an object that is in none of the trees.
-    pub fn push_object<N: Real>(&mut self, key: N, id: u32) {
+    pub(crate) fn push_object<N: Real>(&mut self, key: N, id: u32) {
         self.push(key, Entry::Object { id });
     }
 
@@ -65,7 +65,7 @@ impl Frontier {
     /// Hands out objects in ascending order of (key, id) until the key exceeds `limit`.
     ///
     /// `found` gets the object and its key and returns the new limit.
-    pub fn search<N: Real, const D: usize>(
+    pub(crate) fn search<N: Real, const D: usize>(
         mut self,
         trees: &[&Tree<D>],
         mut limit: N,

@@ -16,7 +16,7 @@ const PARALLEL_LEAVES: usize = 256;
 
 impl<const D: usize> Tree<D> {
     /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
-    pub fn refit(&mut self) {
+    pub(crate) fn refit(&mut self) {
         self.refit_from(&[]);
     }
 
@@ -127,7 +127,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Declares the present boxes those of before: nothing has changed.
-    pub fn settle(&mut self) {
+    pub(crate) fn settle(&mut self) {
         if self.touched.is_empty() {
             return;
         }

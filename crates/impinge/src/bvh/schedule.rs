@@ -110,7 +110,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Sorts everything at once.
-    pub fn rebuild(&mut self) {
+    pub(crate) fn rebuild(&mut self) {
         let mut items = core::mem::take(&mut self.schedule.snapshot);
         self.list_items(0, &mut items);
         sort(&mut items);
@@ -146,7 +146,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Does this step's share of keeping the order; call it after [`Self::settle`].
-    pub fn maintain(&mut self) {
+    pub(crate) fn maintain(&mut self) {
         debug_assert_eq!(self.changed, 0, "maintenance comes after settling");
         if self.live == 0 {
             if self.end > 0 {

@@ -71,7 +71,7 @@ impl<const D: usize> Twin<D> {
                     self.list[id] = None;
                 }
                 Some((now, _)) => {
-                    self.tree.set(number, &bounds);
+                    self.tree.set_later(number);
                     *now = bounds;
                 }
                 None => {
@@ -80,7 +80,9 @@ impl<const D: usize> Twin<D> {
                 }
             }
         }
-        self.tree.refit();
+        let box_of =
+            |object: &Option<(Bounds<D>, Bounds<D>)>| object.map_or(Bounds::EMPTY, |(now, _)| now);
+        self.tree.refit_from(&self.list.iter().map(box_of).collect::<Vec<_>>());
         self.tree.validate().expect("sound after a refit");
     }
 
@@ -246,7 +248,7 @@ fn emptied_and_filled() {
             twin.tree.insert(id, &random_box(&mut state, 10), &Bounds::NOWHERE);
         }
         twin.tree.refit();
-        assert_eq!(twin.tree.changed(), 300, "all are new");
+        assert_eq!(twin.tree.changed, 300, "all are new");
         twin.tree.settle();
         twin.tree.validate().expect("sound");
     }

@@ -6,7 +6,7 @@ use super::{Block, Bounds, LANES, Lanes};
 use crate::memory::Look;
 
 /// No id, or no slot.
-pub const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 /// By how much the surface of a leaf block may grow with an object that takes a free lane.
 const ROOM: f64 = 0.3;
 /// A tree of more leaf blocks than this gives its memory back when it is empty.
@@ -59,7 +59,7 @@ impl<const D: usize> Layer<D> {
 ///
 /// Ids are dense small numbers of the caller's. Boxes must be finite and not inverted.
 #[derive(Clone, Debug)]
-pub struct Tree<const D: usize> {
+pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
@@ -111,7 +111,7 @@ pub(super) fn small(value: usize) -> u32 {
 impl<const D: usize> Tree<D> {
     /// A tree without objects.
     #[must_use]
-    pub fn new(lanes: Lanes) -> Self {
+    pub(crate) fn new(lanes: Lanes) -> Self {
         Self {
             lanes,
             layers: vec![Layer::new()],
@@ -141,31 +141,25 @@ impl<const D: usize> Tree<D> {
 
     /// The number of objects.
     #[must_use]
-    pub const fn len(&self) -> usize {
+    pub(crate) const fn len(&self) -> usize {
         self.live
     }
 
     /// There is no object.
     #[must_use]
-    pub const fn is_empty(&self) -> bool {
+    pub(crate) const fn is_empty(&self) -> bool {
         self.live == 0
-    }
-
-    /// How many objects changed since the last [`Self::settle`].
-    #[must_use]
-    pub const fn changed(&self) -> usize {
-        self.changed
     }
 
     /// The object is in the tree.
     #[must_use]
-    pub fn contains(&self, id: u32) -> bool {
+    pub(crate) fn contains(&self, id: u32) -> bool {
         self.slot(id).is_some()
     }
 
     /// The box of the object, if it is in the tree.
     #[must_use]
-    pub fn bounds(&self, id: u32) -> Option<Bounds<D>> {
+    pub(crate) fn bounds(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.lane(slot))
     }
 
@@ -214,7 +208,7 @@ impl<const D: usize> Tree<D> {
     ///
     /// # Panics
     /// If the object is in the tree already.
-    pub fn insert(&mut self, id: u32, bounds: &Bounds<D>, before: &Bounds<D>) {
+    pub(crate) fn insert(&mut self, id: u32, bounds: &Bounds<D>, before: &Bounds<D>) {
         self.remember();
         let slot = self.insert_still(id, bounds);
         self.before[slot / LANES].set_lane(slot % LANES, &before.clamped());
@@ -240,19 +234,6 @@ impl<const D: usize> Tree<D> {
             self.before[slot / LANES].set_lane(slot % LANES, bounds);
         }
         slot
-    }
-
-    /// Gives the object another box.
-    ///
-    /// # Panics
-    /// If the object is not in the tree.
-    #[inline]
-    pub fn set(&mut self, id: u32, bounds: &Bounds<D>) {
-        debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
-        let slot = self.expect_slot(id);
-        self.remember();
-        self.write(slot, bounds);
-        self.mark_changed(slot);
     }
 
     /// Gives the object another box as if it had always had it: it begins no pairs.
@@ -292,7 +273,7 @@ impl<const D: usize> Tree<D> {
     ///
     /// # Panics
     /// If the object is not in the tree.
-    pub fn forget_before(&mut self, id: u32) {
+    pub(crate) fn forget_before(&mut self, id: u32) {
         let slot = self.expect_slot(id);
         self.remember();
         self.before[slot / LANES].set_lane(slot % LANES, &Bounds::EMPTY);
@@ -300,20 +281,11 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Makes all pairs begin anew.
-    pub fn forget_all_before(&mut self) {
-        for slot in 0..self.end {
-            if self.ids[slot] != NONE {
-                self.forget_before(self.ids[slot]);
-            }
-        }
-    }
-
     /// Takes the object out. Searches do not find it from now on.
     ///
     /// # Panics
     /// If the object is not in the tree.
-    pub fn remove(&mut self, id: u32) {
+    pub(crate) fn remove(&mut self, id: u32) {
         let slot = self.expect_slot(id);
         let (block, lane) = (slot / LANES, slot % LANES);
         self.slots[id as usize] = NONE;
@@ -411,7 +383,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Forgets every object. Keeps the memory if it is little.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         if self.leaf_count() > KEPT_LEAVES {
             let empty = if self.is_sparing { Self::sparing } else { Self::new };
             *self = empty(self.lanes);
@@ -467,7 +439,7 @@ impl<const D: usize> Tree<D> {
     /// Changed objects (by id) of whose pairs the [`super::Joiner`] need not have reported those
     /// that ended: objects that were elsewhere before, and their changed neighbours. As of the last
     /// refit.
-    pub fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];
             let lanes = (0..LANES).filter(move |lane| mask >> lane & 1 == 1);

@@ -8,7 +8,7 @@ impl<const D: usize> Tree<D> {
     ///
     /// # Errors
     /// What is wrong, in words.
-    pub fn validate(&self) -> Result<(), String> {
+    pub(crate) fn validate(&self) -> Result<(), String> {
         self.validate_maps()?;
         self.validate_leaves()?;
         if !self.is_stale {

@@ -15,7 +15,7 @@ impl<const D: usize> Tree<D> {
     /// `test` gets a block and returns the mask of lanes that pass. It must be monotone: a lane
     /// whose box encloses one that passes must pass. Empty lanes may pass, they are skipped.
     #[inline(always)]
-    pub fn visit(&self, mut test: impl FnMut(&Block<D>) -> u32, mut leaf: impl FnMut(u32)) {
+    pub(crate) fn visit(&self, mut test: impl FnMut(&Block<D>) -> u32, mut leaf: impl FnMut(u32)) {
         debug_assert!(!self.is_stale, "searches need a refitted tree");
         if self.live == 0 {
             return;
@@ -58,7 +58,7 @@ impl<const D: usize> Tree<D> {
 
     /// Calls `leaf` with the id of each object whose box overlaps the query, which may be
     /// unbounded.
-    pub fn visit_overlapping(&self, query: &Bounds<D>, leaf: impl FnMut(u32)) {
+    pub(crate) fn visit_overlapping(&self, query: &Bounds<D>, leaf: impl FnMut(u32)) {
         let query = query.clamped();
         with_kernel!(self.lanes, kernel => {
             self.visit(#[inline(always)] |block| kernel.overlaps(block, &query), leaf);

@@ -21,12 +21,12 @@ pub(crate) struct Arrays;
 
 /// Eight numbers.
 #[derive(Clone, Copy, Debug)]
-#[expect(unnameable_types, reason = "for this crate alone")]
+#[allow(unnameable_types, unreachable_pub, reason = "in the interface only where `f64` is")]
 pub struct Array<N>([N; LANES]);
 
 /// A bit for each lane, the first lowest.
 #[derive(Clone, Copy, Debug)]
-#[expect(unnameable_types, reason = "for this crate alone")]
+#[allow(unnameable_types, unreachable_pub, reason = "in the interface only where `f64` is")]
 pub struct Bits(u8);
 
 impl Simd for Arrays {

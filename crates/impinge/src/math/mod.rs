@@ -9,6 +9,11 @@
 
 pub(crate) mod arrays;
 pub(crate) mod exact;
+#[cfg(any(
+    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+    all(target_arch = "aarch64", target_feature = "neon"),
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
 pub(crate) mod halves;
 pub(crate) mod lanes;
 #[cfg(test)]

@@ -10,7 +10,11 @@ use core::ops::{
 
 use fearless_simd::{Select, SimdBase, SimdFloat};
 
-use super::arrays::Array;
+#[cfg(any(
+    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+    all(target_arch = "aarch64", target_feature = "neon"),
+    all(target_arch = "wasm32", target_feature = "simd128")
+))]
 use super::halves::Halves;
 
 /// The vectors that kernels use: those of an instruction set, or none. No result depends on it.
@@ -209,7 +213,7 @@ impl Simd for fearless_simd::Avx2 {
 impl Simd for fearless_simd::Sse2 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;
     #[cfg(feature = "f64")]
-    type F64x8 = Array<f64>;
+    type F64x8 = super::arrays::Array<f64>;
 }
 
 #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]

@@ -333,16 +333,6 @@ impl Lines {
         self.heads[at].set_run(0, NO_RUN);
     }
 
-    /// Forgets every link and keeps the memory.
-    pub(super) fn clear(&mut self) {
-        self.owned.clear();
-        self.heads.clear();
-        self.idle.clear();
-        self.pool.clear();
-        self.free.clear();
-        self.places.clear();
-    }
-
     /// Gives memory back.
     pub(super) fn fit(&mut self, look: Look) {
         if self.idle.len() > self.heads.len() / 2 + MAX_IDLE {

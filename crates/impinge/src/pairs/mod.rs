@@ -19,4 +19,4 @@ mod lines;
 mod places;
 mod table;
 
-pub use table::{Inserted, PairTable, Removed, pack, unpack};
+pub(crate) use table::{PairTable, pack, unpack};

@@ -8,14 +8,14 @@ use crate::memory::Look;
 /// A number may be paired with any number, itself included. Finding, adding and removing a pair cost
 /// constant time.
 #[derive(Clone, Debug, Default)]
-pub struct PairTable {
+pub(crate) struct PairTable {
     pairs: Vec<(u32, u32)>,
     lines: Lines,
 }
 
 /// The outcome of [`PairTable::insert`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Inserted {
+pub(crate) struct Inserted {
     /// Where the pair stands in [`PairTable::pairs`].
     pub index: usize,
     /// Whether it was not there before; it then stands last.
@@ -24,7 +24,7 @@ pub struct Inserted {
 
 /// What a removal did to the dense array: exactly `swap_remove(index)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Removed {
+pub(crate) struct Removed {
     /// Where the pair stood.
     pub index: usize,
     /// Where the pair that now stands at `index` stood; `None` if the removed pair was the last.
@@ -34,7 +34,7 @@ pub struct Removed {
 /// The pair as one number whose order is the order of `(smaller, larger)`.
 #[inline]
 #[must_use]
-pub fn pack(a: u32, b: u32) -> u64 {
+pub(crate) fn pack(a: u32, b: u32) -> u64 {
     let (low, high) = if a < b { (a, b) } else { (b, a) };
     u64::from(low) << 32 | u64::from(high)
 }
@@ -43,61 +43,55 @@ pub fn pack(a: u32, b: u32) -> u64 {
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "takes the two halves apart")]
-pub const fn unpack(key: u64) -> (u32, u32) {
+pub(crate) const fn unpack(key: u64) -> (u32, u32) {
     ((key >> 32) as u32, key as u32)
 }
 
 impl PairTable {
     /// A table without pairs.
     #[must_use]
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::default()
     }
 
     /// The number of pairs.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.pairs.len()
-    }
-
-    /// There is no pair.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.pairs.is_empty()
     }
 
     /// The pairs, each as `(smaller, larger)`, in the order that insertions and removals left.
     #[must_use]
-    pub fn pairs(&self) -> &[(u32, u32)] {
+    pub(crate) fn pairs(&self) -> &[(u32, u32)] {
         &self.pairs
     }
 
     /// How many partners `a` has.
     #[must_use]
-    pub fn count(&self, a: u32) -> usize {
+    pub(crate) fn count(&self, a: u32) -> usize {
         self.lines.count(a)
     }
 
     /// The partners of `a`, each with the index of the pair in [`Self::pairs`].
-    pub fn partners(&self, a: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
+    pub(crate) fn partners(&self, a: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
         self.lines.links(a).map(|link| (link.partner, link.pair as usize))
     }
 
     /// Where one of the pairs of `a` stands in [`Self::pairs`], in constant time: taking that pair
     /// out until there is none takes an object out.
     #[must_use]
-    pub fn any_pair_of(&self, a: u32) -> Option<usize> {
+    pub(crate) fn any_pair_of(&self, a: u32) -> Option<usize> {
         Some(self.lines.last_link(a)?.pair as usize)
     }
 
     /// Where the pair stands in [`Self::pairs`], in either order of its ends.
     #[must_use]
-    pub fn index_of(&self, a: u32, b: u32) -> Option<usize> {
+    pub(crate) fn index_of(&self, a: u32, b: u32) -> Option<usize> {
         self.lines.pair_of(a, b)
     }
 
     /// Adds the pair unless it is there.
-    pub fn insert(&mut self, a: u32, b: u32) -> Inserted {
+    pub(crate) fn insert(&mut self, a: u32, b: u32) -> Inserted {
         match self.index_of(a, b) {
             Some(index) => Inserted { index, is_new: false },
             None => Inserted { index: self.insert_new(a, b), is_new: true },
@@ -105,7 +99,7 @@ impl PairTable {
     }
 
     /// Adds a pair that the caller knows not to be there; constant time.
-    pub fn insert_new(&mut self, a: u32, b: u32) -> usize {
+    pub(crate) fn insert_new(&mut self, a: u32, b: u32) -> usize {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
         let index = self.pairs.len();
         self.pairs.push((a, b));
@@ -115,7 +109,7 @@ impl PairTable {
 
     /// Takes the pair of `old` out, if it is there, and puts that of `new`, which the caller knows not
     /// to be there, in its place: no other pair moves. Returns where it stands. Constant time.
-    pub fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
+    pub(crate) fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
         let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
         self.link(index, new.0, new.1);
@@ -136,7 +130,7 @@ impl PairTable {
     }
 
     /// Takes the pair out, if it is there.
-    pub fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
+    pub(crate) fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
         let index = self.unlink(a, b)?;
         Some(self.close_gap(index))
     }
@@ -145,7 +139,7 @@ impl PairTable {
     ///
     /// # Panics
     /// If `index` is not below [`Self::len`].
-    pub fn remove_at(&mut self, index: usize) -> Removed {
+    pub(crate) fn remove_at(&mut self, index: usize) -> Removed {
         let (a, b) = self.pairs[index];
         self.unlink(a, b);
         self.close_gap(index)
@@ -189,12 +183,6 @@ impl PairTable {
         core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
     }
 
-    /// Takes out every pair.
-    pub fn clear(&mut self) {
-        self.pairs.clear();
-        self.lines.clear();
-    }
-
     /// Gives back memory that a table that has stopped to grow does not need.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.pairs);
@@ -205,7 +193,7 @@ impl PairTable {
     ///
     /// # Errors
     /// What is wrong, in words.
-    pub fn validate(&self) -> Result<(), String> {
+    pub(crate) fn validate(&self) -> Result<(), String> {
         self.lines.validate()?;
         for (index, &(low, high)) in self.pairs.iter().enumerate() {
             let pair = Some(small(index));
@@ -294,10 +282,6 @@ mod tests {
             taken += 1;
         }
         assert_eq!((taken, table.len()), (100_000, 0), "an object taken out");
-        table.insert(3, 4);
-        table.clear();
-        table.validate().expect("sound");
-        assert!(table.is_empty(), "cleared");
     }
 
     #[test]

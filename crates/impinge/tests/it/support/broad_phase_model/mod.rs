@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use impinge::bounding_volume::{Aabb, BoundingVolume, Ray};
+use impinge::broad_phase::Bounds;
 use impinge::broad_phase::{BroadPhase, DBVTBroadPhase, ProxyHandle};
-use impinge::bvh::Bounds;
 use impinge::math::{Point, Real, Space, Vector};
 
 /// Numbers from a linear congruential generator.

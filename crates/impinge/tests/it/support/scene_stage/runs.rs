@@ -3,7 +3,7 @@
 use std::hash::Hasher;
 
 use impinge::broad_phase::DBVTBroadPhase;
-use impinge::bvh::Lanes;
+use impinge::broad_phase::Lanes;
 use impinge_scenes::Scene;
 
 use crate::scene_stage::{Digest, Play, Player, digest_state};
