@@ -5,8 +5,7 @@
 use std::cell::Cell;
 
 use impinge::dim2::events::{ContactEvent, Proximity, ProximityEvent};
-use impinge::dim2::math::{Isometry, Vector};
-use impinge::dim2::na::Unit;
+use impinge::dim2::math::{Isometry, Unit, Vector};
 use impinge::dim2::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 

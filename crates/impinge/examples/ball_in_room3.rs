@@ -5,8 +5,7 @@
 use std::cell::Cell;
 
 use impinge::dim3::events::{ContactEvent, Proximity, ProximityEvent};
-use impinge::dim3::math::{Isometry, Vector};
-use impinge::dim3::na::Unit;
+use impinge::dim3::math::{Isometry, Unit, Vector};
 use impinge::dim3::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 

@@ -1,6 +1,6 @@
 //! The pass that makes the upper layers true again, and the end of a step.
 //!
-//! An object that was put elsewhere is listed as strayed: the join need not see which of its pairs ended, since
+//! An object that was put elsewhere is listed as far moved: the join need not see which of its pairs ended, since
 //! the table of pairs knows.
 
 use super::kernel::{Kernel, with_kernel};
@@ -9,7 +9,7 @@ use super::{Block, Bounds, LANES, Lanes, Tree};
 
 /// By how much the boxes of before may enlarge the surface of a leaf block. Beyond that, something
 /// was put elsewhere, and a reach from there to here would meet everything in between.
-const STRAYED: f64 = 2.0;
+const FAR_MOVED: f64 = 2.0;
 /// Up to this many leaf blocks are refitted by one thread.
 #[cfg(feature = "parallel")]
 const PARALLEL_LEAVES: usize = 256;
@@ -216,7 +216,7 @@ impl<const D: usize> Leaves<'_, D> {
         self.reach[at] = now;
         if changed != 0 {
             let both = now.merged(&kernel.bounds(&source.before[block]));
-            if both.half_surface() <= STRAYED * now.half_surface() {
+            if both.half_surface() <= FAR_MOVED * now.half_surface() {
                 self.reach[at] = both;
             } else {
                 escaped.push(small(block));

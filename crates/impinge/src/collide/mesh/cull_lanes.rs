@@ -71,7 +71,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         dot(&arms[0], &arms[0]).larger(dot(&arms[1], &arms[1])).larger(dot(&arms[2], &arms[2]));
     let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, query.size));
     let (length, tiny) = (norm(&toward), V::all(simd, least_length()));
-    // What is no number bounds nothing.
+    // NaN bounds nothing.
     let is_bound = length.simd_gt(slack)
         & heights[0].simd_gt(tiny)
         & heights[1].simd_gt(tiny)

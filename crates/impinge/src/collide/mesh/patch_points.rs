@@ -51,7 +51,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             tangents = askew(&tangents);
         }
         self.gather(lead, pieces, &tangents, members);
-        // In the plane two points delimit all there is.
+        // In 2D two points bound the manifold.
         let is_line = tangents[1] == Vector::<N, D>::zeros();
         let most = self.merging.request.max_points.max(1);
         let limit = if is_line { most.min(2) } else { most };
@@ -194,7 +194,7 @@ fn keep_ends<N: Real>(points: &mut Projections<N>) {
 /// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.
 fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
     let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
-    // In the plane there is only one.
+    // In 2D there is only one.
     if *second == Vector::<N, D>::zeros() {
         return [*first, *second];
     }

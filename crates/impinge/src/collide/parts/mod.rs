@@ -15,4 +15,4 @@ pub(crate) use between::{Between, PartPair};
 pub(crate) use separation::{
     PairVisitor, PartSeparation, Wanted, nearest_between, separation, visit_near_pairs,
 };
-pub(crate) use sweep::Sweep;
+pub(crate) use sweep::PartSweep;

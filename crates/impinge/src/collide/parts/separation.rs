@@ -3,7 +3,7 @@
 use super::between::{Between, by_number};
 use super::bounds::loosened;
 use super::slabs::AxisSlabs;
-use super::sweep::Sweep;
+use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{TreePair, visit_pairs};
 use crate::collide::Pair;
@@ -52,7 +52,7 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
 
     /// Distances are those from where the parts of the first shape (0) or the second (1) go, in the frame of the
     /// other; `None` if they stay where they are.
-    fn sweep(&self, _which: usize) -> Option<Sweep<N, D>> {
+    fn sweep(&self, _which: usize) -> Option<PartSweep<N, D>> {
         None
     }
 
@@ -176,7 +176,7 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         which: usize,
         part: u32,
         others: &dyn CompositeShape<N, D>,
-        slabs: impl Fn(Option<&Sweep<N, D>>) -> AxisSlabs<N, D>,
+        slabs: impl Fn(Option<&PartSweep<N, D>>) -> AxisSlabs<N, D>,
     ) {
         let (sweep, mut made) = (self.visitor.sweep(which), None);
         let aabb = self.between.aabb_in_other(which, part);

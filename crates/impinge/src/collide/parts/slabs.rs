@@ -3,7 +3,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::between::Between;
-use super::sweep::Sweep;
+use super::sweep::PartSweep;
 use crate::math::{Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Part, PartSolid, Plane};
 
@@ -32,7 +32,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     pub(crate) fn of_half_space(
         between: &Between<'_, N, D>,
         plane: &Plane<N, D>,
-        sweep: Option<&Sweep<N, D>>,
+        sweep: Option<&PartSweep<N, D>>,
     ) -> Self {
         let Pose { translation: origin, .. } = between.pose21;
         let along = between.pose21.vector(plane.normal());
@@ -47,7 +47,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         between: &Between<'_, N, D>,
         which: usize,
         part: u32,
-        sweep: Option<&Sweep<N, D>>,
+        sweep: Option<&PartSweep<N, D>>,
     ) -> Self {
         let mut slabs =
             Self { origin: Vector::<N, D>::zeros(), size: N::ZERO, slabs: SmallVec::new() };

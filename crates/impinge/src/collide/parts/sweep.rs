@@ -12,14 +12,14 @@ use crate::math::{Matrix, Point, Real, Vector, max, min};
 ///    `--------------------'
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sweep<N: Real, const D: usize> {
+pub(crate) struct PartSweep<N: Real, const D: usize> {
     pub(crate) turn: Matrix<N, D>,
     pub(crate) shift: Vector<N, D>,
     /// With what rounding makes of places; not negative.
     pub(crate) spread: N,
 }
 
-impl<N: Real, const D: usize> Sweep<N, D> {
+impl<N: Real, const D: usize> PartSweep<N, D> {
     /// All points go anywhere, so far at most.
     pub(crate) fn anywhere(spread: N) -> Self {
         Self { turn: Matrix::<N, D>::zeros(), shift: Vector::<N, D>::zeros(), spread }

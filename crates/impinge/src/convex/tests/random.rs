@@ -74,7 +74,7 @@ struct Tally {
     worst: [f64; 5],
 }
 
-fn judge<N, const D: usize>(sample: &Sample<D>, generator: &mut Generator, tally: &mut Tally)
+fn check_sample<N, const D: usize>(sample: &Sample<D>, generator: &mut Generator, tally: &mut Tally)
 where
     N: Simplicial<D> + Own<D>,
     f64: Simplicial<D> + Own<D>,
@@ -123,7 +123,7 @@ where
     let mut generator = Generator(1);
     let mut tallies = [Tally::default(), Tally::default()];
     each_sample::<N, D>(kinds, |sample, curved| {
-        judge::<N, D>(sample, &mut generator, &mut tallies[usize::from(curved)]);
+        check_sample::<N, D>(sample, &mut generator, &mut tallies[usize::from(curved)]);
     });
     for (tally, bounds) in tallies.iter_mut().zip(bounds) {
         if tally.errors.is_empty() {

@@ -29,7 +29,7 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
 ) -> Option<PartArrival<N, D>> {
-    let mut search = ImpactSearch { between, path, first: None };
+    let mut search = PartImpactSearch { between, path, first: None };
     match between.composites() {
         [None, None] => search.hold([0, 0], N::ZERO),
         [Some(parts1), None] => search.each_on_way(1, 0, parts1),
@@ -47,13 +47,13 @@ struct LaterPair<N> {
     parts: [u32; 2],
 }
 
-struct ImpactSearch<'a, N: Real, const D: usize> {
+struct PartImpactSearch<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     path: &'a Path<N, D>,
     first: Option<PartArrival<N, D>>,
 }
 
-impl<N: Space<D>, const D: usize> ImpactSearch<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));

@@ -7,7 +7,7 @@
 
 use super::motion::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
-use crate::collide::parts::{PartPair, Sweep};
+use crate::collide::parts::{PartPair, PartSweep};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Geometry, Shape};
 
@@ -221,11 +221,11 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     ///
     /// A point that is at `u` from the other body's centre has the velocity `u' - S u` in the frame of that body,
     /// which turns by `S`: a linear function of its place. Its derivative, `u'' - 2 S u' + S² u`, bends the way.
-    pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> Sweep<N, D> {
+    pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let way = rate.way(span);
         let [body, other] = [which, 1 - which].map(|index| self.bodies[index]);
         let [Some(own), Some(frame)] = [body.constant(), other.constant()] else {
-            return Sweep::anywhere(way);
+            return PartSweep::anywhere(way);
         };
         let [center, pivot] = [self.centers[which], self.centers[1 - which]];
         let [turn, turning] = [body, other].map(|body| body.turn_bound(self.time, self.time));
@@ -246,9 +246,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if spread < way {
             let shift = pose.inverse_vector(&shift) * span;
             let turn = pose.rotation.tr_mul(&(spin * pose.rotation)) * span;
-            return Sweep { turn, shift, spread };
+            return PartSweep { turn, shift, spread };
         }
-        Sweep::anywhere(way)
+        PartSweep::anywhere(way)
     }
 
     /// The parts of the bodies go their own ways, and it is known how they do.

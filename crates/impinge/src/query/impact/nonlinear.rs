@@ -8,7 +8,7 @@ use core::iter;
 use crate::collide::Pair;
 use crate::collide::pair::{Placed, order};
 use crate::collide::parts::{
-    Between, PairVisitor, PartSeparation, Sweep, Wanted, nearest_between, visit_near_pairs,
+    Between, PairVisitor, PartSeparation, PartSweep, Wanted, nearest_between, visit_near_pairs,
 };
 use crate::collide::separation::separation;
 use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
@@ -429,7 +429,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N,
         self.spent
     }
 
-    fn sweep(&self, which: usize) -> Option<Sweep<N, D>> {
+    fn sweep(&self, which: usize) -> Option<PartSweep<N, D>> {
         Some(self.configuration.poses.moment.sweep(which, &self.rate, self.step.time))
     }
 

@@ -140,7 +140,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
             (Some(side), None) => Some(side_id::<D>(side)),
             (None, _) => {
                 let index = u32::from(self.ring(direction)[1] == 2);
-                // In the plane what lies inside bounds nothing.
+                // In 2D what lies inside bounds nothing.
                 Some(FeatureId::flat::<D>(2, index)).filter(|id| matches!(id, FeatureId::Face(_)))
             }
             _ => None,

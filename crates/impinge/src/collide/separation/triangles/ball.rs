@@ -245,7 +245,7 @@ impl<V> TrianglePacket<V> {
         let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // What is no number bounds nothing, nor what has lost digits by being small.
+        // NaN bounds nothing, nor what has lost digits by being small.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));

@@ -112,7 +112,7 @@ impl<N: Real> Grid<N> {
         let end = |first: usize, count: usize| min_index((first + 1) << block.level, count);
         let (row, column) = (block.row << block.level, block.column << block.level);
         let (last_row, last_column) = (end(block.row, cells[0]), end(block.column, cells[1]));
-        // In the plane one row of cells stands on one line.
+        // In 2D one row of cells stands on one line.
         let last_row = min_index(last_row, self.zs.len() - 1);
         // Rounding keeps the order of products, so the scaled span is that of the scaled heights.
         let [low, high] = span.map(|height| height * self.y_scale);
