@@ -1,7 +1,20 @@
 //! The user guide: what the library does and how to use it, chapter by chapter.
 //!
-//! [`introduction`] comes first, [`pipeline`] explains how a world works, [`coming_from`] is for users of
-//! ncollide, parry, rapier and Box2D. Every block of code in it is compiled and run as a test.
+//! In the order to read it; every block of code is compiled and run as a test.
+//!
+//! 1. [`introduction`]: two objects in a world, and the contact between them.
+//! 2. [`pipeline`]: how a world works, step by step, and its two phases alone.
+//! 3. [`shapes`]: the solids, their sizes, and how objects share them.
+//! 4. [`composites`]: compounds, meshes, terrain, deforming shapes.
+//! 5. [`own_shapes`]: shapes that you implement.
+//! 6. [`contacts`]: contact points and manifolds, from step to step.
+//! 7. [`groups`]: which pairs a world looks at.
+//! 8. [`events`]: what began and ended.
+//! 9. [`queries`]: rays, casts, points and distances, with or without a world.
+//! 10. [`performance`]: what a step costs, and what makes it cheaper.
+//! 11. [`guarantees`]: what you can rely on, to which precision.
+//!
+//! [`coming_from`] translates programs that use ncollide, parry, rapier or Box2D.
 //!
 //! This module is part of the documentation alone: a program has no `impinge::guide`.
 

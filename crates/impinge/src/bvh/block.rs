@@ -12,21 +12,20 @@ pub(crate) const LANES: usize = 16;
 /// so that no count of lanes is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-#[expect(unnameable_types, reason = "for this crate alone")]
-pub struct Block<const D: usize> {
+pub(crate) struct Block<const D: usize> {
     pub(crate) lo: [[f32; LANES]; D],
     pub(crate) hi: [[f32; LANES]; D],
 }
 
 impl<const D: usize> Block<D> {
     /// Sixteen empty lanes.
-    pub const EMPTY: Self =
+    pub(crate) const EMPTY: Self =
         Self { lo: [[f32::INFINITY; LANES]; D], hi: [[f32::NEG_INFINITY; LANES]; D] };
 
     /// The box in a lane.
     #[inline]
     #[must_use]
-    pub fn lane(&self, lane: usize) -> Bounds<D> {
+    pub(crate) fn lane(&self, lane: usize) -> Bounds<D> {
         Bounds {
             lo: core::array::from_fn(|axis| self.lo[axis][lane]),
             hi: core::array::from_fn(|axis| self.hi[axis][lane]),
@@ -35,7 +34,7 @@ impl<const D: usize> Block<D> {
 
     /// Puts a box into a lane.
     #[inline]
-    pub fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {
+    pub(crate) fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {
         for axis in 0..D {
             self.lo[axis][lane] = bounds.lo[axis];
             self.hi[axis][lane] = bounds.hi[axis];

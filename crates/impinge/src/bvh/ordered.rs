@@ -145,7 +145,7 @@ impl Lanes {
     /// The times at which a moving box touches the boxes of a block, and the mask of those it meets:
     /// a measure for [`Frontier::search`], and with the mask alone a test for [`Tree::visit`]. A ray
     /// is a box that is a point.
-    pub fn times_of_block<N: Real, const D: usize>(
+    pub(crate) fn times_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
         moving: &Aabb<N, D>,
@@ -156,7 +156,7 @@ impl Lanes {
 
     /// The distances of a box from the boxes of a block, and the mask of lanes in use: a measure for
     /// [`Frontier::search`].
-    pub fn distance_of_block<N: Real, const D: usize>(
+    pub(crate) fn distance_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
         aabb: &Aabb<N, D>,

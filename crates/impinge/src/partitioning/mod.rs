@@ -4,7 +4,7 @@
 //! triangles of a scene, the rooms of a building. It answers with indices, and what lies in the boxes is
 //! the user's business. Things that move belong into a broad phase.
 //!
-//! The packed tree ([`crate::bvh`]) holds boxes rounded outwards to `f32`, so it proposes and never
+//! The packed tree (`bvh`) holds boxes rounded outwards to `f32`, so it proposes and never
 //! misses; every answer is checked against the box as it was given. Boxes that no `f32` box encloses
 //! stand in a list beside the tree.
 
