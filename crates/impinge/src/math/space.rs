@@ -38,6 +38,18 @@ pub trait Space<const D: usize>: Real {
     fn tables() -> &'static Tables<Self, D>;
 }
 
+impl<N: Real> From<Isometry2<N>> for Pose<N, 2> {
+    fn from(isometry: Isometry2<N>) -> Self {
+        N::pose(&isometry)
+    }
+}
+
+impl<N: Real> From<Isometry3<N>> for Pose<N, 3> {
+    fn from(isometry: Isometry3<N>) -> Self {
+        N::pose(&isometry)
+    }
+}
+
 impl<N: Real> Space<2> for N {
     type Isometry = Isometry2<N>;
 
