@@ -56,8 +56,14 @@ pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     turns.iter().zip(ends).map(run).collect()
 }
 
+/// Whether the pixel of a point and its eight neighbours are all nearer. Beside an outline the surface
+/// is so steep that the pixel alone is often nearer, but on the other side of it there is something else.
 fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
-    depths.depth_at(at.x, at.y).is_some_and(|depth| at.depth > depth)
+    const STEPS: [f64; 3] = [-1.0, 0.0, 1.0];
+    let hides = |dx: f64, dy: f64| {
+        depths.depth_at(at.x + dx, at.y + dy).is_some_and(|depth| at.depth > depth)
+    };
+    STEPS.iter().all(|dy| STEPS.iter().all(|dx| hides(*dx, *dy)))
 }
 
 /// Where runs begin, and which they are. There is at least one sample.
@@ -94,7 +100,8 @@ mod tests {
         let hidden: Vec<_> = found.iter().map(|run| run.is_hidden).collect();
         assert_eq!(hidden, [false, true, false], "{found:?}");
         let [start, end] = found[1].ends;
-        assert!((start.x - 10.0).abs() < 0.6 && (end.x - 30.0).abs() < 0.6, "{found:?}");
+        let is_near = (start.x - 11.0).abs() < 0.5 && (end.x - 29.0).abs() < 0.5;
+        assert!(is_near, "a pixel inside of the square: {found:?}");
         assert_eq!(found[0].ends[1], found[1].ends[0], "without a gap");
         let before = runs(&[at(0.0, 20.0, 0.5), at(40.0, 20.0, 0.5)], &depths);
         assert_eq!(before.len(), 1, "in front of the square");

@@ -69,7 +69,7 @@ impl Picture<Png> {
 
     /// Renders what was drawn.
     ///
-    /// Costs 8 KiB of memory for 85 pixels while it runs, and time in proportion to the pixels that
+    /// Costs 44 bytes of memory for each pixel while it runs, and time in proportion to the pixels that
     /// triangles and lines cover.
     #[must_use]
     pub fn to_image(&self) -> Image {

@@ -1,7 +1,7 @@
 //! Documents that parse, and what is in them.
 
-use crate::scenes::{INK, box_mesh, boxes, hills, plane};
-use impinge::debug_render::{DebugRender, Drawn};
+use crate::scenes::{INK, ball_mesh, box_mesh, boxes, hills, plane};
+use impinge::debug_render::{DebugRender, Drawn, ShapeMesh};
 use impinge::dim2::math::Point as Point2;
 use impinge::dim3::math::{Isometry, Vector};
 use impinge::math::Real;
@@ -78,6 +78,23 @@ fn hidden_lines_of_a_box_are_the_three_behind() {
     }
     assert!(hidden >= 3 && seen >= 9, "of the twelve edges, {hidden} and {seen}");
     assert_eq!(hidden, 3, "those that meet at the farthest corner");
+}
+
+/// Of a ball without lines the outline is all there is; it is closed and nothing hides it.
+#[test]
+fn the_outline_of_a_ball_is_not_hidden_by_the_ball() {
+    for direction in [[0.0, 0.0, -1.0], [-0.6, -0.5, -1.0], [0.3, -1.0, 0.2]] {
+        let camera = Camera::look_along(&Vector::from(direction), &Vector::y());
+        let mut picture = SvgPicture::space(camera, 300);
+        let ball = ShapeMesh { lines: Vec::new(), ..ball_mesh::<f32>(1, 1.0) };
+        picture.mesh(&ball, &Isometry::identity(), INK, Drawn::Object);
+        let svg = picture.to_svg();
+        let document = Document::parse(&svg).expect("well-formed");
+        let lines = document.descendants().filter(|node| node.has_tag_name("path"));
+        let count = lines.map(|path| path.attribute("d").map_or(0, |d| d.matches('L').count()));
+        assert!(count.sum::<usize>() > 48, "an edge for each step around, and the legend");
+        assert!(!svg.contains(" hidden\""), "no part is hidden");
+    }
 }
 
 #[test]
