@@ -1,0 +1,161 @@
+//! Where a picture is seen from.
+
+use impinge::dim3::math::{Point, Real, Vector};
+
+/// A direction of view and a projection; the place follows from what is to be seen.
+///
+/// The scene's frame is the world's. A 2D scene lies in the plane `z = 0`, which
+/// [`Camera::plane`] sees with x to the right and y upwards.
+///
+/// ```
+/// use impinge::dim3::math::{Point, Vector};
+/// use impinge_view::Camera;
+///
+/// let camera = Camera::look_along(&-Vector::z(), &Vector::y());
+/// assert_eq!(camera, Camera::plane());
+/// assert_eq!(camera.right(), Vector::x());
+/// let near = camera.perspective(0.6).fit([Point::origin(), Point::new(1.0, 1.0, 1.0)]);
+/// assert_eq!(near.up(), Vector::y());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Right, up and back: orthonormal, `back = right x up`.
+    axes: [Vector<f64>; 3],
+    /// The tangent of half the angle of view; zero if orthographic.
+    tangent: f64,
+    framed: Option<[Point<f64>; 2]>,
+}
+
+/// The least and the largest angle of view, in radians.
+const ANGLES: [f64; 2] = [0.01, 2.5];
+
+impl Camera {
+    /// Looks at 2D scenes: x to the right, y upwards, orthographic.
+    #[must_use]
+    pub fn plane() -> Self {
+        Self::look_along(&-Vector::z(), &Vector::y())
+    }
+
+    /// Looks along a direction, orthographic; `up` points to the upper side of the picture.
+    ///
+    /// Neither has to be a unit vector, nor `up` perpendicular to the direction. A direction that
+    /// is zero or not finite counts as `-z`; an `up` that is so, or parallel to the direction, gives
+    /// way to the axis that is the most perpendicular to the direction.
+    #[must_use]
+    pub fn look_along(direction: &Vector<f64>, up: &Vector<f64>) -> Self {
+        let back = -unit_of(direction).unwrap_or_else(|| -Vector::z());
+        let right = unit_of(up).and_then(|up| unit_of_sine(&up.cross(&back)));
+        let right = right.unwrap_or_else(|| {
+            let side = least_axis(&back).cross(&back);
+            side / side.norm()
+        });
+        Self { axes: [right, back.cross(&right), back], tangent: 0.0, framed: None }
+    }
+
+    /// The same direction in perspective: parallels converge. The angle of view, in radians, is
+    /// that of the whole scene, and is clamped to 0.01 to 2.5; NaN counts as the smallest.
+    #[must_use]
+    pub fn perspective(self, view_angle: f64) -> Self {
+        let [least, largest] = ANGLES;
+        let angle = if view_angle > least { view_angle } else { least };
+        let angle = if angle < largest { angle } else { largest };
+        let (sine, cosine) = (angle * 0.5).sine_cosine();
+        Self { tangent: sine / cosine, ..self }
+    }
+
+    /// Frames a box, given by two opposite corners, instead of everything that is drawn.
+    ///
+    /// What lies outside is cut off by the sides of the picture. Corners that are not finite are
+    /// ignored: the picture frames everything.
+    #[must_use]
+    pub fn fit(self, bounds: [Point<f64>; 2]) -> Self {
+        let is_finite = bounds.iter().all(|corner| corner.iter().all(|x| x.is_finite()));
+        Self { framed: is_finite.then_some(bounds), ..self }
+    }
+
+    /// The unit vector to the right side of the picture.
+    #[must_use]
+    pub fn right(&self) -> Vector<f64> {
+        self.axes[0]
+    }
+
+    /// The unit vector to the upper side of the picture.
+    #[must_use]
+    pub fn up(&self) -> Vector<f64> {
+        self.axes[1]
+    }
+
+    /// The unit vector from the scene to the viewer.
+    #[must_use]
+    pub fn back(&self) -> Vector<f64> {
+        self.axes[2]
+    }
+
+    /// The tangent of half the angle of view; zero if orthographic.
+    pub(crate) fn tangent(&self) -> f64 {
+        self.tangent
+    }
+
+    /// The corners of the box to frame, if it is not everything.
+    pub(crate) fn framed(&self) -> Option<Vec<Point<f64>>> {
+        let ends = self.framed?;
+        let corner = |index: usize| {
+            Point::new(ends[index & 1].x, ends[index >> 1 & 1].y, ends[index >> 2].z)
+        };
+        Some((0..8).map(corner).collect())
+    }
+}
+
+/// The direction of a vector of any size; none of zero and of what is not finite.
+fn unit_of(v: &Vector<f64>) -> Option<Vector<f64>> {
+    let size = v.iter().fold(0.0, |size: f64, x| if x.abs() > size { x.abs() } else { size });
+    let is_finite = v.iter().all(|x| x.is_finite());
+    (is_finite && size > 0.0).then(|| {
+        let v = v / size;
+        v / v.norm()
+    })
+}
+
+/// The direction of the product of two unit vectors, unless these are parallel up to rounding.
+fn unit_of_sine(v: &Vector<f64>) -> Option<Vector<f64>> {
+    (v.norm_squared() > 1e-20).then(|| v / v.norm())
+}
+
+/// The axis with the smallest component of a vector.
+fn least_axis(v: &Vector<f64>) -> Vector<f64> {
+    let (x, y, z) = (v.x.abs(), v.y.abs(), v.z.abs());
+    if y <= x && y <= z {
+        Vector::y()
+    } else if z <= x {
+        Vector::z()
+    } else {
+        Vector::x()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_orthonormal_whatever_is_asked() {
+        let numbers = [0.0, 1.0, -2.0, 1e-200, 1e200, f64::NAN, f64::INFINITY];
+        for index in 0..numbers.len().pow(3) {
+            let digit = |place| numbers[index / numbers.len().pow(place) % numbers.len()];
+            let v = Vector::new(digit(0), digit(1), digit(2));
+            for camera in [Camera::look_along(&v, &Vector::y()), Camera::look_along(&v, &v)] {
+                let [right, up, back] = camera.axes;
+                assert!((right.cross(&up) - back).norm() < 1e-14, "{v}: {camera:?}");
+                assert!((right.norm() - 1.0).abs() < 1e-14, "{v}: {camera:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn angles_are_clamped() {
+        let wide = Camera::plane().perspective(1e9).tangent();
+        assert!((wide - 3.0).abs() < 0.01, "the tangent of 1.25 is about 3, not {wide}");
+        let none = Camera::plane().perspective(f64::NAN).tangent();
+        assert!((none - 0.005).abs() < 1e-6, "NaN is the smallest: {none}");
+    }
+}

@@ -1,0 +1,180 @@
+//! Images of today against images of yesterday.
+
+use crate::compare::compare;
+use crate::image::{Image, ImageError};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::{env, fmt, fs, io};
+
+/// A folder of golden images, and where the image and the difference go when a test fails.
+///
+/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of reading
+/// it.
+///
+/// ```
+/// use impinge_view::{Golden, GoldenError, Image};
+///
+/// let golden = Golden::new("no/such/folder").with_failures("none").with_bless(false);
+/// let found = golden.check("image", &Image::filled([1, 1], [0; 4]));
+/// assert!(matches!(found, Err(GoldenError::Missing { .. })));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Golden {
+    folder: PathBuf,
+    failures: PathBuf,
+    bless: bool,
+    tolerance: u8,
+    allowed: u64,
+}
+
+impl Golden {
+    /// The golden images in a folder. Failures go to `impinge-view` in the folder that
+    /// `CARGO_TARGET_DIR` names, or in the `target` of the workspace of the current folder.
+    #[must_use]
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        let bless = env::var_os("IMPINGE_BLESS").is_some_and(|value| value == "1");
+        let failures = target_folder().join("impinge-view");
+        Self { folder: folder.into(), failures, bless, tolerance: 0, allowed: 0 }
+    }
+
+    /// Writes failures to another folder.
+    #[must_use]
+    pub fn with_failures(self, failures: impl Into<PathBuf>) -> Self {
+        Self { failures: failures.into(), ..self }
+    }
+
+    /// Whether to write golden images, whatever the environment says.
+    #[must_use]
+    pub fn with_bless(self, bless: bool) -> Self {
+        Self { bless, ..self }
+    }
+
+    /// Allows each channel to differ by a tolerance, and as many pixels by more than this. Without, the
+    /// images have to be equal.
+    #[must_use]
+    pub fn with_bound(self, tolerance: u8, allowed: u64) -> Self {
+        Self { tolerance, allowed, ..self }
+    }
+
+    /// Compares an image with the golden one, `NAME.png`.
+    ///
+    /// # Errors
+    ///
+    /// If there is no golden image, it cannot be read, or the image differs by more than the bound. Then
+    /// `NAME.png` and, if there was something to compare with, `NAME.difference.png` are among the
+    /// failures.
+    pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
+        let path = self.folder.join(format!("{name}.png"));
+        if self.bless {
+            return Ok(write(&path, image)?);
+        }
+        let found = self.failures.join(format!("{name}.png"));
+        let Ok(bytes) = fs::read(&path) else {
+            write(&found, image)?;
+            return Err(GoldenError::Missing { golden: path, image: found });
+        };
+        let golden = Image::from_png(&bytes).map_err(GoldenError::Image)?;
+        let difference = compare(image, &golden, self.tolerance);
+        if difference.pixels <= self.allowed && image.size() == golden.size() {
+            return Ok(());
+        }
+        write(&found, image)?;
+        write(&self.failures.join(format!("{name}.difference.png")), &difference.picture)?;
+        let (pixels, largest) = (difference.pixels, difference.largest);
+        Err(GoldenError::Differs { pixels, largest, image: found })
+    }
+}
+
+fn write(path: &Path, image: &Image) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::write(path, image.to_png())
+}
+
+fn target_folder() -> PathBuf {
+    if let Some(folder) = env::var_os("CARGO_TARGET_DIR") {
+        return folder.into();
+    }
+    let current = env::current_dir().unwrap_or_default();
+    let root = current.ancestors().find(|folder| folder.join("Cargo.lock").exists());
+    root.unwrap_or(&current).join("target")
+}
+
+/// Why an image is not the golden one.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum GoldenError {
+    /// There is no golden image, or it cannot be read.
+    Missing {
+        /// Where it was looked for.
+        golden: PathBuf,
+        /// Where the image is.
+        image: PathBuf,
+    },
+    /// More pixels differ than allowed, or the size does.
+    Differs {
+        /// How many.
+        pixels: u64,
+        /// The largest difference of a channel.
+        largest: u8,
+        /// Where the image is; the difference is beside it.
+        image: PathBuf,
+    },
+    /// The golden image is none.
+    Image(ImageError),
+    /// A file could not be written.
+    Io(io::Error),
+}
+
+impl From<io::Error> for GoldenError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl fmt::Display for GoldenError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing { golden, image } => {
+                let (golden, image) = (golden.display(), image.display());
+                write!(formatter, "no golden image {golden}; IMPINGE_BLESS=1 makes it of {image}")
+            }
+            Self::Differs { pixels, largest, image } => {
+                let image = image.display();
+                write!(formatter, "{image}: {pixels} pixels differ, by up to {largest} of 255")
+            }
+            Self::Image(error) => error.fmt(formatter),
+            Self::Io(error) => error.fmt(formatter),
+        }
+    }
+}
+
+impl Error for GoldenError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_leave_the_image_and_the_difference() {
+        let folder = env::temp_dir().join(format!("impinge-view-{}", std::process::id()));
+        let golden = Golden::new(folder.join("golden")).with_failures(folder.join("failures"));
+        let image = Image::filled([5, 4], [9, 9, 9, 255]);
+        golden.clone().with_bless(true).check("plain", &image).expect("written");
+        let golden = golden.with_bless(false);
+        golden.check("plain", &image).expect("the same");
+        let mut other = image.clone();
+        other.set_pixel(0, 0, [19, 9, 9, 255]);
+        let error = golden.check("plain", &other).expect_err("one pixel differs");
+        assert!(matches!(error, GoldenError::Differs { pixels: 1, largest: 10, .. }), "{error}");
+        golden.clone().with_bound(0, 1).check("plain", &other).expect("one pixel is allowed");
+        golden.clone().with_bound(10, 0).check("plain", &other).expect("10 is tolerated");
+        let larger = Image::filled([5, 5], [9, 9, 9, 255]);
+        golden.clone().with_bound(255, 99).check("plain", &larger).expect_err("another size");
+        let written = fs::read(folder.join("failures/plain.png")).expect("left behind");
+        assert_eq!(Image::from_png(&written), Ok(larger), "the last failure");
+        assert!(folder.join("failures/plain.difference.png").exists(), "left behind");
+        fs::remove_dir_all(folder).expect("can be removed");
+    }
+}

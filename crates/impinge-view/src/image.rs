@@ -1,0 +1,145 @@
+//! Images in memory, and as PNG.
+
+use std::error::Error;
+use std::fmt;
+use std::io::Cursor;
+
+/// Pixels of 8 bits for red, green, blue and alpha in sRGB, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    size: [u32; 2],
+    pixels: Vec<[u8; 4]>,
+}
+
+/// The largest width and height of an image.
+pub(crate) const MAX_SIDE: u32 = 8192;
+
+impl Image {
+    /// An image of one colour. Width and height are clamped to 1 to 8192.
+    ///
+    /// ```
+    /// let image = impinge_view::Image::filled([3, 0], [255, 0, 0, 255]);
+    /// assert_eq!(image.size(), [3, 1]);
+    /// assert_eq!(image.pixel(2, 0), [255, 0, 0, 255]);
+    /// let again = impinge_view::Image::from_png(&image.to_png());
+    /// assert_eq!(again, Ok(image));
+    /// ```
+    #[must_use]
+    pub fn filled(size: [u32; 2], pixel: [u8; 4]) -> Self {
+        let size = size.map(|side| side.clamp(1, MAX_SIDE));
+        let count = size[0] as usize * size[1] as usize;
+        Self { size, pixels: vec![pixel; count] }
+    }
+
+    /// An opaque image of as many pixels as its size says.
+    pub(crate) fn opaque(size: [u32; 2], pixels: &[[u8; 3]]) -> Self {
+        let pixels = pixels.iter().map(|[red, green, blue]| [*red, *green, *blue, 255]);
+        Self { size, pixels: pixels.collect() }
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// All pixels, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// The pixel in a column and a row, counted from the upper left.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such pixel.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
+        assert!(x < self.size[0] && y < self.size[1], "no pixel {x}, {y} in {:?}", self.size);
+        self.pixels[y as usize * self.size[0] as usize + x as usize]
+    }
+
+    /// Changes a pixel. There must be one.
+    pub(crate) fn set_pixel(&mut self, x: u32, y: u32, pixel: [u8; 4]) {
+        self.pixels[y as usize * self.size[0] as usize + x as usize] = pixel;
+    }
+
+    /// The bytes of a PNG file.
+    ///
+    /// # Panics
+    ///
+    /// Never: an image has a size that PNG allows, and memory does not fail to be written.
+    #[must_use]
+    pub fn to_png(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.size[0], self.size[1]);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        let mut writer = encoder.write_header().expect("sizes from 1 to 8192 are allowed");
+        writer.write_image_data(self.pixels.as_flattened()).expect("as many bytes as announced");
+        writer.finish().expect("a vector can be written");
+        bytes
+    }
+
+    /// Reads a PNG file. Those with 16 bits a channel or a palette are converted, gray ones are not.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the bytes: not a PNG, cut off, gray, or larger than 8192 pixels.
+    pub fn from_png(bytes: &[u8]) -> Result<Self, ImageError> {
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
+        decoder.set_transformations(
+            png::Transformations::normalize_to_color8() | png::Transformations::ALPHA,
+        );
+        let mut reader = decoder.read_info().map_err(|error| ImageError::new(&error))?;
+        let size = [reader.info().width, reader.info().height];
+        if size.iter().any(|side| *side > MAX_SIDE) {
+            return Err(ImageError::new(&format!("{size:?} is larger than {MAX_SIDE}")));
+        }
+        let mut image = Self::filled(size, [0; 4]);
+        let needed = image.pixels.as_flattened().len();
+        if reader.output_buffer_size() != Some(needed) {
+            return Err(ImageError::new(&"not red, green and blue"));
+        }
+        let bytes = image.pixels.as_flattened_mut();
+        reader.next_frame(bytes).map_err(|error| ImageError::new(&error))?;
+        Ok(image)
+    }
+}
+
+/// Why bytes are not an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageError {
+    message: String,
+}
+
+impl ImageError {
+    fn new(message: &dyn fmt::Display) -> Self {
+        Self { message: message.to_string() }
+    }
+}
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "no image: {}", self.message)
+    }
+}
+
+impl Error for ImageError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_bytes_are_errors() {
+        let good = Image::filled([20, 10], [1, 2, 3, 4]).to_png();
+        assert!(Image::from_png(&[]).is_err(), "empty");
+        assert!(Image::from_png(&good[..good.len() / 2]).is_err(), "cut off");
+        let error = Image::from_png(b"GIF89a").expect_err("another format");
+        assert!(error.to_string().starts_with("no image: "), "{error}");
+    }
+}

@@ -1,0 +1,60 @@
+//! Pictures of what impinge computes, without a GPU.
+//!
+//! Two back ends of [`impinge::debug_render::DebugRender`], each for 2D and 3D, `f32` and `f64`:
+//!
+//! * [`SvgPicture`] draws lines: 2D scenes to scale, 3D scenes with hidden lines fainter. It has
+//!   layers, a legend, and a title and description for screen readers, and is legible in light and
+//!   dark.
+//! * [`PngPicture`] draws surfaces with a depth buffer, soft light from the upper left, darker edges
+//!   and transparency.
+//!
+//! A picture collects what is drawn and computes nothing until it is asked for its bytes. Its
+//! [`Camera`] frames itself: everything that was drawn fits, with a margin. NaN, infinite and huge
+//! coordinates are left out and [counted](Picture::left_out). The same drawing gives the same bytes
+//! on every run and machine: there are only `+ - * /` and roots, and the software sine of the
+//! library.
+//!
+//! ```
+//! use impinge::debug_render::{Color, DebugRender, Drawn};
+//! use impinge::dim3::math::{Point, Vector};
+//! use impinge_view::{Camera, PngPicture};
+//!
+//! let camera = Camera::look_along(&Vector::new(-1.0, -1.0, -1.0), &Vector::y());
+//! let mut picture = PngPicture::new(camera, [64, 48]);
+//! let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(Point::from);
+//! picture.triangle(corners, Color::rgb(96, 125, 160), Drawn::Object);
+//! let image = picture.to_image();
+//! assert_eq!(image.size(), [64, 48]);
+//! let is_colored = |pixel: &[u8; 4]| *pixel != image.pixel(0, 0);
+//! assert!(image.pixels().iter().filter(|pixel| is_colored(pixel)).count() > 200);
+//! assert!(image.to_png().starts_with(b"\x89PNG"));
+//! ```
+//!
+//! [`Golden`] compares an [`Image`] with a file, for tests that would notice a change of a picture.
+#![forbid(unsafe_code)]
+
+mod camera;
+mod compare;
+mod flatten;
+mod golden;
+mod hidden;
+mod image;
+mod kept_mesh;
+mod layer;
+mod lens;
+mod picture;
+mod pieces;
+mod png_picture;
+mod raster;
+mod recording;
+mod shade;
+mod svg_picture;
+mod svg_write;
+
+pub use camera::Camera;
+pub use compare::{Difference, compare};
+pub use golden::{Golden, GoldenError};
+pub use image::{Image, ImageError};
+pub use picture::Picture;
+pub use png_picture::{Png, PngPicture};
+pub use svg_picture::{Svg, SvgPicture};

@@ -1,0 +1,80 @@
+//! What pictures of every format have in common.
+
+use crate::camera::Camera;
+use crate::lens::Lens;
+use crate::recording::Recording;
+use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
+use impinge::math::{Point, Space};
+
+/// A picture: a back end that collects what is drawn until its bytes are asked for.
+///
+/// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are its two formats. A mesh is
+/// kept by its id at the first call, so what a later mesh with the same id contains is not read. A
+/// point is a disc with the given diameter, at least 5 pixels wide.
+///
+/// ```
+/// use impinge::debug_render::{Color, DebugRender, Drawn};
+/// use impinge::dim2::math::Point;
+/// use impinge_view::SvgPicture;
+///
+/// let mut picture = SvgPicture::plane(200);
+/// let far = Point::new(f32::NAN, 0.0);
+/// picture.line([Point::origin(), far], Color::rgb(0, 0, 0), Drawn::Query);
+/// assert_eq!(picture.left_out(), 1);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Picture<F> {
+    pub(crate) recording: Recording,
+    pub(crate) camera: Camera,
+    pub(crate) format: F,
+}
+
+impl<F> Picture<F> {
+    pub(crate) fn with_format(camera: Camera, format: F) -> Self {
+        Self { recording: Recording::default(), camera, format }
+    }
+
+    /// How many lines, triangles, points, texts and meshes were left out, because a coordinate is NaN,
+    /// infinite or above 1e13, a size is negative, or a mesh has no vertex of an index.
+    #[must_use]
+    pub fn left_out(&self) -> u64 {
+        self.recording.left_out
+    }
+
+    /// Forgets what was drawn, for the next picture; the meshes are kept.
+    pub fn clear(&mut self) {
+        self.recording.clear();
+    }
+
+    /// Sees the same from elsewhere.
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.camera = camera;
+    }
+
+    /// The camera at the place from which it sees everything.
+    pub(crate) fn lens(&self) -> Lens {
+        Lens::new(&self.camera, &self.recording.points())
+    }
+}
+
+impl<N: Space<D>, const D: usize, F> DebugRender<N, D> for Picture<F> {
+    fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn) {
+        self.recording.line(ends, color, what);
+    }
+
+    fn point(&mut self, at: &Point<N, D>, size: N, color: Color, what: Drawn) {
+        self.recording.point(at, size, color, what);
+    }
+
+    fn text(&mut self, at: &Point<N, D>, text: &str, color: Color, what: Drawn) {
+        DebugRender::<N, D>::text(&mut self.recording, at, text, color, what);
+    }
+
+    fn triangle(&mut self, corners: [Point<N, D>; 3], color: Color, what: Drawn) {
+        self.recording.triangle(corners, color, what);
+    }
+
+    fn mesh(&mut self, mesh: &ShapeMesh<N, D>, pose: &N::Isometry, color: Color, what: Drawn) {
+        self.recording.mesh(mesh, pose, color, what);
+    }
+}

@@ -1,0 +1,68 @@
+//! Colours of surfaces in soft light, and of edges.
+
+use impinge::dim3::math::Vector;
+
+/// The direction to the light in the camera's frame: from the upper left, in front. A unit vector
+/// within 1e-3.
+const LIGHT: [f64; 3] = [-0.465, 0.675, 0.573];
+/// What red, green and blue are multiplied by on the dark side: a little blue.
+const SHADE: [f64; 3] = [0.48, 0.52, 0.60];
+/// What they are multiplied by where the light falls straight: a little warm.
+const LIT: [f64; 3] = [1.10, 1.08, 1.05];
+/// Edges are halfway between the colour of their face and this.
+const INK: [u8; 3] = [26, 32, 44];
+
+/// A colour on a surface with a unit normal in the camera's frame. The zero vector counts as halfway
+/// between light and shade.
+pub(crate) fn shaded(rgb: [u8; 3], normal: &Vector<f64>) -> [u8; 3] {
+    let [x, y, z] = LIGHT;
+    let light = 0.5 + 0.5 * (normal.x * x + normal.y * y + normal.z * z);
+    let channel = |index: usize| {
+        let factor = SHADE[index] + (LIT[index] - SHADE[index]) * light;
+        byte(f64::from(rgb[index]) * factor)
+    };
+    [channel(0), channel(1), channel(2)]
+}
+
+/// The colour of the edges of faces of a colour.
+pub(crate) fn edge_tone(rgb: [u8; 3]) -> [u8; 3] {
+    mixed(rgb, INK, 0.55)
+}
+
+/// A colour that is so far on the way from one to another, from 0 to 1.
+pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
+    let channel = |index: usize| {
+        let (from, to) = (f64::from(from[index]), f64::from(to[index]));
+        byte(from + (to - from) * part)
+    };
+    [channel(0), channel(1), channel(2)]
+}
+
+/// The nearest of the numbers 0 to 255; 0 of NaN.
+#[expect(clippy::cast_possible_truncation, reason = "clamped")]
+#[expect(clippy::cast_sign_loss, reason = "clamped")]
+fn byte(x: f64) -> u8 {
+    (x + 0.5).clamp(0.0, 255.0) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_upper_left_is_lighter_than_the_lower_right() {
+        let gray = [128; 3];
+        let [x, y, z] = LIGHT;
+        let light = Vector::new(x, y, z);
+        assert!((light.norm() - 1.0).abs() < 1e-3, "a unit vector");
+        assert_eq!(shaded(gray, &light), [141, 138, 134], "128 times LIT");
+        assert_eq!(shaded(gray, &-light), [61, 67, 77], "128 times SHADE");
+        assert_eq!(shaded([255; 3], &light), [255; 3], "clamped");
+    }
+
+    #[test]
+    fn tones() {
+        assert_eq!(mixed([0, 100, 200], [100, 200, 0], 0.5), [50, 150, 100], "halfway");
+        assert!(edge_tone([200; 3]).iter().all(|x| *x < 120), "darker");
+    }
+}

@@ -1,0 +1,217 @@
+//! Pictures of lines.
+
+use crate::camera::Camera;
+use crate::flatten::{Flat, edge_color, flatten};
+use crate::hidden::{depths, runs};
+use crate::layer::Layer;
+use crate::lens::{OnScreen, View, Window, larger};
+use crate::picture::Picture;
+use crate::pieces::{LINE_BIAS, MIN_DOT_RADIUS};
+use crate::raster::{Raster, whole};
+use crate::svg_write::{Body, Key, document};
+use impinge::debug_render::{Color, Drawn};
+
+/// The format of an [`SvgPicture`].
+#[derive(Clone, Debug)]
+pub struct Svg {
+    width: u32,
+    title: String,
+    description: String,
+    /// Whether surfaces are filled, as in 2D, or hide lines, as in 3D.
+    fills: bool,
+}
+
+/// A picture of lines.
+///
+/// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the order
+/// of [`Drawn`]; in a group, what is nearer comes later. Lengths on the page are in pixels with two
+/// digits. Colours that are too dark for a dark page are lighter there. What was
+/// [left out](Picture::left_out) is mentioned in the description.
+///
+/// ```
+/// use impinge::debug_render::{Color, DebugRender, Drawn};
+/// use impinge::dim2::math::Point;
+/// use impinge_view::SvgPicture;
+///
+/// let mut picture = SvgPicture::plane(200).with_title("A ray", "It goes to the upper right.");
+/// let ends = [Point::origin(), Point::new(2.0_f32, 1.0)];
+/// picture.line(ends, Color::rgb(40, 90, 160), Drawn::Query);
+/// let svg = picture.to_svg();
+/// assert!(svg.contains("<g class=\"query\">") && svg.contains("M16.00 100.00L184.00 16.00"));
+/// ```
+pub type SvgPicture = Picture<Svg>;
+
+/// The margin on all sides, in pixels.
+const MARGIN: f64 = 16.0;
+/// The largest height of the drawing, in widths.
+const TALLEST: f64 = 1.5;
+
+impl Picture<Svg> {
+    /// A picture of a 2D scene, to scale, y upwards. Shapes and triangles are filled with a tint. The
+    /// width in pixels is clamped to 64 to 8192; the height follows from what is drawn.
+    #[must_use]
+    pub fn plane(width: u32) -> Self {
+        Self::of(Camera::plane(), width, true)
+    }
+
+    /// A picture of a 3D scene: lines alone. Where opaque meshes and triangles hide them they are
+    /// fainter and dotted. Of surfaces the outlines are drawn too. Width and height as in
+    /// [`Self::plane`].
+    #[must_use]
+    pub fn space(camera: Camera, width: u32) -> Self {
+        Self::of(camera, width, false)
+    }
+
+    fn of(camera: Camera, width: u32, fills: bool) -> Self {
+        let width = width.clamp(64, crate::image::MAX_SIDE);
+        let format = Svg { width, title: "Picture".into(), description: String::new(), fills };
+        Self::with_format(camera, format)
+    }
+
+    /// A title and a description, for screen readers and tooltips. Characters that XML does not allow
+    /// become U+FFFD.
+    #[must_use]
+    pub fn with_title(mut self, title: &str, description: &str) -> Self {
+        self.format.title = title.to_owned();
+        self.format.description = description.to_owned();
+        self
+    }
+
+    /// The text of an SVG file. Of 3D scenes it costs a search along each line, half a pixel at a time.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        let lens = self.lens();
+        let flat = flatten(&self.recording, &lens);
+        let window = self.format.window(lens.size());
+        let view = lens.within(&window);
+        let size = window.size.map(|side| side + 2.0 * MARGIN);
+        let pixels = size.map(|side| whole(side.ceil(), usize::MAX));
+        let depths = (!self.format.fills).then(|| depths(&flat, &view, pixels));
+        let sheet = Sheet { flat, view, depths };
+        let mut body = Body::new(size);
+        for layer in self.recording.layers() {
+            body.open(Layer::of(layer));
+            self.fill_layer(layer, &sheet, &mut body);
+            stroke_layer(layer, &sheet, &mut body);
+            self.dot_layer(layer, &sheet, &mut body);
+            self.label_layer(layer, &sheet.view, &mut body);
+            body.close();
+        }
+        body.legend(&self.legend());
+        document(body, &self.format.title, &self.description())
+    }
+
+    fn fill_layer(&self, layer: Drawn, sheet: &Sheet, body: &mut Body) {
+        if !self.format.fills {
+            return;
+        }
+        for placed in self.recording.placed.iter().filter(|placed| placed.what == layer) {
+            let Some(kept) = self.recording.meshes.get(&placed.id) else { continue };
+            let vertices = placed.vertices(kept);
+            let corners = kept.triangles.iter().map(|indices| indices.map(|i| vertices[i]));
+            let corners = corners.map(|corners| sheet.view.triangle(&corners, 0.0));
+            body.fill(placed.color, &corners.collect::<Vec<_>>());
+        }
+        for triangle in self.recording.triangles.iter().filter(|triangle| triangle.what == layer) {
+            body.fill(triangle.color, &[sheet.view.triangle(&triangle.corners, 0.0)]);
+        }
+    }
+
+    fn dot_layer(&self, layer: Drawn, sheet: &Sheet, body: &mut Body) {
+        let mut found: Vec<_> =
+            self.recording.dots.iter().filter(|dot| dot.what == layer).collect();
+        found.retain(|dot| sheet.view.point(&dot.at, 0.0).is_some());
+        let depth = |at| sheet.view.point(at, 0.0).map_or(0.0, |on| on.depth);
+        found.sort_by(|a, b| depth(&b.at).total_cmp(&depth(&a.at)));
+        for dot in found {
+            let Some(center) = sheet.view.point(&dot.at, LINE_BIAS) else { continue };
+            let radius = larger(sheet.view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS);
+            let is_hidden = sheet.runs(&[center, center]).iter().any(|(hidden, _)| *hidden);
+            body.dot(center, radius, Key { color: dot.color, is_hidden });
+        }
+    }
+
+    fn label_layer(&self, layer: Drawn, view: &View, body: &mut Body) {
+        for label in self.recording.labels.iter().filter(|label| label.what == layer) {
+            if let Some(at) = view.point(&label.at, 0.0) {
+                body.label(at, &label.text, label.color);
+            }
+        }
+    }
+
+    fn legend(&self) -> Vec<(Layer, Color)> {
+        let layers = self.recording.layers().into_iter();
+        let colors = |layer| Some((Layer::of(layer), self.recording.color_of(layer)?));
+        layers.filter_map(colors).collect()
+    }
+
+    fn description(&self) -> String {
+        let names: Vec<_> = self.legend().into_iter().map(|(layer, _)| layer.name).collect();
+        let mut text = self.format.description.clone();
+        if text.is_empty() && names.is_empty() {
+            text = "Nothing is drawn.".into();
+        } else if text.is_empty() {
+            text = format!("It shows {}.", names.join(", "));
+        }
+        if self.left_out() > 0 {
+            text.push_str(&format!(
+                " {} of the things drawn have no place in it.",
+                self.left_out()
+            ));
+        }
+        text
+    }
+}
+
+impl Svg {
+    /// The page without margins and legend, for a drawing with a width and a height.
+    fn window(&self, [width, height]: [f64; 2]) -> Window {
+        let inner = f64::from(self.width) - 2.0 * MARGIN;
+        let tallest = inner * TALLEST;
+        let wanted = if width > 0.0 { inner * (height / width) } else { tallest };
+        let wanted = if width > 0.0 || height > 0.0 { wanted } else { inner * 0.5 };
+        Window { low: [MARGIN; 2], size: [inner, -larger(-wanted, -tallest)] }
+    }
+}
+
+/// A scene on its page.
+struct Sheet {
+    flat: Flat,
+    view: View,
+    /// The depths of what hides lines, if anything does.
+    depths: Option<Raster>,
+}
+
+impl Sheet {
+    /// The parts of a line and whether they are hidden.
+    fn runs(&self, ends: &[OnScreen; 2]) -> Vec<(bool, [OnScreen; 2])> {
+        match &self.depths {
+            Some(depths) => {
+                runs(ends, depths).into_iter().map(|run| (run.is_hidden, run.ends)).collect()
+            }
+            None => vec![(false, *ends)],
+        }
+    }
+}
+
+/// The lines of a layer: hidden ones first, each from far to near. Triangles have sides.
+fn stroke_layer(layer: Drawn, sheet: &Sheet, body: &mut Body) {
+    let strokes = sheet.flat.strokes.iter().filter(|stroke| stroke.what == layer);
+    let mut lines: Vec<_> = strokes.map(|stroke| (stroke.ends, stroke.color)).collect();
+    for face in sheet.flat.faces.iter().filter(|face| face.is_alone && face.what == layer) {
+        let [a, b, c] = face.corners;
+        lines.extend([[a, b], [b, c], [c, a]].map(|ends| (ends, edge_color(face.color))));
+    }
+    let on_screen = |(ends, color)| Some((sheet.view.line(&ends, LINE_BIAS)?, color));
+    let lines = lines.into_iter().filter_map(on_screen);
+    let mut parts: Vec<_> = lines
+        .flat_map(|(ends, color)| sheet.runs(&ends).into_iter().map(move |run| (run, color)))
+        .collect();
+    let depth = |ends: &[OnScreen; 2]| ends[0].depth + ends[1].depth;
+    parts.sort_by(|((hidden1, ends1), _), ((hidden2, ends2), _)| {
+        hidden2.cmp(hidden1).then(depth(ends2).total_cmp(&depth(ends1)))
+    });
+    for ((is_hidden, ends), color) in parts {
+        body.stroke(&ends, Key { color, is_hidden });
+    }
+}

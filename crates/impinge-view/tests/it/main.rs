@@ -1,0 +1,8 @@
+//! Pictures of known scenes: silhouettes by arithmetic, documents that parse, golden images.
+#![forbid(unsafe_code)]
+
+mod goldens;
+mod robust;
+mod scenes;
+mod silhouettes;
+mod svg;
