@@ -158,7 +158,9 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         position: &N::Isometry,
         renderer: &mut dyn DebugRender<N, D>,
     ) {
-        if let Some(style) = self.options.object {
+        if let Some(style) = self.options.object
+            && N::pose(position).is_finite()
+        {
             renderer.mesh(self.mesh(shape), position, style.color, Drawn::Object);
         }
     }
@@ -171,8 +173,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     what: Drawn,
     renderer: &mut dyn DebugRender<N, D>,
 ) {
-    let is_finite = |point: &Point<N, D>| point.iter().all(|x| x.is_finite_number());
-    if !(is_finite(aabb.mins()) && is_finite(aabb.maxs())) {
+    if !are_finite([aabb.mins(), aabb.maxs()]) {
         return;
     }
     // Bit `axis` of a corner's number says that it is at the greatest coordinate there.
@@ -188,4 +189,9 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
             renderer.line([corner(start), corner(start | 1 << axis)], style.color, what);
         }
     }
+}
+
+/// No coordinate of two points is infinite or NaN.
+pub(super) fn are_finite<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> bool {
+    points.into_iter().flat_map(Point::iter).all(|x| x.is_finite_number())
 }

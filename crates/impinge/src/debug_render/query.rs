@@ -1,6 +1,6 @@
 //! Pictures of queries: contacts, closest points, rays, shapes on their way.
 
-use super::drawing::draw_box;
+use super::drawing::{are_finite, draw_box};
 use super::{DebugDrawing, DebugRender, Drawn};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Space, Vector, centroid, max};
@@ -132,7 +132,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 
     /// Draws a ray up to `max_time`, and its hits with their normals.
     ///
-    /// A ray without end is drawn to its last hit, and one without hits for one unit of time.
+    /// A ray without end is drawn to its last hit, and one without hits for one unit of time. Nothing is
+    /// drawn of a ray that is not finite.
     pub fn ray(
         &self,
         ray: &Ray<N, D>,
@@ -141,9 +142,10 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         renderer: &mut dyn DebugRender<N, D>,
     ) {
         let last = hits.iter().map(|hit| hit.toi).reduce(max).unwrap_or(N::ONE);
-        let end = if max_time.is_finite_number() { max_time } else { last };
-        if let Some(style) = self.options.query {
-            renderer.line([ray.origin, ray.point_at(end)], style.color, Drawn::Query);
+        let end = max(if max_time.is_finite_number() { max_time } else { last }, N::ZERO);
+        let ends = [ray.origin, ray.point_at(end)];
+        if let Some(style) = self.options.query.filter(|_| are_finite(ends.each_ref())) {
+            renderer.line(ends, style.color, Drawn::Query);
         }
         for hit in hits {
             self.hit(&ray.point_at(hit.toi), &hit.normal, renderer);
@@ -162,12 +164,14 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         let impact = hit.map(|hit| hit.toi);
         if let Some(style) = self.options.query {
             let mesh = self.mesh(sweep.shape);
-            for time in [Some(N::ZERO), impact, end].into_iter().flatten() {
-                renderer.mesh(mesh, &sweep.position_at(time), style.color, Drawn::Query);
+            let times = [Some(N::ZERO), impact, end].into_iter().flatten();
+            let positions = times.map(|time| sweep.position_at(time));
+            for position in positions.filter(|position| N::pose(position).is_finite()) {
+                renderer.mesh(mesh, &position, style.color, Drawn::Query);
             }
             let start = Point::from(N::translation(&sweep.position));
-            if let Some(time) = end.or(impact) {
-                let tip = start + sweep.velocity * time;
+            let tip = start + sweep.velocity * end.or(impact).unwrap_or(N::ZERO);
+            if tip != start && are_finite([&start, &tip]) {
                 renderer.arrow(&start, &tip, style.color, Drawn::Query);
             }
         }
@@ -179,6 +183,9 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     /// A point that was hit, and the normal there: none where that is zero.
     fn hit(&self, at: &Point<N, D>, normal: &Vector<N, D>, renderer: &mut dyn DebugRender<N, D>) {
         let Some(style) = self.options.query_hit else { return };
+        if !are_finite([at, &(at + normal)]) {
+            return;
+        }
         renderer.point(at, style.size * N::HALF, style.color, Drawn::QueryHit);
         if *normal != Vector::<N, D>::zeros() {
             renderer.arrow(at, &(at + normal * style.size), style.color, Drawn::QueryHit);

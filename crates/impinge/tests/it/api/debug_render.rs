@@ -187,7 +187,8 @@ fn half_spaces_have_the_given_extent() {
     let heights: Vec<_> = mesh.vertices.iter().map(|v| normal.dot(&v.coords)).collect();
     assert!(heights.iter().all(|&height| height < 1e-12), "solid side: {heights:?}");
     assert_eq!(mesh.triangles.len(), 2, "a square");
-    let farthest = mesh.vertices.iter().map(|v| v.coords.norm()).fold(0.0, f64::max);
+    let level = mesh.vertices.iter().filter(|v| normal.dot(&v.coords) > -1e-12);
+    let farthest = level.map(|v| v.coords.norm()).fold(0.0, f64::max);
     assert!((farthest - 3.0 * 2.0_f64.sqrt()).abs() < 1e-12, "its corners: {farthest}");
     let line = ShapeMesh::of(&HalfSpace::new(Unit::new_normalize(Vector::<f64, 2>::y())), &options);
     let level = |ends: &&[u32; 2]| ends.iter().all(|&end| line.vertices[end as usize].y == 0.0);
@@ -205,12 +206,12 @@ fn composites_are_their_parts_and_each_seam_is_one_line() {
     let drawn = mesh_of(&mesh);
     assert_eq!((drawn.vertices.len(), drawn.lines.len(), drawn.triangles.len()), (4, 5, 2));
 
-    let field = HeightField::<f64, 3>::new(2, 2, vec![0.0; 9], vector(&[2.0, 1.0, 2.0]));
+    let field = HeightField::<f64, 3>::new(3, 3, vec![0.0; 9], vector(&[2.0, 1.0, 2.0]));
     let holes = field.clone().with_holes(|row, column| (row, column) == (0, 0));
     let [whole, rest] = [&field, &holes].map(|field| mesh_of(field).triangles.len());
     assert_eq!((whole, rest), (8, 6), "holes are left out");
 
-    let line = Polyline::<f32, 2>::open([0.0, 1.0, 2.0].map(|x| Point::new(x, x * x)).to_vec());
+    let line = Polyline::<f32, 2>::open([0.0, 1.0, 2.0].map(|x| Point::from([x, x * x])).to_vec());
     let drawn = mesh_of(&line);
     assert_eq!((drawn.vertices.len(), drawn.lines.len(), drawn.triangles.len()), (3, 2, 0));
 
@@ -294,7 +295,7 @@ fn worlds<N: Space<D>, const D: usize>() {
 
     let nothing = picture(&world, DebugOptions::none());
     assert_eq!(nothing.0.len(), 0, "off draws nothing");
-    let empty = picture(&CollisionWorld::default(), DebugOptions::all());
+    let empty = picture::<N, D>(&CollisionWorld::default(), DebugOptions::all());
     assert_eq!(empty.0.len(), 0, "an empty world has nothing to draw");
 }
 
@@ -368,14 +369,14 @@ fn worlds_are_drawn() {
 #[test]
 fn meshes_of_replaced_shapes_are_made_anew() {
     let mut world = CollisionWorld::<f64, 2, ()>::new(0.02);
-    let line = Polyline::<f64, 2>::open([-1.0, 0.0, 1.0].map(|x| Point::new(x, 0.0)).to_vec());
+    let line = Polyline::<f64, 2>::open([-1.0, 0.0, 1.0].map(|x| Point::from([x, 0.0])).to_vec());
     let query = GeometricQueryType::Contacts(0.0, 0.0);
     let handle =
         world.add(at::<f64, 2>(&[]), ShapeHandle::new(line), CollisionGroups::new(), query, ());
     let mut drawing = DebugDrawing::default();
     for height in [1.0, 2.0, 3.0] {
         world.deform(handle, |line: &mut Polyline<f64, 2>| {
-            line.set_vertices(&[-1.0, 0.0, 1.0].map(|x| Point::new(x, height * (1.0 - x * x))));
+            line.set_vertices(&[-1.0, 0.0, 1.0].map(|x| Point::from([x, height * (1.0 - x * x)])));
         });
         let mut drawn = Lines(Vec::new());
         drawing.world(&world, &mut drawn);
@@ -387,7 +388,8 @@ fn meshes_of_replaced_shapes_are_made_anew() {
 fn queries<N: Space<D>, const D: usize>() {
     let (world, mut drawing) = (stage::<N, D>(), DebugDrawing::new(DebugOptions::all()));
     let ray = Ray::new(Point::from(vector(&[0.0, 9.0])), vector::<N, D>(&[0.0, -2.0]));
-    let (_, hit) = world.first_ray_hit(&ray, N::INFINITY, &QueryFilter::new()).expect("the box");
+    let (_, hit) =
+        world.first_ray_hit(&ray, N::INFINITY, true, &QueryFilter::new()).expect("a box");
     let mut drawn = Lines(Vec::new());
     drawing.ray(&ray, N::INFINITY, &[hit], &mut drawn);
     let [line] = drawn.of(Drawn::Query)[..] else { panic!("one ray: {drawn:?}") };
@@ -429,6 +431,22 @@ fn queries_are_drawn() {
     queries::<f64, 2>();
     queries::<f32, 3>();
     queries::<f64, 3>();
+}
+
+#[test]
+fn what_is_not_finite_is_left_out() {
+    let mut drawing = DebugDrawing::new(DebugOptions::all());
+    let ball = ShapeHandle::new(Ball::new(1.0));
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut drawn = Lines(Vec::new());
+        let ray = Ray::new(Point::origin(), vector::<f64, 2>(&[bad, 1.0]));
+        drawing.ray(&ray, 1.0, &[], &mut drawn);
+        drawing.shape(&ball, &at::<f64, 2>(&[0.0, bad]), &mut drawn);
+        let (position, velocity) = (at::<f64, 2>(&[bad]), Vector::<f64, 2>::zeros());
+        let sweep = SweptShape { shape: &ball, position, velocity, max_time: 1.0 };
+        drawing.cast(&sweep, None, &mut drawn);
+        assert_eq!(drawn.0.len(), 0, "of {bad}: {drawn:?}");
+    }
 }
 
 #[test]
