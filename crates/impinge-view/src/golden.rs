@@ -14,7 +14,8 @@ use std::{env, fmt, fs, io};
 /// ```
 /// use impinge_view::{Golden, GoldenError, Image};
 ///
-/// let golden = Golden::new("no/such/folder").with_failures("none").with_bless(false);
+/// let failures = std::env::temp_dir().join("impinge-view-example");
+/// let golden = Golden::new("no/such/folder").with_failures(failures).with_bless(false);
 /// let found = golden.check("image", &Image::filled([1, 1], [0; 4]));
 /// assert!(matches!(found, Err(GoldenError::Missing { .. })));
 /// ```

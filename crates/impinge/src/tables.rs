@@ -24,6 +24,8 @@ use crate::collide::{
     witness_feature3, witness_features2, witness_features3,
 };
 use crate::convex::Separation;
+#[cfg(feature = "debug_render")]
+use crate::debug_render::{Sketch, sketch2, sketch3};
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::narrow_phase::{
     CollisionObjectHandle, CompositeState, ContactState, DefaultNarrowPhase, DueContacts, Events,
@@ -109,8 +111,13 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) partitioning: PartitioningTables<N, D>,
     pub(crate) mesh: MeshTable<N, D>,
     pub(crate) height_field: FieldTable<N, D>,
+    /// Adds what is drawn of a convex solid to a mesh.
+    #[cfg(feature = "debug_render")]
+    pub(crate) sketch: SketchFn<N, D>,
 }
 
+#[cfg(feature = "debug_render")]
+type SketchFn<N, const D: usize> = fn(Kind<'_, N, D>, &mut Sketch<N, D>);
 type InWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<Separation<N, D>>;
 type DistanceInWorldFn<N, const D: usize> =
@@ -263,6 +270,8 @@ struct Particular<N: Space<D>, const D: usize> {
     surface_point: fn(Kind<'_, N, D>, &Point<N, D>) -> SurfacePoint<N, D>,
     mesh: MeshTable<N, D>,
     height_field: FieldTable<N, D>,
+    #[cfg(feature = "debug_render")]
+    sketch: SketchFn<N, D>,
 }
 
 impl<N: Real> Particular<N, 2> {
@@ -284,6 +293,8 @@ impl<N: Real> Particular<N, 2> {
         surface_point: point2::surface_point,
         mesh: MeshTable::<N, 2>::IN_PLANE,
         height_field: FieldTable::<N, 2>::IN_PLANE,
+        #[cfg(feature = "debug_render")]
+        sketch: sketch2,
     };
 }
 
@@ -306,6 +317,8 @@ impl<N: Real> Particular<N, 3> {
         surface_point: point3::surface_point,
         mesh: MeshTable::<N, 3>::IN_SPACE,
         height_field: FieldTable::<N, 3>::IN_SPACE,
+        #[cfg(feature = "debug_render")]
+        sketch: sketch3,
     };
 }
 
@@ -352,6 +365,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             partitioning: PartitioningTables::new(),
             mesh: particular.mesh,
             height_field: particular.height_field,
+            #[cfg(feature = "debug_render")]
+            sketch: particular.sketch,
         }
     }
 }

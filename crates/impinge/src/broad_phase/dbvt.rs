@@ -342,6 +342,16 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         self.finder.visit_cast_roughly(&sweep, max_time, &mut by_ids);
     }
 
+    #[cfg(feature = "debug_render")]
+    fn loosened(&self, handle: ProxyHandle) -> Option<Aabb<N, D>> {
+        self.loosened_volume(handle)?.to_aabb()
+    }
+
+    #[cfg(feature = "debug_render")]
+    fn visit_nodes(&self, visit: &mut dyn FnMut(&Aabb<N, D>)) {
+        self.finder.each_node(&mut |bounds| bounds.to_aabb().iter().for_each(&mut *visit));
+    }
+
     fn visit_cast(
         &self,
         bv: &Aabb<N, D>,

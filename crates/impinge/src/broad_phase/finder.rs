@@ -164,6 +164,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         is_known.then(|| &self.loose[id as usize])
     }
 
+    /// Calls `visit` with the bounds of each node of the two trees, that of objects that move first.
+    #[cfg(feature = "debug_render")]
+    pub(super) fn each_node(&self, visit: &mut dyn FnMut(&Bounds<D>)) {
+        self.moving.each_node(visit);
+        self.still.each_node(visit);
+    }
+
     /// Adds an object at the next update. The id must not be in use; ids should be dense.
     pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
         let needed = id as usize + 1;

@@ -212,6 +212,22 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&met, max_time, visit);
     }
 
+    /// The volume that stands for an object while its pairs are kept, larger than the exact one: for
+    /// drawing. `None`, the default, of a broad phase that has none, for a stale handle, and for an object
+    /// that no update has seen.
+    #[cfg(feature = "debug_render")]
+    fn loosened(&self, handle: ProxyHandle) -> Option<BV> {
+        let _ = handle;
+        None
+    }
+
+    /// Calls `visit` with the volume of each node above the objects, as of the last update and the same
+    /// order each time: for drawing. The default has no nodes.
+    #[cfg(feature = "debug_render")]
+    fn visit_nodes(&self, visit: &mut dyn FnMut(&BV)) {
+        let _ = visit;
+    }
+
     /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
     fn visit_nearest_roughly(
         &self,

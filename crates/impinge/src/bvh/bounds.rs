@@ -41,6 +41,13 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
+    /// The box as one of `N`s; `None` if it is empty or nowhere.
+    #[cfg(feature = "debug_render")]
+    pub(crate) fn to_aabb<N: Real>(self) -> Option<Aabb<N, D>> {
+        let [lo, hi] = [self.lo, self.hi].map(|side| side.map(|x| N::lit(f64::from(x))));
+        Aabb::try_new(lo.into(), hi.into()).ok()
+    }
+
     /// The two have a point in common. Both must not be empty and unbounded at once.
     #[inline]
     #[must_use]

@@ -169,6 +169,13 @@ impl<const D: usize> Tree<D> {
         self.layers[0].blocks[slot / LANES].lane(slot % LANES)
     }
 
+    /// Calls `visit` with the bounds of each block that holds something, the lowest layer first.
+    #[cfg(feature = "debug_render")]
+    pub(crate) fn each_node(&self, visit: &mut dyn FnMut(&Bounds<D>)) {
+        let bounds = self.layers.iter().flat_map(|layer| &layer.bounds);
+        bounds.filter(|bounds| bounds.is_finite()).for_each(visit);
+    }
+
     /// The number of leaf blocks.
     pub(super) fn leaf_count(&self) -> usize {
         self.layers[0].blocks.len()

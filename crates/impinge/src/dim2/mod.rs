@@ -43,6 +43,19 @@ pub mod bounding_volume {
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 2>;
 }
 
+/// Drawing worlds, shapes and queries with a back end of one's own, which implements `DebugRender<N, 2>`.
+#[cfg(feature = "debug_render")]
+pub mod debug_render {
+    pub use crate::debug_render::{Color, DebugOptions, DebugRender, Drawn, MeshOptions, Style};
+
+    /// What draws worlds, shapes and queries in 2D.
+    pub type DebugDrawing<N> = crate::debug_render::DebugDrawing<N, 2>;
+    /// The lines and triangles of a shape.
+    pub type ShapeMesh<N> = crate::debug_render::ShapeMesh<N, 2>;
+    /// A shape on its way.
+    pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 2>;
+}
+
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;

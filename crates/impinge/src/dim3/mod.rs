@@ -43,6 +43,19 @@ pub mod bounding_volume {
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 3>;
 }
 
+/// Drawing worlds, shapes and queries with a back end of one's own, which implements `DebugRender<N, 3>`.
+#[cfg(feature = "debug_render")]
+pub mod debug_render {
+    pub use crate::debug_render::{Color, DebugOptions, DebugRender, Drawn, MeshOptions, Style};
+
+    /// What draws worlds, shapes and queries in 3D.
+    pub type DebugDrawing<N> = crate::debug_render::DebugDrawing<N, 3>;
+    /// The lines and triangles of a shape.
+    pub type ShapeMesh<N> = crate::debug_render::ShapeMesh<N, 3>;
+    /// A shape on its way.
+    pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 3>;
+}
+
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;

@@ -53,6 +53,12 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
         self.0.scaled(scale)
     }
 
+    /// There is no other handle of the shape.
+    #[cfg(feature = "debug_render")]
+    pub(crate) fn is_sole(&self) -> bool {
+        Arc::strong_count(&self.0) == 1
+    }
+
     /// The two handles share one shape.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {

@@ -135,6 +135,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.next_broad_phase = Some(broad_phase);
     }
 
+    /// The broad phase that found the pairs of the last update.
+    #[cfg(feature = "debug_render")]
+    pub(crate) fn broad_phase(&self) -> &WorldBroadPhase<N, D> {
+        &*self.broad_phase
+    }
+
     /// Gives the world another narrow phase, which knows no pair yet.
     ///
     /// It takes over at the next update, which reports what changed, as any other does; contacts get

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up.
-const FLOORS: [&[&str]; 11] = [
+const FLOORS: [&[&str]; 12] = [
     &["generation", "math", "memory"],
     &["bounding_volume", "pairs"],
     &["bvh"],
@@ -18,6 +18,7 @@ const FLOORS: [&[&str]; 11] = [
     &["query"],
     &["broad_phase", "narrow_phase"],
     &["world"],
+    &["debug_render"],
     &["dim2", "dim3"],
 ];
 

@@ -1,0 +1,138 @@
+//! A mesh as it grows, and what the shapes of both dimensions have in common.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{MeshOptions, ShapeMesh};
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Pose, Real, Space};
+use crate::shape::{CompositeShape, Geometry, Kind, Plane};
+
+/// How many marks there are from the middle of a half-space's square to its side.
+const MARKS: i32 = 2;
+
+/// A mesh as it grows. Points at one position are one vertex; what is not finite is left out.
+pub(crate) struct Sketch<N: Real, const D: usize> {
+    options: MeshOptions<N>,
+    /// Where what is added lies in the frame of the whole shape.
+    pose: Pose<N, D>,
+    mesh: ShapeMesh<N, D>,
+    /// The number of the vertex whose coordinates have these bits.
+    numbers: BTreeMap<[u64; D], u32>,
+    /// The lines so far, the smaller number first.
+    lines: BTreeSet<[u32; 2]>,
+}
+
+impl<N: Real, const D: usize> Sketch<N, D> {
+    pub(super) fn new(options: &MeshOptions<N>) -> Self {
+        Self {
+            options: *options,
+            pose: Pose::identity(),
+            mesh: ShapeMesh::default(),
+            numbers: BTreeMap::new(),
+            lines: BTreeSet::new(),
+        }
+    }
+
+    /// The mesh of all that was added.
+    pub(super) fn finish(mut self) -> ShapeMesh<N, D> {
+        self.mesh.id = self.mesh.hash();
+        self.mesh
+    }
+
+    /// The parts of a full turn.
+    pub(super) fn parts_of_turn(&self) -> u32 {
+        self.options.parts_of_turn()
+    }
+
+    /// The number of the vertex at a local point; `None` if that is not finite.
+    fn vertex(&mut self, local: &Point<N, D>) -> Option<u32> {
+        // Zeros lose their sign, so that equal points have equal bits.
+        let point = self.pose.point(local).map(|x| x + N::ZERO);
+        let is_finite = point.iter().all(|x| x.is_finite_number());
+        let next = u32::try_from(self.mesh.vertices.len()).ok().filter(|_| is_finite)?;
+        let bits = core::array::from_fn(|axis| point[axis].bits());
+        let number = *self.numbers.entry(bits).or_insert(next);
+        if number == next {
+            self.mesh.vertices.push(point);
+        }
+        Some(number)
+    }
+
+    /// Adds a line, unless it has no length or is there already.
+    pub(super) fn line(&mut self, ends: [&Point<N, D>; 2]) {
+        let [Some(a), Some(b)] = ends.map(|end| self.vertex(end)) else { return };
+        if a != b && self.lines.insert([a.min(b), a.max(b)]) {
+            self.mesh.lines.push([a, b]);
+        }
+    }
+
+    /// Adds the lines from each point to the next, and from the last to the first.
+    pub(super) fn ring(&mut self, points: &[Point<N, D>]) {
+        let next = points.iter().cycle().skip(1);
+        for (a, b) in points.iter().zip(next) {
+            self.line([a, b]);
+        }
+    }
+
+    /// Adds a triangle, unless two of its corners coincide.
+    pub(super) fn triangle(&mut self, corners: [&Point<N, D>; 3]) {
+        let [Some(a), Some(b), Some(c)] = corners.map(|corner| self.vertex(corner)) else { return };
+        if a != b && b != c && c != a {
+            self.mesh.triangles.push([a, b, c]);
+        }
+    }
+
+    /// Adds a convex polygon, counter-clockwise, as triangles that meet at its first corner.
+    pub(super) fn fan(&mut self, points: &[Point<N, D>]) {
+        let Some((first, others)) = points.split_first() else { return };
+        for side in others.windows(2) {
+            self.triangle([first, &side[0], &side[1]]);
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Sketch<N, D> {
+    /// Adds a shape; see [`ShapeMesh::of`].
+    pub(super) fn add(&mut self, geometry: Geometry<'_, N, D>) {
+        match geometry.0 {
+            Kind::Segment(segment) => self.line([segment.a(), segment.b()]),
+            Kind::Plane(plane) => self.half_space(plane),
+            Kind::Composite(composite) => self.composite(composite),
+            solid => (N::tables().sketch)(solid, self),
+        }
+    }
+
+    /// A square around the origin, in 2D the line that it is there, with marks into the solid.
+    fn half_space(&mut self, plane: &Plane<N, D>) {
+        let extent = self.options.half_space_extent;
+        let [u, v] = (N::tables().tangents)(plane.normal()).map(|tangent| tangent * extent);
+        let corners = [u + v, v - u, -u - v, u - v].map(Point::from);
+        self.ring(&corners);
+        self.fan(&corners);
+        let into = -plane.normal().into_inner() * (extent * N::lit(1.0 / 16.0));
+        let step = |index: i32| N::lit(f64::from(index) / f64::from(MARKS));
+        for row in -MARKS..=MARKS {
+            for column in -MARKS..=MARKS {
+                let start = Point::from(u * step(row) + v * step(column));
+                self.line([&start, &(start + into)]);
+            }
+        }
+    }
+
+    /// The parts that searches find: holes of height fields are none.
+    fn composite(&mut self, composite: &dyn CompositeShape<N, D>) {
+        let (outer, mut parts) = (self.pose, Vec::new());
+        composite.search().overlapping(&Aabb::unbounded(), &mut |part| parts.push(part));
+        parts.sort_unstable();
+        for index in parts {
+            let part = composite.part(index);
+            self.pose = outer.compose(&part.pose);
+            let geometry = part.solid.geometry();
+            // Parts are no composites themselves; a user's own that breaks this rule has no end.
+            if geometry.as_composite().is_none() {
+                self.add(geometry);
+            }
+        }
+        self.pose = outer;
+    }
+}

@@ -1,0 +1,91 @@
+//! Outlines of the solids of the plane, and what fills them.
+
+use super::sketch::Sketch;
+use crate::math::{Point, Real, Vector, cross2, perp, unit};
+use crate::procedural::plane;
+use crate::shape::{Ball, Kind, RoundedSolid, SupportMap};
+
+/// Adds a convex solid of the plane.
+pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
+    let outline = outline(solid, sketch.parts_of_turn());
+    sketch.ring(&outline);
+    sketch.fan(&outline);
+}
+
+/// The corners around a convex solid, counter-clockwise. A segment has two, what is not convex none.
+fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
+    match solid {
+        Kind::Ball(ball) => plane::ball(ball, parts).points,
+        Kind::Segment(segment) => vec![*segment.a(), *segment.b()],
+        Kind::Capsule(capsule) => plane::capsule(capsule, parts).points,
+        Kind::Triangle(triangle) => plane::triangle(triangle).points,
+        Kind::Cuboid(cuboid) => plane::cuboid(cuboid).points,
+        Kind::Polytope(polygon) => polygon.vertices().to_vec(),
+        Kind::Ellipsoid(ellipse) => plane::ellipse(ellipse, parts).points,
+        Kind::TaperedCapsule(capsule) => plane::tapered_capsule(capsule, parts).points,
+        Kind::Rounded(solid) => rounded(solid, parts),
+        Kind::Cylinder(_, map) | Kind::Cone(_, map) | Kind::SupportMap(map) => sampled(map, parts),
+        Kind::Plane(_) | Kind::Composite(_) => Vec::new(),
+    }
+}
+
+/// The directions around a circle, counter-clockwise from x.
+fn directions<N: Real>(parts: u32) -> Vec<Vector<N, 2>> {
+    let unit = Ball::new(N::ONE);
+    plane::ball(&unit, parts).points.into_iter().map(|point| point.coords).collect()
+}
+
+/// The support points around a solid.
+fn sampled<N: Real>(map: &dyn SupportMap<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
+    directions(parts).iter().map(|direction| map.support_point(direction)).collect()
+}
+
+/// The outline of a rounded solid: of a polygon with its sides in full, of others by support points.
+fn rounded<N: Real>(solid: &dyn RoundedSolid<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
+    let inner = solid.inner().0;
+    match inner {
+        Kind::Segment(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_) => {
+            let mut corners = outline(inner, parts);
+            corners.dedup();
+            if corners.len() > 1 && corners.first() == corners.last() {
+                corners.pop();
+            }
+            inflated(&corners, solid.radius(), parts)
+        }
+        _ => sampled(solid, parts),
+    }
+}
+
+/// The outline at a distance from a convex polygon, given counter-clockwise and without sides of no
+/// length: the sides, moved outwards, and an arc around each corner.
+fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Point<N, 2>> {
+    let around = directions::<N>(parts);
+    if let [corner] = corners {
+        return around.iter().map(|toward| corner + toward * radius).collect();
+    }
+    let normal = |(a, b): (&Point<N, 2>, &Point<N, 2>)| {
+        unit(&(b - a)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| -perp(&along))
+    };
+    let next = corners.iter().cycle().skip(1);
+    let normals: Vec<_> = corners.iter().zip(next).map(normal).collect();
+    let before = normals.iter().cycle().skip(normals.len().saturating_sub(1));
+    let arcs = before.zip(&normals).map(|(before, after)| arc(&around, [before, after]));
+    let of_corner = |(corner, arc): (&Point<N, 2>, Vec<Vector<N, 2>>)| {
+        let corner = *corner;
+        arc.into_iter().map(move |toward| corner + toward * radius)
+    };
+    corners.iter().zip(arcs).flat_map(of_corner).collect()
+}
+
+/// Two unit vectors and the directions between them, counter-clockwise over half a turn at most.
+fn arc<N: Real>(around: &[Vector<N, 2>], [first, last]: [&Vector<N, 2>; 2]) -> Vec<Vector<N, 2>> {
+    let is_between = |v: &Vector<N, 2>| cross2(first, v) > N::ZERO && cross2(v, last) > N::ZERO;
+    let before = around.iter().cycle().skip(around.len().saturating_sub(1));
+    // Those between are in a row, which may run over the end of the list.
+    let start = before.zip(around).position(|(before, v)| is_between(v) && !is_between(before));
+    let row = around.iter().cycle().skip(start.unwrap_or(0)).take(around.len());
+    let mut arc = vec![*first];
+    arc.extend(row.take_while(|&v| is_between(v)));
+    arc.push(*last);
+    arc
+}

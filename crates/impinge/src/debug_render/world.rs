@@ -1,0 +1,105 @@
+//! The picture of a world.
+
+use super::drawing::draw_box;
+use super::{DebugDrawing, DebugOptions, DebugRender, Drawn};
+use crate::bounding_volume::Aabb;
+use crate::collide::Placed;
+use crate::math::{Point, Space};
+use crate::query::Proximity;
+use crate::world::{CollisionObject, CollisionWorld};
+
+impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
+    /// Draws a world: of all that [`options`](Self::options) has a style for.
+    ///
+    /// Shapes and boxes are where the objects are now, all else as of the last update. Two objects of a
+    /// pair with proximity are joined by a line between their nearest points, or between their
+    /// origins if they intersect; those that are apart are not.
+    ///
+    /// Costs O(n) for what is drawn, and the sorting of contacts by handles; a mesh for each shape that
+    /// was not drawn before.
+    pub fn world<T>(
+        &mut self,
+        world: &CollisionWorld<N, D, T>,
+        renderer: &mut dyn DebugRender<N, D>,
+    ) {
+        self.forget_dropped();
+        self.tree_nodes(world, renderer);
+        self.boxes(world, renderer);
+        for object in world.collision_objects() {
+            if let Some(style) = self.object_style(object.handle()) {
+                let (mesh, position) = (self.mesh(object.shape()), object.position());
+                renderer.mesh(mesh, position, style.color, Drawn::Object);
+            }
+        }
+        self.manifolds(world, renderer);
+        self.proximities(world, renderer);
+    }
+
+    fn tree_nodes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
+        if let Some(style) = &self.options.tree_node {
+            let mut draw = |aabb: &Aabb<N, D>| draw_box(aabb, style, Drawn::TreeNode, renderer);
+            world.broad_phase().visit_nodes(&mut draw);
+        }
+    }
+
+    /// The boxes of each object, the tight one first.
+    fn boxes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
+        let (tight, loosened) = (&self.options.tight_box, &self.options.loosened_box);
+        for object in world.collision_objects() {
+            if let Some(style) = tight {
+                let pose = object.shape().geometry().pose_at(object.position());
+                let aabb = object.shape().aabb(&pose);
+                draw_box(&aabb, style, Drawn::TightBox, renderer);
+            }
+            if let Some(style) = loosened
+                && let Some(aabb) = world.broad_phase().loosened(object.proxy_handle())
+            {
+                draw_box(&aabb, style, Drawn::LoosenedBox, renderer);
+            }
+        }
+    }
+
+    fn manifolds<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
+        let DebugOptions { contact_point, contact_normal, manifold, .. } = self.options;
+        if contact_point.or(contact_normal).or(manifold).is_none() {
+            return;
+        }
+        // Those of one pair keep their order.
+        let mut views: Vec<_> = world.contact_views().collect();
+        views.sort_by_key(|(object1, object2, _)| (object1.handle(), object2.handle()));
+        for (_, _, view) in views {
+            self.contacts(view.contacts().map(|point| point.contact), renderer);
+        }
+    }
+
+    fn proximities<T>(
+        &self,
+        world: &CollisionWorld<N, D, T>,
+        renderer: &mut dyn DebugRender<N, D>,
+    ) {
+        let Some(style) = self.options.proximity else { return };
+        let pairs = world.proximity_pairs();
+        let mut near: Vec<_> =
+            pairs.filter(|(_, _, pair)| pair.proximity() != Proximity::Disjoint).collect();
+        near.sort_by_key(|(object1, object2, _)| (object1.handle(), object2.handle()));
+        for (object1, object2, _) in near {
+            renderer.line(ends_between(object1, object2), style.color, Drawn::Proximity);
+        }
+    }
+}
+
+/// The nearest points of two objects; their origins if they intersect.
+fn ends_between<N: Space<D>, const D: usize, T>(
+    object1: &CollisionObject<N, D, T>,
+    object2: &CollisionObject<N, D, T>,
+) -> [Point<N, D>; 2] {
+    let objects = [object1, object2];
+    let [placed1, placed2] = objects.map(|object| {
+        let shape = object.shape().geometry();
+        Placed { pose: shape.pose_at(object.position()), shape }
+    });
+    match (N::tables().touching_in_world)(&placed1, &placed2, N::INFINITY) {
+        Some(found) if found.distance > N::ZERO => [found.point1, found.point2],
+        _ => objects.map(|object| Point::from(N::translation(object.position()))),
+    }
+}
