@@ -394,6 +394,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         (own.generation().count() == handle.generation().count()).then_some(own)
     }
 
+    /// The indices ([`CollisionObjectHandle::uid`]) that removed objects left and new objects take, in the
+    /// reverse of that order: the last one is taken first. After them come indices never used before.
+    pub fn vacant_indices(&self) -> impl DoubleEndedIterator<Item = usize> {
+        self.objects.vacant()
+    }
+
+    /// The names of the registered pair filters, sorted.
+    pub fn broad_phase_pair_filter_names(&self) -> impl Iterator<Item = &str> {
+        self.filters.names()
+    }
+
     /// The handle names an object of this world.
     #[must_use]
     pub fn contains(&self, handle: CollisionObjectHandle) -> bool {
