@@ -12,26 +12,32 @@ pub(crate) struct Sink {
 }
 
 impl Sink {
+    /// One byte: kinds and flags.
     pub(crate) fn byte(&mut self, value: u8) {
         self.bytes.push(value);
     }
 
+    /// A byte, 0 or 1.
     pub(crate) fn flag(&mut self, value: bool) {
         self.byte(u8::from(value));
     }
 
+    /// Four bytes: indices, numbers of shapes, masks.
     pub(crate) fn word(&mut self, value: u32) {
         self.bytes.extend(value.to_le_bytes());
     }
 
+    /// Eight bytes: hashes.
     pub(crate) fn long(&mut self, value: u64) {
         self.bytes.extend(value.to_le_bytes());
     }
 
+    /// The bits of a number, in as many bytes as the scalar has.
     pub(crate) fn number<N: Scalar>(&mut self, value: N) {
         self.bytes.extend(&value.bits().to_le_bytes()[..N::BYTES]);
     }
 
+    /// Numbers whose count the reader knows.
     pub(crate) fn numbers<N: Scalar>(&mut self, values: &[N]) {
         values.iter().for_each(|value| self.number(*value));
     }
@@ -67,6 +73,7 @@ impl<'a> Source<'a> {
         self.at
     }
 
+    /// How many bytes of the range are left.
     pub(crate) const fn remaining(&self) -> usize {
         self.end - self.at
     }
@@ -76,6 +83,7 @@ impl<'a> Source<'a> {
         ReadError { offset: self.at, problem }
     }
 
+    /// The next bytes, if the range has as many.
     pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], ReadError> {
         if length > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -121,6 +129,7 @@ impl<'a> Source<'a> {
         Ok(N::of_bits(u64::from_le_bytes(bits)))
     }
 
+    /// So many numbers: no memory is taken for more than the range holds.
     pub(crate) fn numbers<N: Scalar>(&mut self, count: usize) -> Result<Vec<N>, ReadError> {
         if count.saturating_mul(N::BYTES) > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -147,11 +156,13 @@ impl<'a> Source<'a> {
         (0..count).map(|_| element(self)).collect()
     }
 
+    /// A list of bytes, in place.
     pub(crate) fn blob(&mut self) -> Result<&'a [u8], ReadError> {
         let length = self.count(1)?;
         self.take(length)
     }
 
+    /// A list of bytes that are UTF-8.
     pub(crate) fn text(&mut self) -> Result<String, ReadError> {
         let offset = self.at;
         let bytes = self.blob()?.to_vec();

@@ -39,7 +39,7 @@ pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
 /// A query whose shape is a number.
 #[derive(Clone, Debug)]
 pub(crate) struct QueryData<N: Space<D>, const D: usize> {
-    /// As [`QuestionData::kind`] numbers them.
+    /// The question.
     pub(crate) question: QuestionData<N, D>,
     pub(crate) groups: Option<CollisionGroups>,
     /// The indices of excluded objects that live.
@@ -51,12 +51,31 @@ pub(crate) struct QueryData<N: Space<D>, const D: usize> {
 /// A question whose shape is a number.
 #[derive(Clone, Debug)]
 pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
-    Ray { all: bool, ray: Ray<N, D>, max_time: N, solid: bool },
+    /// A ray: the first hit or all.
+    Ray {
+        all: bool,
+        ray: Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    },
+    /// The coordinates of a point.
     Containing(Vec<N>),
-    Project { point: Vec<N>, max_distance: N, solid: bool },
+    Project {
+        point: Vec<N>,
+        max_distance: N,
+        solid: bool,
+    },
     InAabb(Aabb<N, D>),
-    Overlapping { position: N::Isometry, shape: u32 },
-    Nearest { position: N::Isometry, shape: u32, count: u32, max_distance: N },
+    Overlapping {
+        position: N::Isometry,
+        shape: u32,
+    },
+    Nearest {
+        position: N::Isometry,
+        shape: u32,
+        count: u32,
+        max_distance: N,
+    },
     Cast(CastData<N, D>),
 }
 
@@ -73,20 +92,42 @@ pub(crate) struct CastData<N: Space<D>, const D: usize> {
 /// A record.
 #[derive(Clone, Debug)]
 pub(crate) enum Call<N: Space<D>, const D: usize> {
+    /// Defines the next shape.
     Shape(ShapeData<N, D>),
+    /// Adds an object, at the next index of the world.
     Add(ObjectData<N, D>),
+    /// Moves objects, all or none.
     SetPositions(Vec<(u32, N::Isometry)>),
-    SetShape { index: u32, shape: u32 },
-    SetGroups { index: u32, groups: CollisionGroups },
-    SetQueryType { index: u32, query_type: GeometricQueryType<N> },
-    SetData { index: u32, data: Vec<u8> },
+    SetShape {
+        index: u32,
+        shape: u32,
+    },
+    SetGroups {
+        index: u32,
+        groups: CollisionGroups,
+    },
+    SetQueryType {
+        index: u32,
+        query_type: GeometricQueryType<N>,
+    },
+    SetData {
+        index: u32,
+        data: Vec<u8>,
+    },
+    /// Removes objects; the last one's index is taken next.
     Remove(Vec<u32>),
     RegisterFilter(String),
     UnregisterFilter(String),
+    /// Asks; changes nothing.
     Query(Box<QueryData<N, D>>),
+    /// The whole world; gives it new phases.
     KeyFrame(KeyFrame<N, D>),
+    /// An update, with the hashes of what it led to.
     Update(Observation),
-    End { updates: u64 },
+    /// The last record.
+    End {
+        updates: u64,
+    },
 }
 
 impl<N: Recordable<D>, const D: usize> Call<N, D> {
@@ -110,7 +151,7 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         }
     }
 
-    /// The fields of the record.
+    /// Writes the fields of the record, in the order in which [`Self::read`] reads them.
     pub(crate) fn write(&self, sink: &mut Sink) {
         match self {
             Self::Shape(shape) => sink.shape(shape),
@@ -154,6 +195,7 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         Ok(call)
     }
 
+    /// The fields by the number of [`Self::kind`].
     fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         Ok(match kind {
             1 => Self::Shape(source.shape()?),
@@ -177,11 +219,13 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
     }
 }
 
+/// The fields of calls.
 impl Sink {
     fn words(&mut self, words: &[u32]) {
         words.iter().for_each(|word| self.word(*word));
     }
 
+    /// Three masks and the flag of self-collision.
     fn groups(&mut self, groups: &CollisionGroups) {
         let lists = [groups.whitelist_mask(), groups.blacklist_mask()];
         self.word(groups.membership_mask());
@@ -202,6 +246,7 @@ impl Sink {
         }
     }
 
+    /// What adds an object, or an object of a key frame.
     fn object<N: Recordable<D>, const D: usize>(&mut self, object: &ObjectData<N, D>) {
         self.word(object.index);
         self.isometry::<N, D>(&object.position);
@@ -220,6 +265,7 @@ impl Sink {
         frame.objects.iter().for_each(|object| self.object(object));
     }
 
+    /// Twelve bytes for each object that changed.
     fn observation(&mut self, observation: &Observation) {
         self.long(observation.state);
         self.long(observation.events);
@@ -238,6 +284,7 @@ impl Sink {
         self.long(query.answer);
     }
 
+    /// A kind, then the arguments of the method that the question names.
     fn question<N: Recordable<D>, const D: usize>(&mut self, question: &QuestionData<N, D>) {
         match question {
             QuestionData::Ray { all, ray, max_time, solid } => {
@@ -276,6 +323,7 @@ impl Sink {
         }
     }
 
+    /// A tolerance is written in any case, so that the record has one length.
     fn cast<N: Recordable<D>, const D: usize>(&mut self, cast: &CastData<N, D>) {
         self.byte(if cast.all { 8 } else { 7 });
         self.isometry::<N, D>(&cast.position);
@@ -288,7 +336,9 @@ impl Sink {
     }
 }
 
+/// The fields of calls: what [`Sink`] has written.
 impl Source<'_> {
+    /// Masks of groups that exist: a bit above 29 is an error.
     fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
         let error = self.error(Problem::BadValue { what: "a mask of groups" });
         let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];
@@ -379,6 +429,7 @@ impl Source<'_> {
         })
     }
 
+    /// A box with its corners in order, or the box of everything, which no constructor takes.
     fn aabb<N: Recordable<D>, const D: usize>(&mut self) -> Result<Aabb<N, D>, ReadError> {
         let error = self.error(Problem::BadValue { what: "a box" });
         let (mins, maxs) = (self.point()?, self.point()?);

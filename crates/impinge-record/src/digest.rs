@@ -13,6 +13,7 @@ use crate::space::Scalar;
 pub(crate) struct Digest(u64);
 
 impl Digest {
+    /// The offset basis of FNV-1a.
     pub(crate) const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
@@ -27,12 +28,14 @@ impl Digest {
         (self.0 ^ (self.0 >> 32)) as u32
     }
 
+    /// Mixes a word, so that numbers which differ in a high bit alone reach the low bits too.
     pub(crate) const fn word(&mut self, word: u64) {
         let mixed = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         self.0 = (self.0 ^ mixed ^ (mixed >> 31)).wrapping_mul(0x0000_0100_0000_01b3);
     }
 
+    /// An index, in 64 bits on every platform.
     pub(crate) const fn index(&mut self, index: usize) {
         self.word(index as u64);
     }
@@ -42,6 +45,7 @@ impl Digest {
         numbers.iter().for_each(|number| self.word(number.bits()));
     }
 
+    /// The kind as 0, 1 or 2, then the index.
     pub(crate) fn feature(&mut self, feature: FeatureId) {
         let (kind, index) = match feature {
             FeatureId::Vertex(index) => (0, index),
@@ -60,6 +64,7 @@ pub(crate) fn id_parts(id: ContactId) -> [u64; 2] {
     [parts.pair, parts.number]
 }
 
+/// A hasher that keeps what it is given, since ids have no other way to be read.
 #[derive(Debug, Default)]
 struct IdParts {
     pair: u64,

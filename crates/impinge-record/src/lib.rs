@@ -5,7 +5,10 @@
 //! library's memory layout. [`Replay`] gives the world at any step; [`validate`] plays it all and names the first
 //! step and object in which the replay differs from what was recorded, on this machine or with this version.
 //!
-//! The bytes are described in `FORMAT.md`. They are read as untrusted input: errors have the offset, lengths are
+//! Shapes and pair filters of the user's own are code: a recording has their names, and a [`Registry`] what these stand
+//! for. `FORMAT.md` describes the bytes.
+//!
+//! Recordings are read as untrusted input: errors have the offset, lengths are
 //! compared with the bytes that remain before memory is allocated, and shapes go through the constructors of the
 //! library. A recording may still describe a world that is expensive to update.
 #![forbid(unsafe_code)]

@@ -49,6 +49,7 @@ pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
+    /// A world without objects.
     pub(crate) fn new(margin: N) -> Result<Self, Problem> {
         let (world, observer) = (CollisionWorld::try_new(margin)?, Observer::default());
         Ok(Self { world, handles: Vec::new(), observer, is_new: true, is_remade: false })
@@ -89,11 +90,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(None)
     }
 
+    /// The handle of the object that lives at an index.
     fn handle(&self, index: u32) -> Result<CollisionObjectHandle, Problem> {
         let handle = self.handles.get(index as usize).copied().flatten();
         handle.ok_or(Problem::NoSuchObject(index))
     }
 
+    /// Adds an object; its index depends on the calls before and must be the recorded one.
     fn add(
         &mut self,
         object: ObjectData<N, D>,
@@ -118,6 +121,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
+    /// Moves objects one by one: a recorder has written them only if all could be moved.
     fn set_positions(&mut self, positions: &[(u32, N::Isometry)]) -> Result<(), Problem> {
         for (index, position) in positions {
             self.world.try_set_position(self.handle(*index)?, *position)?;
@@ -125,6 +129,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
+    /// Replaces the data of an object. Filters that read it are asked again only about pairs that begin anew.
     fn set_data(&mut self, index: u32, data: &[u8]) -> Result<(), Problem> {
         let handle = self.handle(index)?;
         let object = self.world.collision_object_mut(handle);
@@ -132,6 +137,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
+    /// Removes objects, whose indices name nothing then.
     fn remove(&mut self, indices: &[u32]) -> Result<(), Problem> {
         let handles: Result<Vec<_>, _> = indices.iter().map(|index| self.handle(*index)).collect();
         self.world.try_remove(&handles?)?;
@@ -139,11 +145,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
+    /// Registers the filter that the registry has under a name.
     fn register(&mut self, name: &str, resources: &Resources<N, D, T>) -> Result<(), Problem> {
         let is_known = resources.registry.register(name, &mut self.world);
         if is_known { Ok(()) } else { Err(Problem::UnknownFilter(name.to_owned())) }
     }
 
+    /// Asks a query again and compares the hash of the answer.
     fn ask(
         &self,
         query: &QueryData<N, D>,
@@ -169,6 +177,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         frame: KeyFrame<N, D>,
         resources: &Resources<N, D, T>,
     ) -> Result<(), Problem> {
+        // Filters are asked about pairs at the first update.
         for name in &frame.filters {
             self.register(name, resources)?;
         }
@@ -182,6 +191,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
             self.add(object, resources)?;
         }
         vacant.try_for_each(|index| self.hold_place(index))?;
+        // The index that was removed last is taken next.
         frame.vacant.iter().try_for_each(|index| self.remove(&[*index]))?;
         self.begin_anew(resources.margin);
         self.is_remade = true;
@@ -197,10 +207,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
+    /// Updates the world and compares its hashes. Objects are looked at only if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.world.update();
         let replayed = self.observer.observe(&self.world);
+        // The recorded world had its pairs before the key frame; in a world made anew all of them start.
         let is_remade = std::mem::replace(&mut self.is_remade, false);
         if replayed.state != recorded.state {
             let known = before.after(&recorded.changed);
@@ -211,10 +223,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
     }
 }
 
+/// The user's data of an object.
 fn data_of<T: RecordData>(bytes: &[u8]) -> Result<T, Problem> {
     T::from_bytes(bytes).ok_or(Problem::BadValue { what: "the data of an object" })
 }
 
+/// The question with its shapes.
 fn question_of<N: Recordable<D>, const D: usize>(
     question: &QuestionData<N, D>,
     shapes: &ShapeTable<N, D>,

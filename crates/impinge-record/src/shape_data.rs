@@ -109,6 +109,7 @@ fn solid_data<N: Recordable<D>, const D: usize>(
     })
 }
 
+/// The composites with vertices.
 fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeData<N, D>> {
     if let Some(line) = shape.as_shape::<Polyline<N, D>>() {
         return Some(ShapeData::Polyline(Mesh {
@@ -151,7 +152,7 @@ pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
 }
 
 impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
-    /// The shape; `shape` gives those within it, and those with names.
+    /// The shape, by the constructors that check their arguments; `shape` gives those within it, and those with names.
     pub(crate) fn make(
         &self,
         shape: &dyn Fn(u32) -> Result<ShapeHandle<N, D>, Problem>,
@@ -193,7 +194,7 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
     }
 }
 
-/// A normal whose length is 1 up to rounding.
+/// The half-space of a normal whose length is 1 up to rounding; it is not normalized, which could change its bits.
 fn half_space<N: Recordable<D>, const D: usize>(
     normal: &Vector<N, D>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -204,6 +205,7 @@ fn half_space<N: Recordable<D>, const D: usize>(
     Err(Problem::BadValue { what: "the normal of a half-space" })
 }
 
+/// The line of its arguments.
 fn line_of_parts<N: Recordable<D>, const D: usize>(
     mesh: &Mesh<N, D, 2>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -213,6 +215,7 @@ fn line_of_parts<N: Recordable<D>, const D: usize>(
     Ok(ShapeHandle::new(line))
 }
 
+/// The mesh of its arguments.
 fn mesh_of_parts<N: Recordable<D>, const D: usize>(
     parts: &Mesh<N, D, 3>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -224,10 +227,12 @@ fn mesh_of_parts<N: Recordable<D>, const D: usize>(
 
 /// The fields of shapes.
 impl Sink {
+    /// Points whose count the reader knows.
     pub(crate) fn points<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>]) {
         points.iter().for_each(|point| self.numbers(point.coords.as_slice()));
     }
 
+    /// Points with their count.
     fn point_list<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>]) {
         self.count(points.len());
         self.points(points);
@@ -237,6 +242,7 @@ impl Sink {
         self.numbers(&N::isometry_numbers(isometry));
     }
 
+    /// Vertices, parts and two flags.
     fn mesh<N: Recordable<D>, const D: usize, const ENDS: usize>(
         &mut self,
         mesh: &Mesh<N, D, ENDS>,
@@ -248,6 +254,7 @@ impl Sink {
         self.flag(mesh.keeps_internal_edges);
     }
 
+    /// The count of heights in a row, the heights, the scale, the marks and two flags.
     fn field<N: Recordable<D>, const D: usize>(&mut self, field: &Field<N, D>) {
         self.count(field.columns);
         self.count(field.heights.len());
@@ -258,6 +265,7 @@ impl Sink {
         self.flag(field.keeps_internal_edges);
     }
 
+    /// The points, then the loops of the faces.
     fn hull<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>], faces: &[Vec<u32>]) {
         self.point_list(points);
         self.count(faces.len());
@@ -267,6 +275,7 @@ impl Sink {
         }
     }
 
+    /// Positions and numbers of shapes that are defined before.
     fn children<N: Recordable<D>, const D: usize>(&mut self, children: &[(N::Isometry, u32)]) {
         self.count(children.len());
         for (at, child) in children {
@@ -362,6 +371,7 @@ impl Source<'_> {
         self.list(D * N::BYTES, Self::point)
     }
 
+    /// An isometry as it was, whether or not its rotation is one: the world refuses those that are not finite.
     pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
         &mut self,
     ) -> Result<N::Isometry, ReadError> {
@@ -399,6 +409,7 @@ impl Source<'_> {
         })
     }
 
+    /// Loops of corners: each takes four bytes at least, its count.
     fn faces(&mut self) -> Result<Vec<Vec<u32>>, ReadError> {
         self.list(4, |source| source.list(4, Self::word))
     }

@@ -1,6 +1,6 @@
 //! The shapes of a recording: each once, by number.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use impinge::math::Space;
 use impinge::shape::ShapeHandle;
@@ -31,10 +31,12 @@ pub(crate) struct ShapeTable<N: Space<D>, const D: usize> {
 }
 
 impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
+    /// Without shapes.
     pub(crate) const fn new() -> Self {
         Self { shapes: Vec::new() }
     }
 
+    /// The shape of a number, if it is defined by now.
     pub(crate) fn get(&self, number: u32) -> Result<&ShapeHandle<N, D>, Problem> {
         let shape = self.shapes.get(number as usize);
         Ok(&shape.ok_or(Problem::NoSuchShape(number))?.handle)
@@ -76,6 +78,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         if is_simple { Ok([depth as usize, parts]) } else { Err(Problem::TooComplex) }
     }
 
+    /// Gives the next number to a shape made of some data.
     fn push(&mut self, data: &ShapeData<N, D>, handle: ShapeHandle<N, D>) -> Result<(), Problem> {
         let [depth, inner] = self.check(data)?;
         let own = handle.geometry().as_composite().map_or(1, |parts| parts.num_parts() as usize);
@@ -89,15 +92,16 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// The number of the shape at an address; looked up only.
-    numbers: HashMap<usize, u32>,
+    /// The number of the shape at an address. It is looked up only: the order of addresses means nothing.
+    numbers: BTreeMap<usize, u32>,
     /// Those that are not written yet.
     pub(crate) unwritten: Vec<ShapeData<N, D>>,
 }
 
 impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
+    /// A recorder has met none.
     pub(crate) fn new() -> Self {
-        Self { table: ShapeTable::new(), numbers: HashMap::new(), unwritten: Vec::new() }
+        Self { table: ShapeTable::new(), numbers: BTreeMap::new(), unwritten: Vec::new() }
     }
 
     /// The number of a shape, which is new if it was not met before.
@@ -106,6 +110,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         shape: &ShapeHandle<N, D>,
         registry: &Registry<N, D, T>,
     ) -> Result<u32, RecordError> {
+        // The shape is kept alive below, so that no other one comes to have its address.
         let address = std::ptr::from_ref(&**shape).cast::<()>().addr();
         if let Some(&number) = self.numbers.get(&address) {
             return Ok(number);
@@ -123,7 +128,8 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         Ok(number)
     }
 
-    /// The data make the shape again.
+    /// The data make the shape again: the same data, and parts that are joined in the same way. A mesh whose vertices
+    /// were moved keeps the joints that it was made with, which its vertices alone do not say.
     fn check<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -144,6 +150,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
     }
 }
 
+/// The name that the registry has for a shape of the user's own.
 fn named<N: Recordable<D>, const D: usize, T>(
     shape: &ShapeHandle<N, D>,
     registry: &Registry<N, D, T>,

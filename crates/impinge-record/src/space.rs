@@ -71,6 +71,7 @@ const FOREIGN: Problem = Problem::BadValue { what: "the kind of a shape" };
 impl<N: Scalar> Recordable<2> for N {
     const ISOMETRY_NUMBERS: usize = 4;
 
+    /// The complex number is unit up to rounding and is written as it is: to normalize it could change bits.
     fn isometry_numbers(isometry: &Isometry2<N>) -> Vec<N> {
         let (translation, turn) = (&isometry.translation.vector, isometry.rotation.as_ref());
         vec![translation.x, translation.y, turn.re, turn.im]
@@ -181,6 +182,7 @@ fn hull_of<N: Scalar>(
 const HOLES: [u8; 2] = [1, 2];
 const BACKWARD: u8 = 4;
 
+/// The arguments of a height field in 2D: a mark for each segment.
 fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     let holes = (0..).take(field.num_cells()).map(|cell| u8::from(field.is_hole(cell)));
     Field {
@@ -193,6 +195,7 @@ fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     }
 }
 
+/// The height field of these arguments, in 2D.
 fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> {
     let field = HeightField::<N, 2>::try_new(data.heights.clone(), data.scale)?;
     check_marks(data, field.num_cells(), HOLES[0])?;
@@ -201,6 +204,8 @@ fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> 
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
+/// The arguments of a height field in 3D: a mark for each cell of two triangles. Whatever rule the diagonals were
+/// made by, each is written.
 fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     let columns = field.columns() - 1;
     let mark = |cell: u32| {
@@ -221,6 +226,7 @@ fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     }
 }
 
+/// The height field of these arguments, in 3D. Heights that make no whole rows are refused by the constructor.
 fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem> {
     let rows = data.heights.len() / data.columns.max(1);
     let heights = data.heights.clone();

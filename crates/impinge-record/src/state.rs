@@ -47,6 +47,7 @@ impl Observer {
         world: &CollisionWorld<N, D, T>,
     ) -> Observation {
         let pairs = self.pair_digests(world);
+        // Objects come in order of their indices, so that lists by index grow at the end.
         let mut all = Digest::new();
         let mut changed = Vec::new();
         let mut known = Vec::with_capacity(self.known.len());
@@ -118,6 +119,7 @@ impl Observer {
         digests
     }
 
+    /// All manifolds of a pair, in their order.
     fn contacts<N: Recordable<D>, const D: usize>(
         &mut self,
         pair: ContactPair<'_, N, D>,
@@ -129,6 +131,7 @@ impl Observer {
         }
     }
 
+    /// Geometry, id, features and parts of a contact.
     fn point<N: Recordable<D>, const D: usize>(
         &mut self,
         point: &ContactPoint<N, D>,
@@ -149,6 +152,7 @@ impl Observer {
     }
 }
 
+/// Position, groups and query type: what calls have made of an object.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
     object: &CollisionObject<N, D, T>,
 ) -> Digest {
@@ -166,6 +170,7 @@ fn description_digest<N: Recordable<D>, const D: usize, T>(
     digest
 }
 
+/// The events of the last update, in order.
 fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> u64 {
     let mut digest = Digest::new();
     for event in world.contact_events() {
@@ -184,7 +189,8 @@ fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D,
     digest.finish()
 }
 
-pub(crate) const fn proximity_number(proximity: Proximity) -> u64 {
+/// A number for each status that does not depend on the order of the library's variants.
+const fn proximity_number(proximity: Proximity) -> u64 {
     match proximity {
         Proximity::Intersecting => 2,
         Proximity::WithinMargin => 3,

@@ -93,7 +93,7 @@ fn large_scene_damaged<N: Stage<D>, const D: usize>() {
         let mut other = bytes.clone();
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let index = usize::try_from(random >> 33).expect("31 bits") % other.len();
-        other[index] = other[index].wrapping_add((random >> 20) as u8 | 1);
+        other[index] = other[index].wrapping_add(random.to_le_bytes()[2] | 1);
         reseal(&mut other);
         errors += u32::from(validate::<N, D, u32>(&other, &N::registry()).is_err());
     }
@@ -138,7 +138,7 @@ fn a_divergence_names_the_object() {
     let bytes = small();
     let position = 0.5_f32.to_le_bytes();
     let places = bytes.windows(4).enumerate().filter(|(_, window)| *window == position);
-    let place = places.map(|(place, _)| place).last().expect("the ball was moved there");
+    let place = places.map(|(place, _)| place).next_back().expect("the ball was moved there");
     let mut other = bytes;
     other[place..place + 4].copy_from_slice(&0.75_f32.to_le_bytes());
     reseal(&mut other);

@@ -1,6 +1,6 @@
 //! A replay has the bits of what was recorded.
 
-use impinge::world::CollisionWorld;
+use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::{Header, Replay, validate};
 
 use crate::scene::{Scene, Stage, words};
@@ -69,7 +69,7 @@ fn old_world<N: Stage<D>, const D: usize>() -> CollisionWorld<N, D, u32> {
     let mut scene = filled::<N, D>();
     (0..5).for_each(|step| scene.step(step).expect("the calls are allowed"));
     let mut world = scene.recorder.finish().world;
-    let handles: Vec<_> = world.collision_objects().map(|object| object.handle()).collect();
+    let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
     world.remove(&[handles[7], handles[2], handles[4]]);
     world
 }

@@ -5,7 +5,7 @@ use std::num::NonZeroU64;
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Isometry2, Isometry3, Point, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::query::ImpactOptions;
+use impinge::query::{ImpactOptions, ManifoldView};
 use impinge::shape::{
     Ball, Capsule, Compound, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Diagonal,
     Ellipsoid, HeightField, Plane, Polyline, Rounded, Segment, ShapeHandle, TaperedCapsule,
@@ -162,7 +162,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
 
     /// The calls of a step, which differ from step to step, and an update.
     pub(crate) fn step(&mut self, step: u32) -> Result<(), RecordError> {
-        let moved = self.handles.iter().zip(0_u32..).filter(|(_, id)| (id + step) % 3 == 0);
+        let moved =
+            self.handles.iter().zip(0_u32..).filter(|(_, id)| (id + step).is_multiple_of(3));
         let moved = moved.map(|(handle, id)| {
             let wave = f64::from((id * 7 + step * 5) % 11) / 8.0;
             (*handle, N::placed(f64::from(id % 4) + wave, f64::from(id / 4) - wave))
@@ -250,7 +251,7 @@ pub(crate) fn words<N: Recordable<D>, const D: usize>(
         format!("{index} {at:?} {:?} {:?} {data}", object.collision_groups(), object.query_type())
     });
     let pairs = world.contact_pairs().map(|(one, two, pair)| {
-        let points = pair.views().flat_map(|view| view.contacts());
+        let points = pair.views().flat_map(ManifoldView::contacts);
         let points = points.map(|point| (point.contact, point.feature1, point.feature2));
         format!("{} {} {:?}", one.handle().uid(), two.handle().uid(), points.collect::<Vec<_>>())
     });
