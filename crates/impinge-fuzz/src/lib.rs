@@ -13,6 +13,7 @@ mod impact;
 mod manifolds;
 mod pair;
 mod place;
+mod recording;
 mod shapes;
 mod single;
 mod world;
@@ -23,6 +24,7 @@ pub use construct::construct;
 pub use impact::{nonlinear_time_of_impact, time_of_impact};
 pub use manifolds::manifolds;
 pub use pair::{closest_points, contact, distance, proximity, witness};
+pub use recording::recording;
 pub use single::{point, ray};
 pub use world::world;
 
@@ -33,7 +35,7 @@ use place::{Dimension, Plane, Room};
 pub type Target = fn(&[u8]);
 
 /// The targets with their names.
-pub const TARGETS: [(&str, Target); 12] = [
+pub const TARGETS: [(&str, Target); 13] = [
     ("distance", distance),
     ("closest_points", closest_points),
     ("proximity", proximity),
@@ -46,6 +48,7 @@ pub const TARGETS: [(&str, Target); 12] = [
     ("point", point),
     ("construct", construct),
     ("world", world),
+    ("recording", recording),
 ];
 
 /// Something to do with bytes, in any dimension and scalar.

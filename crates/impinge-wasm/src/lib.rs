@@ -1,5 +1,5 @@
 //! Hashes of scenes and queries, which are the same on every target: the golden ones of the test `determinism`,
-//! and one of the answers for all pairs of kinds.
+//! one of the answers for all pairs of kinds, and those of the recordings in the repository.
 //!
 //! Natively the program of this package prints them. As a WebAssembly module it exports functions of numbers
 //! alone, by which `compare.mjs` reads them in Node.
@@ -8,6 +8,7 @@
 #[path = "../../impinge/tests/it/support/scene_stage/runs.rs"]
 mod runs;
 mod answers;
+mod recordings;
 #[path = "../../impinge/tests/it/support/scene_stage/mod.rs"]
 mod scene_stage;
 
@@ -53,6 +54,8 @@ pub fn checks() -> &'static [Check] {
         add("answers 2 f64", answers::in_plane::<f64>);
         add("answers 3 f32", answers::in_space::<f32>);
         add("answers 3 f64", answers::in_space::<f64>);
+        add("recording 2 f32", recordings::in_plane);
+        add("recording 3 f64", recordings::in_space);
         checks
     })
 }

@@ -394,6 +394,41 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         (own.generation().count() == handle.generation().count()).then_some(own)
     }
 
+    /// The indices ([`CollisionObjectHandle::uid`]) that removed objects left and new objects take, in the
+    /// reverse of that order: the last one is taken first. After them come indices never used before.
+    ///
+    /// With the objects this is all that the handles of later objects depend on.
+    ///
+    /// ```
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    ///
+    /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+    /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    /// let mut add = || world.add(Isometry::identity(), ball.clone(), CollisionGroups::new(), query, ());
+    /// let objects = [add(), add(), add()];
+    /// world.remove(&[objects[2], objects[0]]);
+    /// assert!(world.vacant_indices().eq([2, 0]), "0 is taken next");
+    /// ```
+    pub fn vacant_indices(&self) -> impl DoubleEndedIterator<Item = usize> {
+        self.objects.vacant()
+    }
+
+    /// The names of the registered pair filters, sorted.
+    ///
+    /// ```
+    /// use impinge::dim2::world::{CollisionObject, CollisionWorld};
+    ///
+    /// type Object = CollisionObject<f32, u8>;
+    /// let mut world = CollisionWorld::<f32, u8>::new(0.02);
+    /// world.register_broad_phase_pair_filter("teams", |a: &Object, b: &Object| a.data() != b.data());
+    /// assert!(world.broad_phase_pair_filter_names().eq(["teams"]));
+    /// ```
+    pub fn broad_phase_pair_filter_names(&self) -> impl Iterator<Item = &str> {
+        self.filters.names()
+    }
+
     /// The handle names an object of this world.
     #[must_use]
     pub fn contains(&self, handle: CollisionObjectHandle) -> bool {

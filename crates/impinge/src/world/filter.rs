@@ -74,6 +74,11 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
     }
 
+    /// The names, sorted.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.filters.iter().map(|(name, _)| name.as_str())
+    }
+
     /// An update has asked them.
     pub(super) const fn note_update(&mut self) {
         self.have_changed = false;

@@ -255,6 +255,11 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.give_back(look);
     }
 
+    /// The indices that are free, the one that is taken next last.
+    pub(super) fn vacant(&self) -> impl DoubleEndedIterator<Item = usize> {
+        self.free.iter().map(|&index| index as usize)
+    }
+
     /// How many indices have been in use.
     pub(super) const fn reach(&self) -> usize {
         self.slots.len()

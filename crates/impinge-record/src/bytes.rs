@@ -1,0 +1,177 @@
+//! Fields of a record: little-endian numbers, and lists whose length is checked before anything is allocated.
+
+use std::ops::Range;
+
+use crate::Scalar;
+use crate::error::{Problem, ReadError};
+
+/// What is written: the bytes of one record.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sink {
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Sink {
+    /// One byte: kinds and flags.
+    pub(crate) fn byte(&mut self, value: u8) {
+        self.bytes.push(value);
+    }
+
+    /// A byte, 0 or 1.
+    pub(crate) fn flag(&mut self, value: bool) {
+        self.byte(u8::from(value));
+    }
+
+    /// Four bytes: indices, numbers of shapes, masks.
+    pub(crate) fn word(&mut self, value: u32) {
+        self.bytes.extend(value.to_le_bytes());
+    }
+
+    /// Eight bytes: hashes.
+    pub(crate) fn long(&mut self, value: u64) {
+        self.bytes.extend(value.to_le_bytes());
+    }
+
+    /// The bits of a number, in as many bytes as the scalar has.
+    pub(crate) fn number<N: Scalar>(&mut self, value: N) {
+        self.bytes.extend(&value.bits().to_le_bytes()[..N::BYTES]);
+    }
+
+    /// Numbers whose count the reader knows.
+    pub(crate) fn numbers<N: Scalar>(&mut self, values: &[N]) {
+        values.iter().for_each(|value| self.number(*value));
+    }
+
+    /// The length of a list. No list of a world has 2^32 elements.
+    pub(crate) fn count(&mut self, length: usize) {
+        self.word(u32::try_from(length).expect("a world numbers its parts by 32 bits"));
+    }
+
+    /// A list of bytes with its length.
+    pub(crate) fn blob(&mut self, bytes: &[u8]) {
+        self.count(bytes.len());
+        self.bytes.extend(bytes);
+    }
+}
+
+/// What is read: a range of the bytes of a recording. Every error has the offset in these.
+#[derive(Clone, Debug)]
+pub(crate) struct Source<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    end: usize,
+}
+
+impl<'a> Source<'a> {
+    /// The fields in `range`, which lies within `bytes`.
+    pub(crate) const fn new(bytes: &'a [u8], range: Range<usize>) -> Self {
+        Self { bytes, at: range.start, end: range.end }
+    }
+
+    /// Where the next field begins.
+    pub(crate) const fn offset(&self) -> usize {
+        self.at
+    }
+
+    /// How many bytes of the range are left.
+    pub(crate) const fn remaining(&self) -> usize {
+        self.end - self.at
+    }
+
+    /// An error at the next field.
+    pub(crate) const fn error(&self, problem: Problem) -> ReadError {
+        ReadError { offset: self.at, problem }
+    }
+
+    /// The next bytes, if the range has as many.
+    pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], ReadError> {
+        if length > self.remaining() {
+            return Err(self.error(Problem::Truncated));
+        }
+        let start = self.at;
+        self.at += length;
+        Ok(&self.bytes[start..self.at])
+    }
+
+    fn array<const LENGTH: usize>(&mut self) -> Result<[u8; LENGTH], ReadError> {
+        let mut array = [0; LENGTH];
+        array.copy_from_slice(self.take(LENGTH)?);
+        Ok(array)
+    }
+
+    pub(crate) fn byte(&mut self) -> Result<u8, ReadError> {
+        self.array::<1>().map(|[byte]| byte)
+    }
+
+    /// One of the values below `count`.
+    pub(crate) fn choice(&mut self, count: u8, what: &'static str) -> Result<u8, ReadError> {
+        let offset = self.at;
+        let value = self.byte()?;
+        let problem = Problem::BadValue { what };
+        if value < count { Ok(value) } else { Err(ReadError { offset, problem }) }
+    }
+
+    pub(crate) fn flag(&mut self) -> Result<bool, ReadError> {
+        self.choice(2, "a flag").map(|value| value == 1)
+    }
+
+    pub(crate) fn word(&mut self) -> Result<u32, ReadError> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(crate) fn long(&mut self) -> Result<u64, ReadError> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    pub(crate) fn number<N: Scalar>(&mut self) -> Result<N, ReadError> {
+        let mut bits = [0; 8];
+        bits[..N::BYTES].copy_from_slice(self.take(N::BYTES)?);
+        Ok(N::of_bits(u64::from_le_bytes(bits)))
+    }
+
+    /// So many numbers: no memory is taken for more than the range holds.
+    pub(crate) fn numbers<N: Scalar>(&mut self, count: usize) -> Result<Vec<N>, ReadError> {
+        if count.saturating_mul(N::BYTES) > self.remaining() {
+            return Err(self.error(Problem::Truncated));
+        }
+        (0..count).map(|_| self.number()).collect()
+    }
+
+    /// The length of a list each of whose elements takes at least so many bytes, one at least.
+    pub(crate) fn count(&mut self, least: usize) -> Result<usize, ReadError> {
+        let offset = self.at;
+        let count = self.word()? as usize;
+        let fits = count.saturating_mul(least) <= self.remaining();
+        let problem = Problem::Truncated;
+        if fits { Ok(count) } else { Err(ReadError { offset, problem }) }
+    }
+
+    /// A list of elements, each of which takes at least so many bytes.
+    pub(crate) fn list<E>(
+        &mut self,
+        least: usize,
+        mut element: impl FnMut(&mut Self) -> Result<E, ReadError>,
+    ) -> Result<Vec<E>, ReadError> {
+        let count = self.count(least)?;
+        (0..count).map(|_| element(self)).collect()
+    }
+
+    /// A list of bytes, in place.
+    pub(crate) fn blob(&mut self) -> Result<&'a [u8], ReadError> {
+        let length = self.count(1)?;
+        self.take(length)
+    }
+
+    /// A list of bytes that are UTF-8.
+    pub(crate) fn text(&mut self) -> Result<String, ReadError> {
+        let offset = self.at;
+        let bytes = self.blob()?.to_vec();
+        let problem = Problem::BadValue { what: "a name" };
+        String::from_utf8(bytes).map_err(|_| ReadError { offset, problem })
+    }
+
+    /// All fields are read.
+    pub(crate) fn finish(&self) -> Result<(), ReadError> {
+        if self.remaining() == 0 { Ok(()) } else { Err(self.error(Problem::TrailingBytes)) }
+    }
+}

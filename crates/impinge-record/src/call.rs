@@ -1,0 +1,456 @@
+//! The records after the header, and their fields.
+
+use impinge::bounding_volume::{Aabb, Ray};
+use impinge::math::Space;
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::query::ImpactOptions;
+use impinge::world::CollisionGroups;
+
+use crate::bytes::{Sink, Source};
+use crate::error::{Problem, ReadError};
+use crate::shape_data::ShapeData;
+use crate::space::{Recordable, Scalar};
+use crate::state::{ObjectHashes, Observation};
+
+/// An object as the call that adds it.
+#[derive(Clone, Debug)]
+pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
+    /// The index of its handle.
+    pub(crate) index: u32,
+    pub(crate) position: N::Isometry,
+    /// The number of the shape.
+    pub(crate) shape: u32,
+    pub(crate) groups: CollisionGroups,
+    pub(crate) query_type: GeometricQueryType<N>,
+    pub(crate) data: Vec<u8>,
+}
+
+/// The calls that make a world as it was.
+#[derive(Clone, Debug)]
+pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
+    /// The names of the filters.
+    pub(crate) filters: Vec<String>,
+    /// The indices without objects, the one taken next last.
+    pub(crate) vacant: Vec<u32>,
+    /// The objects in order of their indices.
+    pub(crate) objects: Vec<ObjectData<N, D>>,
+}
+
+/// A query whose shape is a number.
+#[derive(Clone, Debug)]
+pub(crate) struct QueryData<N: Space<D>, const D: usize> {
+    /// The question.
+    pub(crate) question: QuestionData<N, D>,
+    pub(crate) groups: Option<CollisionGroups>,
+    /// The indices of excluded objects that live.
+    pub(crate) excluded: Vec<u32>,
+    /// The hash of the answer.
+    pub(crate) answer: u64,
+}
+
+/// A question whose shape is a number.
+#[derive(Clone, Debug)]
+pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
+    /// A ray: the first hit or all.
+    Ray {
+        all: bool,
+        ray: Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    },
+    /// The coordinates of a point.
+    Containing(Vec<N>),
+    Project {
+        point: Vec<N>,
+        max_distance: N,
+        solid: bool,
+    },
+    InAabb(Aabb<N, D>),
+    Overlapping {
+        position: N::Isometry,
+        shape: u32,
+    },
+    Nearest {
+        position: N::Isometry,
+        shape: u32,
+        count: u32,
+        max_distance: N,
+    },
+    Cast(CastData<N, D>),
+}
+
+/// A shape cast.
+#[derive(Clone, Debug)]
+pub(crate) struct CastData<N: Space<D>, const D: usize> {
+    pub(crate) all: bool,
+    pub(crate) position: N::Isometry,
+    pub(crate) shape: u32,
+    pub(crate) velocity: Vec<N>,
+    pub(crate) options: ImpactOptions<N>,
+}
+
+/// A record.
+#[derive(Clone, Debug)]
+pub(crate) enum Call<N: Space<D>, const D: usize> {
+    /// Defines the next shape.
+    Shape(ShapeData<N, D>),
+    /// Adds an object, at the next index of the world.
+    Add(ObjectData<N, D>),
+    /// Moves objects, all or none.
+    SetPositions(Vec<(u32, N::Isometry)>),
+    SetShape {
+        index: u32,
+        shape: u32,
+    },
+    SetGroups {
+        index: u32,
+        groups: CollisionGroups,
+    },
+    SetQueryType {
+        index: u32,
+        query_type: GeometricQueryType<N>,
+    },
+    SetData {
+        index: u32,
+        data: Vec<u8>,
+    },
+    /// Removes objects; the last one's index is taken next.
+    Remove(Vec<u32>),
+    RegisterFilter(String),
+    UnregisterFilter(String),
+    /// Asks; changes nothing.
+    Query(Box<QueryData<N, D>>),
+    /// The whole world; gives it new phases.
+    KeyFrame(KeyFrame<N, D>),
+    /// An update, with the hashes of what it led to.
+    Update(Observation),
+    /// The last record.
+    End {
+        updates: u64,
+    },
+}
+
+impl<N: Recordable<D>, const D: usize> Call<N, D> {
+    /// The number of the kind of record in the format.
+    pub(crate) const fn kind(&self) -> u8 {
+        match self {
+            Self::Shape(_) => 1,
+            Self::Add(_) => 2,
+            Self::SetPositions(_) => 3,
+            Self::SetShape { .. } => 4,
+            Self::SetGroups { .. } => 5,
+            Self::SetQueryType { .. } => 6,
+            Self::SetData { .. } => 7,
+            Self::Remove(_) => 8,
+            Self::RegisterFilter(_) => 9,
+            Self::UnregisterFilter(_) => 10,
+            Self::Query(_) => 11,
+            Self::KeyFrame(_) => 12,
+            Self::Update(_) => 13,
+            Self::End { .. } => 14,
+        }
+    }
+
+    /// Writes the fields of the record, in the order in which [`Self::read`] reads them.
+    pub(crate) fn write(&self, sink: &mut Sink) {
+        match self {
+            Self::Shape(shape) => sink.shape(shape),
+            Self::Add(object) => sink.object(object),
+            Self::SetPositions(positions) => {
+                sink.count(positions.len());
+                for (index, position) in positions {
+                    sink.word(*index);
+                    sink.isometry::<N, D>(position);
+                }
+            }
+            Self::SetShape { index, shape } => sink.words(&[*index, *shape]),
+            Self::SetGroups { index, groups } => {
+                sink.word(*index);
+                sink.groups(groups);
+            }
+            Self::SetQueryType { index, query_type } => {
+                sink.word(*index);
+                sink.query_type(*query_type);
+            }
+            Self::SetData { index, data } => {
+                sink.word(*index);
+                sink.blob(data);
+            }
+            Self::Remove(indices) => {
+                sink.count(indices.len());
+                sink.words(indices);
+            }
+            Self::RegisterFilter(name) | Self::UnregisterFilter(name) => sink.blob(name.as_bytes()),
+            Self::Query(query) => sink.query(query),
+            Self::KeyFrame(frame) => sink.key_frame(frame),
+            Self::Update(observation) => sink.observation(observation),
+            Self::End { updates } => sink.long(*updates),
+        }
+    }
+
+    /// Reads the fields of a record of a kind, all of them.
+    pub(crate) fn read(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
+        let call = Self::fields(kind, source)?;
+        source.finish()?;
+        Ok(call)
+    }
+
+    /// The fields by the number of [`Self::kind`].
+    fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
+        Ok(match kind {
+            1 => Self::Shape(source.shape()?),
+            2 => Self::Add(source.object()?),
+            3 => Self::SetPositions(
+                source.list(4, |source| Ok((source.word()?, source.isometry::<N, D>()?)))?,
+            ),
+            4 => Self::SetShape { index: source.word()?, shape: source.word()? },
+            5 => Self::SetGroups { index: source.word()?, groups: source.groups()? },
+            6 => Self::SetQueryType { index: source.word()?, query_type: source.query_type()? },
+            7 => Self::SetData { index: source.word()?, data: source.blob()?.to_vec() },
+            8 => Self::Remove(source.list(4, Source::word)?),
+            9 => Self::RegisterFilter(source.text()?),
+            10 => Self::UnregisterFilter(source.text()?),
+            11 => Self::Query(Box::new(source.query()?)),
+            12 => Self::KeyFrame(source.key_frame()?),
+            13 => Self::Update(source.observation()?),
+            14 => Self::End { updates: source.long()? },
+            _ => return Err(source.error(Problem::UnknownRecord(kind))),
+        })
+    }
+}
+
+/// The fields of calls.
+impl Sink {
+    fn words(&mut self, words: &[u32]) {
+        words.iter().for_each(|word| self.word(*word));
+    }
+
+    /// Three masks and the flag of self-collision.
+    fn groups(&mut self, groups: &CollisionGroups) {
+        let lists = [groups.whitelist_mask(), groups.blacklist_mask()];
+        self.word(groups.membership_mask());
+        self.words(&lists);
+        self.flag(groups.can_interact_with_self());
+    }
+
+    fn query_type<N: Scalar>(&mut self, query_type: GeometricQueryType<N>) {
+        match query_type {
+            GeometricQueryType::Contacts(linear, angular) => {
+                self.byte(0);
+                self.numbers(&[linear, angular]);
+            }
+            GeometricQueryType::Proximity(margin) => {
+                self.byte(1);
+                self.number(margin);
+            }
+        }
+    }
+
+    /// What adds an object, or an object of a key frame.
+    fn object<N: Recordable<D>, const D: usize>(&mut self, object: &ObjectData<N, D>) {
+        self.word(object.index);
+        self.isometry::<N, D>(&object.position);
+        self.word(object.shape);
+        self.groups(&object.groups);
+        self.query_type(object.query_type);
+        self.blob(&object.data);
+    }
+
+    fn key_frame<N: Recordable<D>, const D: usize>(&mut self, frame: &KeyFrame<N, D>) {
+        self.count(frame.filters.len());
+        frame.filters.iter().for_each(|name| self.blob(name.as_bytes()));
+        self.count(frame.vacant.len());
+        self.words(&frame.vacant);
+        self.count(frame.objects.len());
+        frame.objects.iter().for_each(|object| self.object(object));
+    }
+
+    /// Twelve bytes for each object that changed.
+    fn observation(&mut self, observation: &Observation) {
+        self.long(observation.state);
+        self.long(observation.events);
+        self.count(observation.changed.len());
+        for ObjectHashes { index, description, pairs } in &observation.changed {
+            self.words(&[*index, *description, *pairs]);
+        }
+    }
+
+    fn query<N: Recordable<D>, const D: usize>(&mut self, query: &QueryData<N, D>) {
+        self.question(&query.question);
+        self.flag(query.groups.is_some());
+        query.groups.iter().for_each(|groups| self.groups(groups));
+        self.count(query.excluded.len());
+        self.words(&query.excluded);
+        self.long(query.answer);
+    }
+
+    /// A kind, then the arguments of the method that the question names.
+    fn question<N: Recordable<D>, const D: usize>(&mut self, question: &QuestionData<N, D>) {
+        match question {
+            QuestionData::Ray { all, ray, max_time, solid } => {
+                self.byte(u8::from(*all));
+                self.numbers(ray.origin.coords.as_slice());
+                self.numbers(ray.dir.as_slice());
+                self.number(*max_time);
+                self.flag(*solid);
+            }
+            QuestionData::Containing(point) => {
+                self.byte(2);
+                self.numbers(point);
+            }
+            QuestionData::Project { point, max_distance, solid } => {
+                self.byte(3);
+                self.numbers(point);
+                self.number(*max_distance);
+                self.flag(*solid);
+            }
+            QuestionData::InAabb(aabb) => {
+                self.byte(4);
+                self.points(&[*aabb.mins(), *aabb.maxs()]);
+            }
+            QuestionData::Overlapping { position, shape } => {
+                self.byte(5);
+                self.isometry::<N, D>(position);
+                self.word(*shape);
+            }
+            QuestionData::Nearest { position, shape, count, max_distance } => {
+                self.byte(6);
+                self.isometry::<N, D>(position);
+                self.words(&[*shape, *count]);
+                self.number(*max_distance);
+            }
+            QuestionData::Cast(cast) => self.cast(cast),
+        }
+    }
+
+    /// A tolerance is written in any case, so that the record has one length.
+    fn cast<N: Recordable<D>, const D: usize>(&mut self, cast: &CastData<N, D>) {
+        self.byte(if cast.all { 8 } else { 7 });
+        self.isometry::<N, D>(&cast.position);
+        self.word(cast.shape);
+        self.numbers(&cast.velocity);
+        self.numbers(&[cast.options.max_time, cast.options.target_distance]);
+        self.flag(cast.options.tolerance.is_some());
+        self.number(cast.options.tolerance.unwrap_or(N::ZERO));
+        self.flag(cast.options.contact_at_start);
+    }
+}
+
+/// The fields of calls: what [`Sink`] has written.
+impl Source<'_> {
+    /// Masks of groups that exist: a bit above 29 is an error.
+    fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
+        let error = self.error(Problem::BadValue { what: "a mask of groups" });
+        let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];
+        let groups = CollisionGroups::new()
+            .try_with_membership_by_mask(membership)
+            .and_then(|groups| groups.try_with_whitelist_by_mask(whitelist))
+            .and_then(|groups| groups.try_with_blacklist_by_mask(blacklist));
+        let mut groups = groups.map_err(|_| error)?;
+        if self.flag()? {
+            groups.enable_self_collision();
+        }
+        Ok(groups)
+    }
+
+    fn query_type<N: Scalar>(&mut self) -> Result<GeometricQueryType<N>, ReadError> {
+        Ok(match self.choice(2, "the kind of a query type")? {
+            0 => GeometricQueryType::Contacts(self.number()?, self.number()?),
+            _ => GeometricQueryType::Proximity(self.number()?),
+        })
+    }
+
+    fn object<N: Recordable<D>, const D: usize>(&mut self) -> Result<ObjectData<N, D>, ReadError> {
+        Ok(ObjectData {
+            index: self.word()?,
+            position: self.isometry::<N, D>()?,
+            shape: self.word()?,
+            groups: self.groups()?,
+            query_type: self.query_type()?,
+            data: self.blob()?.to_vec(),
+        })
+    }
+
+    fn key_frame<N: Recordable<D>, const D: usize>(&mut self) -> Result<KeyFrame<N, D>, ReadError> {
+        Ok(KeyFrame {
+            filters: self.list(4, Self::text)?,
+            vacant: self.list(4, Self::word)?,
+            objects: self.list(32, Self::object)?,
+        })
+    }
+
+    fn observation(&mut self) -> Result<Observation, ReadError> {
+        let (state, events) = (self.long()?, self.long()?);
+        let changed = self.list(12, |source| {
+            let [index, description, pairs] = [source.word()?, source.word()?, source.word()?];
+            Ok(ObjectHashes { index, description, pairs })
+        })?;
+        Ok(Observation { state, events, changed })
+    }
+
+    fn query<N: Recordable<D>, const D: usize>(&mut self) -> Result<QueryData<N, D>, ReadError> {
+        Ok(QueryData {
+            question: self.question()?,
+            groups: if self.flag()? { Some(self.groups()?) } else { None },
+            excluded: self.list(4, Self::word)?,
+            answer: self.long()?,
+        })
+    }
+
+    fn question<N: Recordable<D>, const D: usize>(
+        &mut self,
+    ) -> Result<QuestionData<N, D>, ReadError> {
+        let kind = self.choice(9, "the kind of a query")?;
+        Ok(match kind {
+            0 | 1 => QuestionData::Ray {
+                all: kind == 1,
+                ray: Ray::new(self.point()?, self.vector()?),
+                max_time: self.number()?,
+                solid: self.flag()?,
+            },
+            2 => QuestionData::Containing(self.numbers(D)?),
+            3 => QuestionData::Project {
+                point: self.numbers(D)?,
+                max_distance: self.number()?,
+                solid: self.flag()?,
+            },
+            4 => QuestionData::InAabb(self.aabb()?),
+            5 => QuestionData::Overlapping {
+                position: self.isometry::<N, D>()?,
+                shape: self.word()?,
+            },
+            6 => QuestionData::Nearest {
+                position: self.isometry::<N, D>()?,
+                shape: self.word()?,
+                count: self.word()?,
+                max_distance: self.number()?,
+            },
+            _ => QuestionData::Cast(self.cast(kind == 8)?),
+        })
+    }
+
+    /// A box with its corners in order, or the box of everything, which no constructor takes.
+    fn aabb<N: Recordable<D>, const D: usize>(&mut self) -> Result<Aabb<N, D>, ReadError> {
+        let error = self.error(Problem::BadValue { what: "a box" });
+        let (mins, maxs) = (self.point()?, self.point()?);
+        let is_everything =
+            mins == *Aabb::<N, D>::unbounded().mins() && maxs == *Aabb::<N, D>::unbounded().maxs();
+        if is_everything {
+            return Ok(Aabb::unbounded());
+        }
+        Aabb::try_new(mins, maxs).map_err(|_| error)
+    }
+
+    fn cast<N: Recordable<D>, const D: usize>(
+        &mut self,
+        all: bool,
+    ) -> Result<CastData<N, D>, ReadError> {
+        let (position, shape) = (self.isometry::<N, D>()?, self.word()?);
+        let (velocity, options) = (self.numbers(D)?, ImpactOptions::new());
+        let options = options.with_max_time(self.number()?).with_target_distance(self.number()?);
+        let (has_tolerance, tolerance) = (self.flag()?, self.number()?);
+        let options = if has_tolerance { options.with_tolerance(tolerance) } else { options };
+        let options = options.with_contact_at_start(self.flag()?);
+        Ok(CastData { all, position, shape, velocity, options })
+    }
+}

@@ -1,0 +1,81 @@
+//! The user's data of objects as bytes.
+
+/// The data of objects that can be recorded: filters read it.
+///
+/// ```
+/// use impinge_record::RecordData;
+///
+/// #[derive(Debug, Default, PartialEq)]
+/// struct Team(u8);
+///
+/// impl RecordData for Team {
+///     fn to_bytes(&self) -> Vec<u8> {
+///         vec![self.0]
+///     }
+///
+///     fn from_bytes(bytes: &[u8]) -> Option<Self> {
+///         if let [team] = bytes { Some(Self(*team)) } else { None }
+///     }
+/// }
+///
+/// assert_eq!(Team::from_bytes(&Team(3).to_bytes()), Some(Team(3)));
+/// ```
+///
+/// [`Default`] is the data of objects that hold an index for a moment while a key frame is read; nothing reads it.
+pub trait RecordData: Default {
+    /// The data as bytes.
+    fn to_bytes(&self) -> Vec<u8>;
+
+    /// The data of these bytes; `None` if they are of none. It is called with any bytes.
+    fn from_bytes(bytes: &[u8]) -> Option<Self>;
+}
+
+impl RecordData for () {
+    fn to_bytes(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        bytes.is_empty().then_some(())
+    }
+}
+
+impl RecordData for u32 {
+    fn to_bytes(&self) -> Vec<u8> {
+        self.to_le_bytes().to_vec()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        bytes.try_into().ok().map(Self::from_le_bytes)
+    }
+}
+
+impl RecordData for u64 {
+    fn to_bytes(&self) -> Vec<u8> {
+        self.to_le_bytes().to_vec()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        bytes.try_into().ok().map(Self::from_le_bytes)
+    }
+}
+
+impl RecordData for String {
+    fn to_bytes(&self) -> Vec<u8> {
+        self.as_bytes().to_vec()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        Self::from_utf8(bytes.to_vec()).ok()
+    }
+}
+
+impl RecordData for Vec<u8> {
+    fn to_bytes(&self) -> Vec<u8> {
+        self.clone()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        Some(bytes.to_vec())
+    }
+}

@@ -1,0 +1,173 @@
+//! Why a call cannot be recorded, and why bytes are not a recording.
+
+use core::fmt;
+
+use impinge::shape::{MeshError, ShapeError};
+use impinge::world::WorldError;
+
+/// Why a call was not recorded. The world and the recording are unchanged then.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// The world refuses the call.
+    World(WorldError),
+    /// The shape is of a type of the user's own, and the registry does not name it.
+    UnknownShape {
+        /// The shape, as `Debug` prints it.
+        shape: String,
+    },
+    /// The constructors of the library do not make this shape again to the bit: a mesh or line whose
+    /// vertices were moved apart or together after it was made.
+    Deformed {
+        /// The shape, as `Debug` prints it.
+        shape: String,
+    },
+    /// The shape nests more than [`MAX_DEPTH`](crate::MAX_DEPTH) shapes, or has more than
+    /// [`MAX_PARTS`](crate::MAX_PARTS) parts.
+    TooComplex,
+    /// The registry has no pair filter of this name.
+    UnknownFilter(String),
+}
+
+impl From<WorldError> for RecordError {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}
+
+impl fmt::Display for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::World(error) => error.fmt(f),
+            Self::UnknownShape { shape } => {
+                write!(f, "the registry does not name the shape {shape}")
+            }
+            Self::Deformed { shape } => write!(f, "no constructor makes {shape} again to the bit"),
+            Self::TooComplex => write!(f, "the shape is nested too deep or has too many parts"),
+            Self::UnknownFilter(name) => write!(f, "the registry has no pair filter {name:?}"),
+        }
+    }
+}
+
+impl std::error::Error for RecordError {}
+
+/// Why bytes are not a recording that can be replayed, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadError {
+    /// The offset of the field, in bytes from the beginning of the recording.
+    pub offset: usize,
+    /// What is wrong there.
+    pub problem: Problem,
+}
+
+/// What is wrong with a recording.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The bytes do not begin as a recording does.
+    NotARecording,
+    /// The format is of another version: a later one, or 0.
+    Version {
+        /// The version of the recording.
+        found: u32,
+    },
+    /// The recording is of worlds of another scalar.
+    Scalar {
+        /// The bytes of a number in the recording.
+        found: u8,
+    },
+    /// The recording is of worlds of another dimension.
+    Dimension {
+        /// The dimension of the recording.
+        found: u8,
+    },
+    /// The bytes end, or a length goes beyond the end of the record.
+    Truncated,
+    /// The checksum of a record differs from that of the bytes: something before it was changed.
+    Checksum,
+    /// A record has more bytes than its fields, or bytes follow the last record.
+    TrailingBytes,
+    /// There is no record of this kind.
+    UnknownRecord(u8),
+    /// A field has a value that it cannot have.
+    BadValue {
+        /// The field.
+        what: &'static str,
+    },
+    /// A shape refers to one that is not defined before it.
+    NoSuchShape(u32),
+    /// A call names an object that does not live.
+    NoSuchObject(u32),
+    /// A new object has another index than in the recording.
+    OtherIndex {
+        /// The index in the recording.
+        recorded: u32,
+        /// The index in the replayed world.
+        replayed: usize,
+    },
+    /// The library refuses the numbers of a shape.
+    Shape(ShapeError),
+    /// The library refuses the numbers of a mesh or line.
+    Mesh(MeshError),
+    /// The world refuses a call.
+    World(WorldError),
+    /// A shape is nested too deep or has too many parts.
+    TooComplex,
+    /// The registry does not name this shape.
+    UnknownShape(String),
+    /// The registry has no pair filter of this name.
+    UnknownFilter(String),
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotARecording => write!(f, "this is not a recording"),
+            Self::Version { found } => write!(f, "version {found} of the format is not known"),
+            Self::Scalar { found } => write!(f, "the numbers have {found} bytes"),
+            Self::Dimension { found } => write!(f, "the world has {found} dimensions"),
+            Self::Truncated => write!(f, "the bytes end early"),
+            Self::Checksum => write!(f, "the checksum is wrong"),
+            Self::TrailingBytes => write!(f, "bytes follow the last field"),
+            Self::UnknownRecord(kind) => write!(f, "there is no record of kind {kind}"),
+            Self::BadValue { what } => write!(f, "{what} has an impossible value"),
+            Self::NoSuchShape(index) => write!(f, "shape {index} is not defined before"),
+            Self::NoSuchObject(index) => write!(f, "there is no object {index}"),
+            Self::OtherIndex { recorded, replayed } => {
+                write!(f, "object {recorded} became object {replayed}")
+            }
+            Self::Shape(error) => error.fmt(f),
+            Self::Mesh(error) => error.fmt(f),
+            Self::World(error) => error.fmt(f),
+            Self::TooComplex => write!(f, "the shape is nested too deep or has too many parts"),
+            Self::UnknownShape(name) => write!(f, "the registry does not name the shape {name:?}"),
+            Self::UnknownFilter(name) => write!(f, "the registry has no pair filter {name:?}"),
+        }
+    }
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at byte {}: {}", self.offset, self.problem)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+impl From<ShapeError> for Problem {
+    fn from(error: ShapeError) -> Self {
+        Self::Shape(error)
+    }
+}
+
+impl From<MeshError> for Problem {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
+}
+
+impl From<WorldError> for Problem {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}

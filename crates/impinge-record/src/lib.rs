@@ -1,0 +1,41 @@
+//! Recordings of collision worlds as logs of calls: written, replayed forwards and backwards, validated.
+//!
+//! A [`Recorder`] wraps a world and writes down each call that changes it, each query made through it, and after
+//! each update hashes of all that the world says. Since a recording is calls, it outlives changes of the
+//! library's memory layout. [`Replay`] gives the world at any step; [`validate`] plays it all and names the first
+//! step and object in which the replay differs from what was recorded, on this machine or with this version.
+//!
+//! Shapes and pair filters of the user's own are code: a recording has their names, and a [`Registry`] what these stand
+//! for. `FORMAT.md` describes the bytes.
+//!
+//! Recordings are read as untrusted input: errors have the offset, lengths are
+//! compared with the bytes that remain before memory is allocated, and shapes go through the constructors of the
+//! library. A recording may still describe a world that is expensive to update.
+#![forbid(unsafe_code)]
+
+mod bytes;
+mod call;
+mod data;
+mod digest;
+mod error;
+mod log;
+mod player;
+mod query;
+mod recorder;
+mod registry;
+mod replay;
+mod shape_data;
+mod shapes;
+mod space;
+mod state;
+
+pub use data::RecordData;
+pub use error::{Problem, ReadError, RecordError};
+pub use log::{FORMAT_VERSION, Header, reseal};
+pub use query::{CastQuestion, Detail, Found, PlacedShape, Query, Question, RayQuestion};
+pub use recorder::{Recorder, Recording, Refused};
+pub use registry::Registry;
+pub use replay::{Difference, Divergence, ObjectField, Replay, validate};
+pub use shape_data::{Field, Mesh, ShapeData};
+pub use shapes::{MAX_DEPTH, MAX_PARTS};
+pub use space::{Recordable, Scalar};

@@ -1,0 +1,193 @@
+//! The bytes of a recording: a header, then records with a running checksum.
+
+use std::ops::Range;
+
+use crate::bytes::{Sink, Source};
+use crate::call::Call;
+use crate::error::{Problem, ReadError};
+use crate::space::Recordable;
+
+/// The version of the format that this crate writes, and the latest that it reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+const MAGIC: [u8; 8] = *b"\x89IPREC\r\n";
+
+/// The version of the library, as the header names it.
+const WRITER: &str = concat!("impinge ", env!("CARGO_PKG_VERSION"));
+
+/// A recording being written.
+#[derive(Clone, Debug)]
+pub(crate) struct Log {
+    pub(crate) bytes: Vec<u8>,
+    checksum: crc32fast::Hasher,
+}
+
+impl Log {
+    /// A log with its header.
+    pub(crate) fn new<N: Recordable<D>, const D: usize>(margin: N) -> Self {
+        let mut sink = Sink::default();
+        sink.bytes.extend(MAGIC);
+        sink.word(FORMAT_VERSION);
+        sink.blob(WRITER.as_bytes());
+        // Eight bytes and three dimensions at most.
+        sink.bytes.extend([N::BYTES, D].map(|small| u8::try_from(small).unwrap_or(u8::MAX)));
+        sink.number(margin);
+        let mut log = Self { bytes: Vec::new(), checksum: crc32fast::Hasher::new() };
+        log.append(&sink.bytes);
+        log
+    }
+
+    /// A kind, the length of the fields, the fields, and the checksum of all bytes but checksums so far.
+    pub(crate) fn record<N: Recordable<D>, const D: usize>(&mut self, call: &Call<N, D>) {
+        let (mut fields, mut sink) = (Sink::default(), Sink::default());
+        call.write(&mut fields);
+        sink.byte(call.kind());
+        sink.blob(&fields.bytes);
+        self.append(&sink.bytes);
+    }
+
+    fn append(&mut self, bytes: &[u8]) {
+        self.checksum.update(bytes);
+        self.bytes.extend(bytes);
+        self.bytes.extend(self.checksum.clone().finalize().to_le_bytes());
+    }
+}
+
+/// What the header of a recording says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// The version of the format.
+    pub version: u32,
+    /// The program that wrote it, with its version.
+    pub writer: String,
+    /// The bytes of a number: 4 for `f32`, 8 for `f64`.
+    pub scalar_bytes: u8,
+    /// The dimension.
+    pub dimension: u8,
+}
+
+impl Header {
+    /// Reads the header of a recording of any scalar and dimension; its checksum is that of the first record
+    /// and not looked at.
+    ///
+    /// # Errors
+    /// If the bytes do not begin as a recording of a known version does.
+    ///
+    /// ```
+    /// use impinge_record::{Header, Recorder, Registry};
+    ///
+    /// let recorder = Recorder::<f32, 3, ()>::new(0.02, Registry::new()).expect("a usable margin");
+    /// let header = Header::read(&recorder.finish().bytes).expect("it was just written");
+    /// assert_eq!((header.version, header.scalar_bytes, header.dimension), (1, 4, 3));
+    /// ```
+    pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
+        Self::fields(&mut Source::new(bytes, 0..bytes.len()))
+    }
+
+    fn fields(source: &mut Source<'_>) -> Result<Self, ReadError> {
+        let start = source.error(Problem::NotARecording);
+        if source.take(MAGIC.len()).map_err(|_| start.clone())? != MAGIC {
+            return Err(start);
+        }
+        let offset = source.offset();
+        let version = source.word()?;
+        if version != FORMAT_VERSION {
+            return Err(ReadError { offset, problem: Problem::Version { found: version } });
+        }
+        let writer = source.text()?;
+        Ok(Self { version, writer, scalar_bytes: source.byte()?, dimension: source.byte()? })
+    }
+}
+
+/// A record as it lies in the bytes.
+#[derive(Clone, Debug)]
+pub(crate) struct Raw {
+    pub(crate) kind: u8,
+    /// The fields.
+    pub(crate) fields: Range<usize>,
+    /// Where the next record begins.
+    pub(crate) end: usize,
+}
+
+impl Raw {
+    /// The record at an offset; its checksum is not looked at.
+    pub(crate) fn at(bytes: &[u8], offset: usize) -> Result<Self, ReadError> {
+        let mut source = Source::new(bytes, offset..bytes.len());
+        let (kind, length) = (source.byte()?, source.count(1)?);
+        let start = source.offset();
+        source.take(length)?;
+        source.take(4)?;
+        Ok(Self { kind, fields: start..start + length, end: source.offset() })
+    }
+
+    pub(crate) fn call<N: Recordable<D>, const D: usize>(
+        &self,
+        bytes: &[u8],
+    ) -> Result<Call<N, D>, ReadError> {
+        Call::read(self.kind, &mut Source::new(bytes, self.fields.clone()))
+    }
+}
+
+/// Checksums along a recording.
+#[derive(Debug)]
+pub(crate) struct Checker<'a> {
+    bytes: &'a [u8],
+    checksum: crc32fast::Hasher,
+}
+
+impl<'a> Checker<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, checksum: crc32fast::Hasher::new() }
+    }
+
+    /// Reads the header and its checksum: the margin, and where the first record begins.
+    pub(crate) fn header<N: Recordable<D>, const D: usize>(
+        &mut self,
+    ) -> Result<(N, usize), ReadError> {
+        let mut source = Source::new(self.bytes, 0..self.bytes.len());
+        let header = Header::fields(&mut source)?;
+        let offset = source.offset() - 2;
+        if usize::from(header.scalar_bytes) != N::BYTES {
+            let problem = Problem::Scalar { found: header.scalar_bytes };
+            return Err(ReadError { offset, problem });
+        }
+        if usize::from(header.dimension) != D {
+            let problem = Problem::Dimension { found: header.dimension };
+            return Err(ReadError { offset: offset + 1, problem });
+        }
+        let margin = source.number()?;
+        let end = source.offset();
+        source.take(4)?;
+        self.check(0..end)?;
+        Ok((margin, source.offset()))
+    }
+
+    /// The checksum that follows a range is that of all bytes so far.
+    pub(crate) fn check(&mut self, range: Range<usize>) -> Result<(), ReadError> {
+        let offset = range.end;
+        self.checksum.update(&self.bytes[range]);
+        let expected = Source::new(self.bytes, offset..self.bytes.len()).word()?;
+        let is_right = self.checksum.clone().finalize() == expected;
+        if is_right { Ok(()) } else { Err(ReadError { offset, problem: Problem::Checksum }) }
+    }
+}
+
+/// Writes the checksums of a recording anew, as far as its records can be told apart: so that tests reach what
+/// lies behind the checksums with bytes of their own.
+#[doc(hidden)]
+pub fn reseal(bytes: &mut [u8]) {
+    let mut checksum = crc32fast::Hasher::new();
+    let mut source = Source::new(bytes, 0..bytes.len());
+    let Ok(header) = Header::fields(&mut source) else { return };
+    let mut end = source.offset() + usize::from(header.scalar_bytes);
+    let mut start = 0;
+    while let Some(sum) = bytes.get(end..end + 4).map(|_| {
+        checksum.update(&bytes[start..end]);
+        checksum.clone().finalize()
+    }) {
+        bytes[end..end + 4].copy_from_slice(&sum.to_le_bytes());
+        start = end + 4;
+        let Ok(raw) = Raw::at(bytes, start) else { return };
+        end = raw.fields.end;
+    }
+}

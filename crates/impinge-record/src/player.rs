@@ -1,0 +1,265 @@
+//! A world to which recorded calls are applied.
+
+use impinge::bounding_volume::Aabb;
+use impinge::broad_phase::DBVTBroadPhase;
+use impinge::math::{Point, Pose, Vector};
+use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
+use impinge::shape::{Ball, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionWorld};
+
+use crate::RecordData;
+use crate::call::{Call, KeyFrame, ObjectData, QueryData, QuestionData};
+use crate::error::Problem;
+use crate::query::{CastQuestion, PlacedShape, Query, Question, RayQuestion, answer_hash};
+use crate::registry::Registry;
+use crate::replay::Difference;
+use crate::shapes::ShapeTable;
+use crate::space::Recordable;
+use crate::state::{Observation, Observer};
+
+/// What records refer to.
+#[derive(Debug)]
+pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
+    pub(crate) shapes: ShapeTable<N, D>,
+    pub(crate) registry: Registry<N, D, T>,
+    pub(crate) margin: N,
+}
+
+/// The world, and its objects by the indices of the recording.
+#[derive(Debug)]
+pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
+    pub(crate) world: CollisionWorld<N, D, T>,
+    handles: Vec<Option<CollisionObjectHandle>>,
+    observer: Observer,
+    /// No call was applied yet: a key frame makes the world.
+    is_new: bool,
+    /// A key frame made the world, and no update followed: the next one starts all pairs at once.
+    is_remade: bool,
+}
+
+/// Gives a world new phases of the library, to take over at the next update. What follows depends on the
+/// objects alone, not on what was before.
+pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
+    world: &mut CollisionWorld<N, D, T>,
+    margin: N,
+) {
+    let broad_phase = DBVTBroadPhase::<N, Aabb<N, D>, CollisionObjectHandle>::new(margin);
+    world.set_broad_phase(Box::new(broad_phase));
+    world.set_narrow_phase(Box::new(DefaultNarrowPhase::<N, D>::new()));
+}
+
+impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
+    /// A world without objects.
+    pub(crate) fn new(margin: N) -> Result<Self, Problem> {
+        let (world, observer) = (CollisionWorld::try_new(margin)?, Observer::default());
+        Ok(Self { world, handles: Vec::new(), observer, is_new: true, is_remade: false })
+    }
+
+    /// Applies a call; answers in what its outcome differs from the recorded one.
+    pub(crate) fn apply(
+        &mut self,
+        call: Call<N, D>,
+        resources: &Resources<N, D, T>,
+    ) -> Result<Option<Difference>, Problem> {
+        let is_new = std::mem::replace(&mut self.is_new, false);
+        match call {
+            Call::Shape(_) | Call::End { .. } => self.is_new = is_new,
+            Call::Add(object) => self.add(object, resources)?,
+            Call::SetPositions(positions) => self.set_positions(&positions)?,
+            Call::SetShape { index, shape } => {
+                let shape = resources.shapes.get(shape)?.clone();
+                self.world.try_set_shape(self.handle(index)?, shape)?;
+            }
+            Call::SetGroups { index, groups } => {
+                self.world.try_set_collision_groups(self.handle(index)?, groups)?;
+            }
+            Call::SetQueryType { index, query_type } => {
+                self.world.try_set_query_type(self.handle(index)?, query_type)?;
+            }
+            Call::SetData { index, data } => self.set_data(index, &data)?,
+            Call::Remove(indices) => self.remove(&indices)?,
+            Call::RegisterFilter(name) => self.register(&name, resources)?,
+            Call::UnregisterFilter(name) => {
+                self.world.unregister_broad_phase_pair_filter(&name);
+            }
+            Call::Query(query) => return self.ask(&query, resources),
+            Call::KeyFrame(frame) if is_new => self.remake(frame, resources)?,
+            Call::KeyFrame(_) => self.begin_anew(resources.margin),
+            Call::Update(recorded) => return Ok(self.update(&recorded)),
+        }
+        Ok(None)
+    }
+
+    /// The handle of the object that lives at an index.
+    fn handle(&self, index: u32) -> Result<CollisionObjectHandle, Problem> {
+        let handle = self.handles.get(index as usize).copied().flatten();
+        handle.ok_or(Problem::NoSuchObject(index))
+    }
+
+    /// Adds an object; its index depends on the calls before and must be the recorded one.
+    fn add(
+        &mut self,
+        object: ObjectData<N, D>,
+        resources: &Resources<N, D, T>,
+    ) -> Result<(), Problem> {
+        let ObjectData { index, position, shape, groups, query_type, data } = object;
+        let shape = resources.shapes.get(shape)?.clone();
+        let handle = self.world.try_add(position, shape, groups, query_type, data_of(&data)?)?;
+        self.enter(handle, index)
+    }
+
+    /// Notes the handle of a new object, which must have the recorded index.
+    fn enter(&mut self, handle: CollisionObjectHandle, index: u32) -> Result<(), Problem> {
+        if handle.uid() != index as usize {
+            return Err(Problem::OtherIndex { recorded: index, replayed: handle.uid() });
+        }
+        // The world has given the index, so that it is at most one more than the largest before.
+        if self.handles.len() <= handle.uid() {
+            self.handles.resize(handle.uid() + 1, None);
+        }
+        self.handles[handle.uid()] = Some(handle);
+        Ok(())
+    }
+
+    /// Moves objects one by one: a recorder has written them only if all could be moved.
+    fn set_positions(&mut self, positions: &[(u32, N::Isometry)]) -> Result<(), Problem> {
+        for (index, position) in positions {
+            self.world.try_set_position(self.handle(*index)?, *position)?;
+        }
+        Ok(())
+    }
+
+    /// Replaces the data of an object. Filters that read it are asked again only about pairs that begin anew.
+    fn set_data(&mut self, index: u32, data: &[u8]) -> Result<(), Problem> {
+        let handle = self.handle(index)?;
+        let object = self.world.collision_object_mut(handle);
+        *object.ok_or(Problem::NoSuchObject(index))?.data_mut() = data_of(data)?;
+        Ok(())
+    }
+
+    /// Removes objects, whose indices name nothing then.
+    fn remove(&mut self, indices: &[u32]) -> Result<(), Problem> {
+        let handles: Result<Vec<_>, _> = indices.iter().map(|index| self.handle(*index)).collect();
+        self.world.try_remove(&handles?)?;
+        indices.iter().for_each(|index| self.handles[*index as usize] = None);
+        Ok(())
+    }
+
+    /// Registers the filter that the registry has under a name.
+    fn register(&mut self, name: &str, resources: &Resources<N, D, T>) -> Result<(), Problem> {
+        let is_known = resources.registry.register(name, &mut self.world);
+        if is_known { Ok(()) } else { Err(Problem::UnknownFilter(name.to_owned())) }
+    }
+
+    /// Asks a query again and compares the hash of the answer.
+    fn ask(
+        &self,
+        query: &QueryData<N, D>,
+        resources: &Resources<N, D, T>,
+    ) -> Result<Option<Difference>, Problem> {
+        let handles = query.excluded.iter().map(|index| self.handle(*index));
+        let excluded = handles.collect::<Result<_, _>>()?;
+        let question = question_of(&query.question, &resources.shapes)?;
+        let asked = Query { question, groups: query.groups, excluded };
+        let is_same = answer_hash(&asked.ask(&self.world)) == query.answer;
+        Ok((!is_same).then_some(Difference::Answer))
+    }
+
+    /// As the recorder did at the key frame.
+    fn begin_anew(&mut self, margin: N) {
+        exchange_phases(&mut self.world, margin);
+        self.observer = Observer::default();
+    }
+
+    /// Makes the objects of a key frame at their indices, in a world without objects.
+    fn remake(
+        &mut self,
+        frame: KeyFrame<N, D>,
+        resources: &Resources<N, D, T>,
+    ) -> Result<(), Problem> {
+        // Filters are asked about pairs at the first update.
+        for name in &frame.filters {
+            self.register(name, resources)?;
+        }
+        let mut vacant = frame.vacant.clone();
+        vacant.sort_unstable();
+        let mut vacant = vacant.into_iter().peekable();
+        for object in frame.objects {
+            while let Some(index) = vacant.next_if(|index| *index < object.index) {
+                self.hold_place(index)?;
+            }
+            self.add(object, resources)?;
+        }
+        vacant.try_for_each(|index| self.hold_place(index))?;
+        // The index that was removed last is taken next.
+        frame.vacant.iter().try_for_each(|index| self.remove(&[*index]))?;
+        self.begin_anew(resources.margin);
+        self.is_remade = true;
+        Ok(())
+    }
+
+    /// Adds an object that only takes an index, and is gone before the update.
+    fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
+        let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
+        let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());
+        let query_type = GeometricQueryType::Proximity(N::ZERO);
+        let handle = self.world.try_add(position, shape, groups, query_type, T::default())?;
+        self.enter(handle, index)
+    }
+
+    /// Updates the world and compares its hashes. Objects are looked at only if the hash of the state differs.
+    fn update(&mut self, recorded: &Observation) -> Option<Difference> {
+        let before = self.observer.clone();
+        self.world.update();
+        let replayed = self.observer.observe(&self.world);
+        // The recorded world had its pairs before the key frame; in a world made anew all of them start.
+        let is_remade = std::mem::replace(&mut self.is_remade, false);
+        if replayed.state != recorded.state {
+            let known = before.after(&recorded.changed);
+            return Some(self.observer.difference(&known).unwrap_or(Difference::State));
+        }
+        let are_same = is_remade || replayed.events == recorded.events;
+        (!are_same).then_some(Difference::Events)
+    }
+}
+
+/// The user's data of an object.
+fn data_of<T: RecordData>(bytes: &[u8]) -> Result<T, Problem> {
+    T::from_bytes(bytes).ok_or(Problem::BadValue { what: "the data of an object" })
+}
+
+/// The question with its shapes.
+fn question_of<N: Recordable<D>, const D: usize>(
+    question: &QuestionData<N, D>,
+    shapes: &ShapeTable<N, D>,
+) -> Result<Question<N, D>, Problem> {
+    let placed = |position: &N::Isometry, shape: u32| -> Result<PlacedShape<N, D>, Problem> {
+        Ok(PlacedShape { position: *position, shape: shapes.get(shape)?.clone() })
+    };
+    let point = |numbers: &[N]| Point::from(Vector::<N, D>::from_column_slice(numbers));
+    Ok(match question {
+        QuestionData::Ray { all, ray, max_time, solid } => {
+            let question = RayQuestion { ray: *ray, max_time: *max_time, solid: *solid };
+            if *all { Question::RayHits(question) } else { Question::FirstRayHit(question) }
+        }
+        QuestionData::Containing(numbers) => Question::Containing(point(numbers)),
+        QuestionData::Project { point: at, max_distance, solid } => {
+            Question::ProjectPoint { point: point(at), max_distance: *max_distance, solid: *solid }
+        }
+        QuestionData::InAabb(aabb) => Question::InAabb(*aabb),
+        QuestionData::Overlapping { position, shape } => {
+            Question::Overlapping(placed(position, *shape)?)
+        }
+        QuestionData::Nearest { position, shape, count, max_distance } => Question::Nearest {
+            from: placed(position, *shape)?,
+            count: *count,
+            max_distance: *max_distance,
+        },
+        QuestionData::Cast(cast) => {
+            let start = placed(&cast.position, cast.shape)?;
+            let velocity = Vector::<N, D>::from_column_slice(&cast.velocity);
+            let question = CastQuestion { start, velocity, options: cast.options };
+            if cast.all { Question::CastShapeAll(question) } else { Question::CastShape(question) }
+        }
+    })
+}

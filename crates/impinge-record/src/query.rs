@@ -1,0 +1,272 @@
+//! Queries as data, and their answers.
+
+use impinge::bounding_volume::{Aabb, Ray};
+use impinge::math::{Point, Space, Vector};
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge::query::{ClosestPoints, Impact, ImpactOptions, PointProjection, RayIntersection};
+use impinge::shape::ShapeHandle;
+use impinge::world::{CollisionGroups, CollisionWorld, NearObject, QueryFilter};
+
+use crate::digest::Digest;
+use crate::space::Recordable;
+
+/// What a query asks of a world. Each variant is the method of
+/// [`CollisionWorld`](impinge::world::CollisionWorld) that it names, with its arguments.
+#[derive(Clone, Debug)]
+pub enum Question<N: Space<D>, const D: usize> {
+    /// `first_ray_hit`.
+    FirstRayHit(RayQuestion<N, D>),
+    /// `ray_hits`.
+    RayHits(RayQuestion<N, D>),
+    /// `objects_containing`.
+    Containing(Point<N, D>),
+    /// `project_point`: onto the boundary for points inside unless `solid`.
+    ProjectPoint {
+        /// The point.
+        point: Point<N, D>,
+        /// The largest distance of an answer.
+        max_distance: N,
+        /// A point inside is its own projection.
+        solid: bool,
+    },
+    /// `objects_in_aabb`.
+    InAabb(Aabb<N, D>),
+    /// `objects_overlapping`.
+    Overlapping(PlacedShape<N, D>),
+    /// `nearest_objects`.
+    Nearest {
+        /// The shape to measure from.
+        from: PlacedShape<N, D>,
+        /// So many objects at most.
+        count: u32,
+        /// The largest distance of an answer.
+        max_distance: N,
+    },
+    /// `cast_shape`.
+    CastShape(CastQuestion<N, D>),
+    /// `cast_shape_all`.
+    CastShapeAll(CastQuestion<N, D>),
+}
+
+/// The arguments of a query about a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct RayQuestion<N: Space<D>, const D: usize> {
+    /// The ray.
+    pub ray: Ray<N, D>,
+    /// The largest parameter of the ray of an answer.
+    pub max_time: N,
+    /// Rays that begin inside a solid hit it at once.
+    pub solid: bool,
+}
+
+/// A shape and where it is.
+#[derive(Clone, Debug)]
+pub struct PlacedShape<N: Space<D>, const D: usize> {
+    /// The position, in the world frame.
+    pub position: N::Isometry,
+    /// The shape.
+    pub shape: ShapeHandle<N, D>,
+}
+
+/// The arguments of a shape cast.
+#[derive(Clone, Debug)]
+pub struct CastQuestion<N: Space<D>, const D: usize> {
+    /// The shape, where it starts.
+    pub start: PlacedShape<N, D>,
+    /// The velocity, in the world frame.
+    pub velocity: Vector<N, D>,
+    /// When, and at which distance, the cast ends.
+    pub options: ImpactOptions<N>,
+}
+
+/// A question, and which objects it is about.
+///
+/// Predicates are code, which no recording holds: a query has groups and excluded objects only.
+#[derive(Clone, Debug)]
+pub struct Query<N: Space<D>, const D: usize> {
+    /// The question.
+    pub question: Question<N, D>,
+    /// The groups of the query; `None` for all objects.
+    pub groups: Option<CollisionGroups>,
+    /// Objects to be left out; stale handles mean nothing.
+    pub excluded: Vec<CollisionObjectHandle>,
+}
+
+impl<N: Space<D>, const D: usize> Query<N, D> {
+    /// The question about all objects.
+    #[must_use]
+    pub const fn new(question: Question<N, D>) -> Self {
+        Self { question, groups: None, excluded: Vec::new() }
+    }
+}
+
+/// An object that answers a query.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<N: Space<D>, const D: usize> {
+    /// The object.
+    pub handle: CollisionObjectHandle,
+    /// What the query computed for it.
+    pub detail: Detail<N, D>,
+}
+
+/// What a query computes for an object.
+#[derive(Clone, Copy, Debug)]
+pub enum Detail<N: Space<D>, const D: usize> {
+    /// Nothing more: of points, boxes and overlaps.
+    Object,
+    /// Of rays.
+    Ray(RayIntersection<N, D>),
+    /// Of projections.
+    Projection(PointProjection<N, D>),
+    /// Of distances: the distance, and the nearest points.
+    Near {
+        /// The distance.
+        distance: N,
+        /// The nearest points.
+        points: ClosestPoints<N, D>,
+    },
+    /// Of shape casts.
+    Impact(Impact<N, D>),
+}
+
+impl<N: Space<D>, const D: usize> Found<N, D> {
+    const fn object(handle: CollisionObjectHandle) -> Self {
+        Self { handle, detail: Detail::Object }
+    }
+
+    const fn near<T>(near: &NearObject<'_, N, D, T>) -> Self {
+        let detail = Detail::Near { distance: near.distance, points: near.points };
+        Self { handle: near.object.handle(), detail }
+    }
+}
+
+impl<N: Space<D>, const D: usize> Query<N, D> {
+    /// Asks a world; the answers are in the order of the method that the question names.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point};
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+    /// use impinge_record::{Query, Question};
+    ///
+    /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+    /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    /// let ball = world.add(Isometry::identity(), ball, CollisionGroups::new(), query, ());
+    /// let found = Query::new(Question::Containing(Point::new(0.5, 0.0))).ask(&world);
+    /// assert_eq!(found[0].handle, ball);
+    /// ```
+    #[must_use]
+    pub fn ask<T>(&self, world: &CollisionWorld<N, D, T>) -> Vec<Found<N, D>> {
+        let mut filter = QueryFilter::new();
+        for &handle in &self.excluded {
+            filter = filter.exclude(handle);
+        }
+        if let Some(groups) = self.groups {
+            filter = filter.groups(groups);
+        }
+        self.question.ask(world, &filter)
+    }
+}
+
+impl<N: Space<D>, const D: usize> Question<N, D> {
+    fn ask<T>(
+        &self,
+        world: &CollisionWorld<N, D, T>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> Vec<Found<N, D>> {
+        match self {
+            Self::FirstRayHit(RayQuestion { ray, max_time, solid }) => {
+                let hit = world.first_ray_hit(ray, *max_time, *solid, filter);
+                let found = hit.map(|(object, hit)| (object.handle(), Detail::Ray(hit)));
+                found.into_iter().map(Found::from).collect()
+            }
+            Self::RayHits(RayQuestion { ray, max_time, solid }) => {
+                let hits = world.ray_hits(ray, *max_time, *solid, filter).into_iter();
+                hits.map(|(object, hit)| (object.handle(), Detail::Ray(hit)).into()).collect()
+            }
+            Self::Containing(point) => {
+                let objects = world.objects_containing(point, filter);
+                objects.map(|object| Found::object(object.handle())).collect()
+            }
+            Self::ProjectPoint { point, max_distance, solid } => {
+                let found = world.project_point(point, *max_distance, *solid, filter);
+                let found = found.map(|(object, at)| (object.handle(), Detail::Projection(at)));
+                found.into_iter().map(Found::from).collect()
+            }
+            Self::InAabb(aabb) => {
+                let objects = world.objects_in_aabb(aabb, filter);
+                objects.map(|object| Found::object(object.handle())).collect()
+            }
+            Self::Overlapping(PlacedShape { position, shape }) => {
+                let objects = world.objects_overlapping(position, &**shape, filter);
+                objects.map(|object| Found::object(object.handle())).collect()
+            }
+            Self::Nearest { from: PlacedShape { position, shape }, count, max_distance } => {
+                let count = *count as usize;
+                let near = world.nearest_objects(position, &**shape, count, *max_distance, filter);
+                near.iter().map(Found::near).collect()
+            }
+            Self::CastShape(CastQuestion { start, velocity, options }) => {
+                let PlacedShape { position, shape } = start;
+                let hit = world.cast_shape(position, velocity, &**shape, options, filter);
+                let found = hit.map(|(object, impact)| (object.handle(), Detail::Impact(impact)));
+                found.into_iter().map(Found::from).collect()
+            }
+            Self::CastShapeAll(CastQuestion { start, velocity, options }) => {
+                let PlacedShape { position, shape } = start;
+                let hits = world.cast_shape_all(position, velocity, &**shape, options, filter);
+                let found = hits.into_iter();
+                found.map(|(object, hit)| (object.handle(), Detail::Impact(hit)).into()).collect()
+            }
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> From<(CollisionObjectHandle, Detail<N, D>)> for Found<N, D> {
+    fn from((handle, detail): (CollisionObjectHandle, Detail<N, D>)) -> Self {
+        Self { handle, detail }
+    }
+}
+
+/// The hash of an answer, with all bits of its numbers.
+pub(crate) fn answer_hash<N: Recordable<D>, const D: usize>(answer: &[Found<N, D>]) -> u64 {
+    let mut digest = Digest::new();
+    for found in answer {
+        digest.index(found.handle.uid());
+        digest_detail(&found.detail, &mut digest);
+    }
+    digest.finish()
+}
+
+fn digest_detail<N: Recordable<D>, const D: usize>(detail: &Detail<N, D>, digest: &mut Digest) {
+    match detail {
+        Detail::Object => {}
+        Detail::Ray(hit) => {
+            digest.numbers(&[hit.toi]);
+            digest.numbers(hit.normal.as_slice());
+            digest.feature(hit.feature);
+            digest.word(u64::from(hit.part));
+        }
+        Detail::Projection(at) => {
+            digest.word(u64::from(at.is_inside));
+            digest.numbers(at.point.coords.as_slice());
+        }
+        Detail::Near { distance, points } => {
+            digest.numbers(&[*distance]);
+            if let ClosestPoints::WithinMargin(point1, point2) = points {
+                digest.numbers(point1.coords.as_slice());
+                digest.numbers(point2.coords.as_slice());
+            }
+        }
+        Detail::Impact(impact) => {
+            digest.numbers(&[impact.toi]);
+            digest.numbers(impact.world1.coords.as_slice());
+            digest.numbers(impact.world2.coords.as_slice());
+            digest.numbers(impact.normal.as_slice());
+            digest.feature(impact.feature1);
+            digest.feature(impact.feature2);
+            digest.word(u64::from(impact.part1));
+            digest.word(u64::from(impact.part2));
+        }
+    }
+}

@@ -1,0 +1,462 @@
+//! A world that writes down what is called.
+
+use core::fmt;
+use core::num::NonZeroU64;
+use core::ops::Deref;
+
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::ShapeHandle;
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, WorldError};
+
+use crate::RecordData;
+use crate::call::{Call, CastData, KeyFrame, ObjectData, QueryData, QuestionData};
+use crate::error::RecordError;
+use crate::log::Log;
+use crate::player::exchange_phases;
+use crate::query::{CastQuestion, Found, PlacedShape, Query, Question, answer_hash};
+use crate::registry::Registry;
+use crate::shapes::KnownShapes;
+use crate::space::Recordable;
+use crate::state::Observer;
+
+/// A collision world that records the calls which change it, and the queries made through it.
+///
+/// It owns the world, and lends it for reading alone ([`Deref`]): no change can go unrecorded. Each method is
+/// the one of [`CollisionWorld`] of the same name, and returns what it refuses as an error; then neither the world
+/// nor the recording has changed. Queries by `Deref` are not recorded, which does no harm.
+///
+/// An update is written with hashes of what it led to, to the bit: positions, groups, query types, pairs,
+/// contacts, proximities and events. That costs O(objects + contacts) time, and 12 bytes for each object whose
+/// hashes changed. A shape is written once, by value, and is kept alive while the recorder lives.
+///
+/// The world has the phases of the library: those of the user's own, and algorithms of a narrow phase, are code,
+/// which no recording holds.
+///
+/// ```
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, GeometricQueryType};
+/// use impinge_record::{Recorder, Registry, validate};
+///
+/// let registry = Registry::<f64, 2, u32>::new();
+/// let mut recorder = Recorder::new(0.02, registry.clone())?;
+/// let (ball, contacts) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Contacts(0.0, 0.0));
+/// let add = |x, id| (Isometry::translation(x, 0.0), id);
+/// for (position, id) in [add(0.0, 7), add(1.5, 8)] {
+///     recorder.add(position, ball.clone(), CollisionGroups::new(), contacts, id)?;
+/// }
+/// recorder.update();
+/// assert_eq!(recorder.contact_events().len(), 1, "reading goes to the world");
+///
+/// let recording = recorder.finish();
+/// assert_eq!(validate(&recording.bytes, &registry), Ok(None), "the replay has the same bits");
+/// # Ok::<(), impinge_record::RecordError>(())
+/// ```
+pub struct Recorder<N: Recordable<D>, const D: usize, T> {
+    world: CollisionWorld<N, D, T>,
+    margin: N,
+    registry: Registry<N, D, T>,
+    shapes: KnownShapes<N, D>,
+    observer: Observer,
+    log: Log,
+    updates: u64,
+    /// A key frame comes before the update after so many.
+    key_frames: Option<NonZeroU64>,
+}
+
+/// What a recorder leaves.
+#[derive(Debug)]
+pub struct Recording<N: Recordable<D>, const D: usize, T> {
+    /// The bytes that [`Recorder::take_bytes`] has not taken: without it the whole recording.
+    pub bytes: Vec<u8>,
+    /// The world.
+    pub world: CollisionWorld<N, D, T>,
+}
+
+/// A world that cannot be recorded.
+#[derive(Debug)]
+pub struct Refused<N: Recordable<D>, const D: usize, T> {
+    /// Why.
+    pub error: RecordError,
+    /// The world, unchanged.
+    pub world: Box<CollisionWorld<N, D, T>>,
+}
+
+impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
+    /// A recorder of a new world without objects.
+    ///
+    /// # Errors
+    /// If the margin is negative, NaN or infinite.
+    pub fn new(margin: N, registry: Registry<N, D, T>) -> Result<Self, RecordError> {
+        Ok(Self::around(CollisionWorld::try_new(margin)?, margin, registry))
+    }
+
+    /// Records a world that has objects already, from a key frame on, and updates it.
+    ///
+    /// The update gives it new phases of the library with this margin, as
+    /// [`set_narrow_phase`](CollisionWorld::set_narrow_phase) does: events of this update are those of the
+    /// objects' changes, and contacts get new ids. So all that follows depends on what the key frame says,
+    /// not on the world's history.
+    ///
+    /// # Errors
+    /// If the margin is not usable, a shape cannot be written, or the registry lacks a filter of the world.
+    pub fn of_world(
+        world: CollisionWorld<N, D, T>,
+        margin: N,
+        registry: Registry<N, D, T>,
+    ) -> Result<Self, Refused<N, D, T>> {
+        let usable = CollisionWorld::<N, D, T>::try_new(margin).map_err(RecordError::from);
+        let unknown = unknown_filter(&world, &registry);
+        let unknown = unknown.map_or(Ok(()), |name| Err(RecordError::UnknownFilter(name)));
+        let mut recorder = Self::around(world, margin, registry);
+        let begun = usable.and(unknown).and_then(|()| recorder.key_frame());
+        match begun {
+            Ok(()) => {
+                recorder.step();
+                Ok(recorder)
+            }
+            Err(error) => Err(Refused { error, world: Box::new(recorder.world) }),
+        }
+    }
+
+    fn around(world: CollisionWorld<N, D, T>, margin: N, registry: Registry<N, D, T>) -> Self {
+        let (shapes, log) = (KnownShapes::new(), Log::new(margin));
+        let observer = Observer::default();
+        let (updates, key_frames) = (0, None);
+        Self { world, margin, registry, shapes, observer, log, updates, key_frames }
+    }
+
+    /// Writes a key frame before every update whose number is a multiple of `updates`: a replay goes back by at
+    /// most so many updates. None by default; then it goes back to the start of the recording.
+    ///
+    /// A key frame takes about as many bytes as adding all objects. Its update computes every pair anew, and
+    /// contacts get new ids, as with [`Self::of_world`]; events are as without.
+    #[must_use]
+    pub const fn with_key_frames(mut self, updates: NonZeroU64) -> Self {
+        self.key_frames = Some(updates);
+        self
+    }
+
+    /// Adds an object.
+    ///
+    /// # Errors
+    /// If the world refuses it, or the shape cannot be written.
+    pub fn add(
+        &mut self,
+        position: N::Isometry,
+        shape: ShapeHandle<N, D>,
+        groups: CollisionGroups,
+        query_type: impl Into<GeometricQueryType<N>>,
+        data: T,
+    ) -> Result<CollisionObjectHandle, RecordError> {
+        let (number, query_type) = (self.number(&shape)?, query_type.into());
+        let bytes = data.to_bytes();
+        let handle = self.world.try_add(position, shape, groups, query_type, data)?;
+        let index = index_of(handle);
+        let (shape, data) = (number, bytes);
+        let object = ObjectData { index, position, shape, groups, query_type, data };
+        self.record(&Call::Add(object));
+        Ok(handle)
+    }
+
+    /// Removes objects.
+    ///
+    /// # Errors
+    /// If a handle is stale or occurs twice.
+    pub fn remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), RecordError> {
+        self.world.try_remove(handles)?;
+        self.record(&Call::Remove(handles.iter().copied().map(index_of).collect()));
+        Ok(())
+    }
+
+    /// Removes the objects for which `keeps` is false, in order of the handles.
+    pub fn retain(&mut self, mut keeps: impl FnMut(&CollisionObject<N, D, T>) -> bool) {
+        let leaving = self.world.collision_objects().filter(|object| !keeps(object));
+        let leaving: Vec<_> = leaving.map(CollisionObject::handle).collect();
+        self.world.remove(&leaving);
+        self.record(&Call::Remove(leaving.into_iter().map(index_of).collect()));
+    }
+
+    /// Moves an object.
+    ///
+    /// # Errors
+    /// If the handle is stale or a number of the position is not finite.
+    pub fn set_position(
+        &mut self,
+        handle: CollisionObjectHandle,
+        position: N::Isometry,
+    ) -> Result<(), RecordError> {
+        self.set_positions(&[(handle, position)])
+    }
+
+    /// Moves some objects, all or none.
+    ///
+    /// # Errors
+    /// As [`Self::set_position`].
+    pub fn set_positions(
+        &mut self,
+        positions: &[(CollisionObjectHandle, N::Isometry)],
+    ) -> Result<(), RecordError> {
+        self.world.try_set_positions(positions)?;
+        let positions = positions.iter().map(|(handle, position)| (index_of(*handle), *position));
+        self.record(&Call::SetPositions(positions.collect()));
+        Ok(())
+    }
+
+    /// Gives an object another shape.
+    ///
+    /// # Errors
+    /// If the handle is stale or the shape cannot be written.
+    pub fn set_shape(
+        &mut self,
+        handle: CollisionObjectHandle,
+        shape: ShapeHandle<N, D>,
+    ) -> Result<(), RecordError> {
+        let number = self.number(&shape)?;
+        self.world.try_set_shape(handle, shape)?;
+        self.record(&Call::SetShape { index: index_of(handle), shape: number });
+        Ok(())
+    }
+
+    /// Gives an object other groups.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_collision_groups(
+        &mut self,
+        handle: CollisionObjectHandle,
+        groups: CollisionGroups,
+    ) -> Result<(), RecordError> {
+        self.world.try_set_collision_groups(handle, groups)?;
+        self.record(&Call::SetGroups { index: index_of(handle), groups });
+        Ok(())
+    }
+
+    /// Gives an object another query type.
+    ///
+    /// # Errors
+    /// If the handle is stale or a number of the query type is negative or not finite.
+    pub fn set_query_type(
+        &mut self,
+        handle: CollisionObjectHandle,
+        query_type: impl Into<GeometricQueryType<N>>,
+    ) -> Result<(), RecordError> {
+        let query_type = query_type.into();
+        self.world.try_set_query_type(handle, query_type)?;
+        self.record(&Call::SetQueryType { index: index_of(handle), query_type });
+        Ok(())
+    }
+
+    /// Gives an object other data.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_data(&mut self, handle: CollisionObjectHandle, data: T) -> Result<(), RecordError> {
+        let bytes = data.to_bytes();
+        let object = self.world.collision_object_mut(handle);
+        *object.ok_or(WorldError::StaleHandle(handle))?.data_mut() = data;
+        self.record(&Call::SetData { index: index_of(handle), data: bytes });
+        Ok(())
+    }
+
+    /// Registers the pair filter that the registry has under a name.
+    ///
+    /// # Errors
+    /// If it has none.
+    pub fn register_broad_phase_pair_filter(&mut self, name: &str) -> Result<(), RecordError> {
+        if !self.registry.register(name, &mut self.world) {
+            return Err(RecordError::UnknownFilter(name.to_owned()));
+        }
+        self.record(&Call::RegisterFilter(name.to_owned()));
+        Ok(())
+    }
+
+    /// Unregisters the pair filter of a name, if there is one.
+    pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
+        self.world.unregister_broad_phase_pair_filter(name);
+        self.record(&Call::UnregisterFilter(name.to_owned()));
+    }
+
+    /// Asks a query and records the hash of its answer.
+    ///
+    /// # Errors
+    /// If a shape of the query cannot be written.
+    pub fn ask(&mut self, query: &Query<N, D>) -> Result<Vec<Found<N, D>>, RecordError> {
+        let question = self.question(&query.question)?;
+        let living = query.excluded.iter().filter(|handle| self.world.contains(**handle));
+        let excluded = living.copied().map(index_of).collect();
+        let answer = query.ask(&self.world);
+        let (groups, hash) = (query.groups, answer_hash(&answer));
+        let data = QueryData { question, groups, excluded, answer: hash };
+        self.record(&Call::Query(Box::new(data)));
+        Ok(answer)
+    }
+
+    /// Updates the world and records the hashes of what it led to.
+    pub fn update(&mut self) {
+        if self.key_frames.is_some_and(|every| self.updates > 0 && self.updates % every == 0) {
+            let known = self.key_frame();
+            debug_assert!(known.is_ok(), "the shapes of all objects are known");
+        }
+        self.step();
+    }
+
+    fn step(&mut self) {
+        self.world.update();
+        self.updates += 1;
+        let observation = self.observer.observe(&self.world);
+        self.record(&Call::Update(observation));
+    }
+
+    /// The calls that make the world, and new phases for it.
+    fn key_frame(&mut self) -> Result<(), RecordError> {
+        let mut objects = Vec::with_capacity(self.world.len());
+        for object in self.world.collision_objects() {
+            let shape = self.shapes.number(object.shape(), &self.registry)?;
+            objects.push(ObjectData {
+                index: index_of(object.handle()),
+                position: *object.position(),
+                shape,
+                groups: *object.collision_groups(),
+                query_type: object.query_type(),
+                data: object.data().to_bytes(),
+            });
+        }
+        let filters = self.world.broad_phase_pair_filter_names().map(str::to_owned).collect();
+        let vacant = self.vacant(&objects);
+        self.record(&Call::KeyFrame(KeyFrame { filters, vacant, objects }));
+        exchange_phases(&mut self.world, self.margin);
+        self.observer = Observer::default();
+        Ok(())
+    }
+
+    /// The indices without objects, the one taken next last. Those that were in use too often to be taken again
+    /// come first.
+    fn vacant(&self, objects: &[ObjectData<N, D>]) -> Vec<u32> {
+        let small = |index| u32::try_from(index).expect("an index has 31 bits");
+        let free: Vec<u32> = self.world.vacant_indices().map(small).collect();
+        let last = objects.last().map(|object| object.index);
+        let reach = last.max(free.iter().copied().max()).map_or(0, |last| last as usize + 1);
+        let mut is_used = vec![false; reach];
+        let used = objects.iter().map(|object| object.index).chain(free.iter().copied());
+        used.for_each(|index| is_used[index as usize] = true);
+        let spent = (0..).zip(is_used).filter(|(_, used)| !used).map(|(index, _)| index);
+        spent.chain(free).collect()
+    }
+
+    /// The bytes written since the last call: for recordings that go to a file as they grow.
+    ///
+    /// ```
+    /// use impinge_record::{Recorder, Registry, validate};
+    ///
+    /// let registry = Registry::<f32, 2, ()>::new();
+    /// let mut recorder = Recorder::new(0.02, registry.clone())?;
+    /// let mut file = recorder.take_bytes();
+    /// recorder.update();
+    /// file.extend(recorder.take_bytes());
+    /// file.extend(recorder.finish().bytes);
+    /// assert_eq!(validate(&file, &registry), Ok(None));
+    /// # Ok::<(), impinge_record::RecordError>(())
+    /// ```
+    #[must_use]
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.log.bytes)
+    }
+
+    /// Ends the recording.
+    #[must_use]
+    pub fn finish(mut self) -> Recording<N, D, T> {
+        self.record(&Call::End { updates: self.updates });
+        Recording { bytes: self.log.bytes, world: self.world }
+    }
+
+    fn number(&mut self, shape: &ShapeHandle<N, D>) -> Result<u32, RecordError> {
+        self.shapes.number(shape, &self.registry)
+    }
+
+    /// Writes a record, after the shapes that are new in it.
+    fn record(&mut self, call: &Call<N, D>) {
+        for shape in self.shapes.unwritten.drain(..) {
+            self.log.record(&Call::Shape(shape));
+        }
+        self.log.record(call);
+    }
+
+    fn question(&mut self, question: &Question<N, D>) -> Result<QuestionData<N, D>, RecordError> {
+        let is_about_all = matches!(question, Question::RayHits(_) | Question::CastShapeAll(_));
+        Ok(match question {
+            Question::FirstRayHit(asked) | Question::RayHits(asked) => QuestionData::Ray {
+                all: is_about_all,
+                ray: asked.ray,
+                max_time: asked.max_time,
+                solid: asked.solid,
+            },
+            Question::Containing(point) => {
+                QuestionData::Containing(point.coords.as_slice().to_vec())
+            }
+            Question::ProjectPoint { point, max_distance, solid } => QuestionData::Project {
+                point: point.coords.as_slice().to_vec(),
+                max_distance: *max_distance,
+                solid: *solid,
+            },
+            Question::InAabb(aabb) => QuestionData::InAabb(*aabb),
+            Question::Overlapping(PlacedShape { position, shape }) => {
+                QuestionData::Overlapping { position: *position, shape: self.number(shape)? }
+            }
+            Question::Nearest { from, count, max_distance } => QuestionData::Nearest {
+                position: from.position,
+                shape: self.number(&from.shape)?,
+                count: *count,
+                max_distance: *max_distance,
+            },
+            Question::CastShape(cast) | Question::CastShapeAll(cast) => {
+                QuestionData::Cast(self.cast(cast, is_about_all)?)
+            }
+        })
+    }
+
+    fn cast(
+        &mut self,
+        cast: &CastQuestion<N, D>,
+        all: bool,
+    ) -> Result<CastData<N, D>, RecordError> {
+        Ok(CastData {
+            all,
+            position: cast.start.position,
+            shape: self.number(&cast.start.shape)?,
+            velocity: cast.velocity.as_slice().to_vec(),
+            options: cast.options,
+        })
+    }
+}
+
+/// The first filter of a world that the registry lacks.
+fn unknown_filter<N: Recordable<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    registry: &Registry<N, D, T>,
+) -> Option<String> {
+    let mut names = world.broad_phase_pair_filter_names();
+    names.find(|name| !registry.has_filter(name)).map(str::to_owned)
+}
+
+/// The index of an object, by which the recording names it.
+fn index_of(handle: CollisionObjectHandle) -> u32 {
+    u32::try_from(handle.uid()).expect("an index has 31 bits")
+}
+
+impl<N: Recordable<D>, const D: usize, T> Deref for Recorder<N, D, T> {
+    type Target = CollisionWorld<N, D, T>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.world
+    }
+}
+
+impl<N: Recordable<D>, const D: usize, T: fmt::Debug> fmt::Debug for Recorder<N, D, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Recorder")
+            .field("world", &self.world)
+            .field("updates", &self.updates)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,257 @@
+//! What recordings need of a scalar and a dimension.
+
+use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space};
+use impinge::shape::{
+    Cone, ConvexHull, ConvexPolygon, Cylinder, Diagonal, HeightField, Polyline, Shape, ShapeHandle,
+    Tetrahedron, TriMesh,
+};
+
+use crate::Problem;
+use crate::shape_data::{Field, ShapeData};
+
+/// The scalars of recordings: `f32` and `f64`.
+pub trait Scalar: Real {
+    /// How many bytes a number takes.
+    const BYTES: usize;
+
+    /// The number of these bits: the inverse of [`Real::bits`].
+    fn of_bits(bits: u64) -> Self;
+}
+
+impl Scalar for f32 {
+    const BYTES: usize = 4;
+
+    #[expect(clippy::cast_possible_truncation, reason = "the upper half of the bits is zero")]
+    fn of_bits(bits: u64) -> Self {
+        Self::from_bits(bits as u32)
+    }
+}
+
+impl Scalar for f64 {
+    const BYTES: usize = 8;
+
+    fn of_bits(bits: u64) -> Self {
+        Self::from_bits(bits)
+    }
+}
+
+/// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` = 3.
+pub trait Recordable<const D: usize>: Space<D> + Scalar {
+    /// How many numbers describe an isometry.
+    const ISOMETRY_NUMBERS: usize;
+
+    /// The numbers of an isometry: the translation, then cosine and sine of the rotation in 2D, the
+    /// components i, j, k, w of its quaternion in 3D.
+    fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self>;
+
+    /// The isometry of these numbers, as they are: the rotation is not normalized. `None` for another
+    /// count of numbers.
+    fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry>;
+
+    /// The shapes of one dimension as data; `None` for others.
+    fn own_data(shape: &dyn Shape<Self, D>) -> Option<ShapeData<Self, D>>;
+
+    /// The shape of [`Self::own_data`].
+    ///
+    /// # Errors
+    /// If the library refuses the numbers, or the data is of no shape of this dimension.
+    fn own_shape(data: &ShapeData<Self, D>) -> Result<ShapeHandle<Self, D>, Problem>;
+
+    /// The line with one side, in 2D; the line itself in 3D.
+    fn one_sided_line(line: Polyline<Self, D>) -> Polyline<Self, D>;
+
+    /// The mesh with one side, in 3D; the mesh itself in 2D.
+    fn one_sided_mesh(mesh: TriMesh<Self, D>) -> TriMesh<Self, D>;
+}
+
+/// Neither dimension has a shape of this data.
+const FOREIGN: Problem = Problem::BadValue { what: "the kind of a shape" };
+
+impl<N: Scalar> Recordable<2> for N {
+    const ISOMETRY_NUMBERS: usize = 4;
+
+    /// The complex number is unit up to rounding and is written as it is: to normalize it could change bits.
+    fn isometry_numbers(isometry: &Isometry2<N>) -> Vec<N> {
+        let (translation, turn) = (&isometry.translation.vector, isometry.rotation.as_ref());
+        vec![translation.x, translation.y, turn.re, turn.im]
+    }
+
+    fn isometry_of(numbers: &[N]) -> Option<Isometry2<N>> {
+        let &[x, y, cosine, sine] = numbers else { return None };
+        let turn = UnitComplex::from_cos_sin_unchecked(cosine, sine);
+        Some(Isometry2::from_parts(Translation2::new(x, y), turn))
+    }
+
+    fn own_data(shape: &dyn Shape<N, 2>) -> Option<ShapeData<N, 2>> {
+        if let Some(polygon) = shape.as_shape::<ConvexPolygon<N>>() {
+            return Some(ShapeData::Outline(polygon.vertices().to_vec()));
+        }
+        shape.as_shape::<HeightField<N, 2>>().map(|field| ShapeData::HeightField(line_data(field)))
+    }
+
+    fn own_shape(data: &ShapeData<N, 2>) -> Result<ShapeHandle<N, 2>, Problem> {
+        match data {
+            ShapeData::Outline(points) => Ok(ShapeHandle::new(ConvexPolygon::try_new(points)?)),
+            ShapeData::HeightField(field) => Ok(ShapeHandle::new(line_of(field)?)),
+            _ => Err(FOREIGN),
+        }
+    }
+
+    fn one_sided_line(line: Polyline<N, 2>) -> Polyline<N, 2> {
+        line.one_sided()
+    }
+
+    fn one_sided_mesh(mesh: TriMesh<N, 2>) -> TriMesh<N, 2> {
+        mesh
+    }
+}
+
+impl<N: Scalar> Recordable<3> for N {
+    const ISOMETRY_NUMBERS: usize = 7;
+
+    fn isometry_numbers(isometry: &Isometry3<N>) -> Vec<N> {
+        let (translation, turn) = (&isometry.translation.vector, &isometry.rotation.coords);
+        [translation.as_slice(), turn.as_slice()].concat()
+    }
+
+    fn isometry_of(numbers: &[N]) -> Option<Isometry3<N>> {
+        let &[x, y, z, i, j, k, w] = numbers else { return None };
+        let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
+        Some(Isometry3::from_parts(Translation3::new(x, y, z), turn))
+    }
+
+    fn own_data(shape: &dyn Shape<N, 3>) -> Option<ShapeData<N, 3>> {
+        if let Some(hull) = shape.as_shape::<ConvexHull<N>>() {
+            let faces = hull.faces().iter().map(|face| hull.face_vertices(face).to_vec());
+            return Some(hull_data(hull, faces.collect()));
+        }
+        if let Some(cylinder) = shape.as_shape::<Cylinder<N>>() {
+            return Some(ShapeData::Cylinder([cylinder.half_height(), cylinder.radius()]));
+        }
+        if let Some(cone) = shape.as_shape::<Cone<N>>() {
+            return Some(ShapeData::Cone([cone.half_height(), cone.radius()]));
+        }
+        if let Some(tetrahedron) = shape.as_shape::<Tetrahedron<N>>() {
+            return Some(ShapeData::Tetrahedron(*tetrahedron.corners()));
+        }
+        shape.as_shape::<HeightField<N, 3>>().map(|field| ShapeData::HeightField(sheet_data(field)))
+    }
+
+    fn own_shape(data: &ShapeData<N, 3>) -> Result<ShapeHandle<N, 3>, Problem> {
+        Ok(match data {
+            ShapeData::Hull { points, faces } => ShapeHandle::new(hull_of(points, faces)?),
+            ShapeData::Cylinder([height, radius]) => {
+                ShapeHandle::new(Cylinder::try_new(*height, *radius)?)
+            }
+            ShapeData::Cone([height, radius]) => ShapeHandle::new(Cone::try_new(*height, *radius)?),
+            ShapeData::Tetrahedron(corners) => ShapeHandle::new(Tetrahedron::try_new(*corners)?),
+            ShapeData::HeightField(field) => ShapeHandle::new(sheet_of(field)?),
+            _ => return Err(FOREIGN),
+        })
+    }
+
+    fn one_sided_line(line: Polyline<N, 3>) -> Polyline<N, 3> {
+        line
+    }
+
+    fn one_sided_mesh(mesh: TriMesh<N, 3>) -> TriMesh<N, 3> {
+        mesh.one_sided()
+    }
+}
+
+/// The faces are left out where the hull of the points alone is the same to the bit.
+fn hull_data<N: Scalar>(hull: &ConvexHull<N>, faces: Vec<Vec<u32>>) -> ShapeData<N, 3> {
+    let points = hull.vertices().to_vec();
+    let is_given_by_points = hull_of(&points, &[]).is_ok_and(|other| other == *hull);
+    ShapeData::Hull { points, faces: if is_given_by_points { Vec::new() } else { faces } }
+}
+
+/// Without faces the hull of the points.
+fn hull_of<N: Scalar>(
+    points: &[Point<N, 3>],
+    faces: &[Vec<u32>],
+) -> Result<ConvexHull<N>, Problem> {
+    if faces.is_empty() {
+        return Ok(ConvexHull::try_from_points(points)?);
+    }
+    Ok(ConvexHull::try_new(points, faces)?)
+}
+
+/// Bits of [`Field::marks`].
+const HOLES: [u8; 2] = [1, 2];
+const BACKWARD: u8 = 4;
+
+/// The arguments of a height field in 2D: a mark for each segment.
+fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
+    let holes = (0..).take(field.num_cells()).map(|cell| u8::from(field.is_hole(cell)));
+    Field {
+        columns: field.heights().len(),
+        heights: field.heights().to_vec(),
+        scale: *field.scale(),
+        marks: holes.collect(),
+        is_one_sided: field.is_one_sided(),
+        keeps_internal_edges: field.keeps_internal_edges(),
+    }
+}
+
+/// The height field of these arguments, in 2D.
+fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> {
+    let field = HeightField::<N, 2>::try_new(data.heights.clone(), data.scale)?;
+    check_marks(data, field.num_cells(), HOLES[0])?;
+    let field = field.with_holes(|cell| data.marks[cell] != 0);
+    let field = if data.is_one_sided { field.one_sided() } else { field };
+    Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
+}
+
+/// The arguments of a height field in 3D: a mark for each cell of two triangles. Whatever rule the diagonals were
+/// made by, each is written.
+fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
+    let columns = field.columns() - 1;
+    let mark = |cell: u32| {
+        let [row, column] = [cell as usize / columns, cell as usize % columns];
+        let is_backward = field.diagonal(row, column) == Diagonal::Backward;
+        let parts = [field.is_hole(2 * cell), field.is_hole(2 * cell + 1)];
+        u8::from(parts[0]) * HOLES[0]
+            + u8::from(parts[1]) * HOLES[1]
+            + u8::from(is_backward) * BACKWARD
+    };
+    Field {
+        columns: field.columns(),
+        heights: field.heights().to_vec(),
+        scale: *field.scale(),
+        marks: (0..).take(field.num_cells()).map(mark).collect(),
+        is_one_sided: field.is_one_sided(),
+        keeps_internal_edges: field.keeps_internal_edges(),
+    }
+}
+
+/// The height field of these arguments, in 3D. Heights that make no whole rows are refused by the constructor.
+fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem> {
+    let rows = data.heights.len() / data.columns.max(1);
+    let heights = data.heights.clone();
+    let mut field = HeightField::<N, 3>::try_new(rows, data.columns, heights, data.scale)?;
+    check_marks(data, field.num_cells(), HOLES[0] + HOLES[1] + BACKWARD)?;
+    let columns = data.columns - 1;
+    for (cell, mark) in (0..).zip(&data.marks).filter(|(_, mark)| **mark != 0) {
+        if mark & BACKWARD != 0 {
+            let [row, column] = [cell as usize / columns, cell as usize % columns];
+            field.set_diagonal(row, column, Diagonal::Backward);
+        }
+        for (part, hole) in (2 * cell..).zip(HOLES) {
+            field.set_part_hole(part, mark & hole != 0);
+        }
+    }
+    let field = if data.is_one_sided { field.one_sided() } else { field };
+    Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
+}
+
+/// A mark for each cell, of known bits.
+fn check_marks<N: Recordable<D>, const D: usize>(
+    field: &Field<N, D>,
+    cells: usize,
+    bits: u8,
+) -> Result<(), Problem> {
+    let is_usable = field.marks.len() == cells && field.marks.iter().all(|mark| mark & !bits == 0);
+    if is_usable { Ok(()) } else { Err(Problem::BadValue { what: "the marks of a height field" }) }
+}

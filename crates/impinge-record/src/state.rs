@@ -1,0 +1,199 @@
+//! Hashes of a world after an update: of the whole, of its events, and of each object that changed.
+
+use impinge::narrow_phase::{ContactEvent, ContactPair, GeometricQueryType, ProximityEvent};
+use impinge::query::{ContactPoint, Proximity};
+use impinge::world::{CollisionObject, CollisionWorld};
+
+use crate::digest::{Digest, id_parts};
+use crate::replay::{Difference, ObjectField};
+use crate::space::Recordable;
+
+/// The hashes of an object, as they are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ObjectHashes {
+    /// The index of the object.
+    pub(crate) index: u32,
+    /// Of position, groups and query type.
+    pub(crate) description: u32,
+    /// Of the pairs in which the object is the first, with their contacts.
+    pub(crate) pairs: u32,
+}
+
+/// What an update is recorded with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Observation {
+    /// Of all objects and pairs.
+    pub(crate) state: u64,
+    /// Of the events of the update.
+    pub(crate) events: u64,
+    /// The objects whose hashes are others than after the update before, in order.
+    pub(crate) changed: Vec<ObjectHashes>,
+}
+
+/// What is remembered from one update to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Observer {
+    /// The number of the pair of the first contact: numbers of pairs are relative to it, since they count
+    /// on over an exchange of phases.
+    first_pair: Option<u64>,
+    /// The hashes by index, of indices that never held an object zero.
+    known: Vec<[u32; 2]>,
+}
+
+impl Observer {
+    /// Computes the hashes after an update. O(objects + pairs + contacts).
+    pub(crate) fn observe<N: Recordable<D>, const D: usize, T>(
+        &mut self,
+        world: &CollisionWorld<N, D, T>,
+    ) -> Observation {
+        let pairs = self.pair_digests(world);
+        // Objects come in order of their indices, so that lists by index grow at the end.
+        let mut all = Digest::new();
+        let mut changed = Vec::new();
+        let mut known = Vec::with_capacity(self.known.len());
+        for object in world.collision_objects() {
+            let index = object.handle().uid();
+            let description = description_digest(object);
+            all.index(index);
+            all.word(description.finish());
+            all.word(pairs[index].finish());
+            known.resize(index, [0; 2]);
+            let hashes = [description.folded(), pairs[index].folded()];
+            known.push(hashes);
+            if self.known.get(index) != Some(&hashes) {
+                let [description, pairs] = hashes;
+                let index = u32::try_from(index).expect("an index has 31 bits");
+                changed.push(ObjectHashes { index, description, pairs });
+            }
+        }
+        self.known = known;
+        Observation { state: all.finish(), events: events_hash(world), changed }
+    }
+
+    /// The hashes by index after the recorded changes, of which those of indices that are used no more are
+    /// out of date.
+    pub(crate) fn after(&self, changed: &[ObjectHashes]) -> Vec<[u32; 2]> {
+        let mut known = self.known.clone();
+        for ObjectHashes { index, description, pairs } in changed {
+            let index = *index as usize;
+            // An index beyond the next one is of no recorder.
+            known.resize(known.len().max(index.min(known.len()) + 1), [0; 2]);
+            if let Some(hashes) = known.get_mut(index) {
+                *hashes = [*description, *pairs];
+            }
+        }
+        known
+    }
+
+    /// The first object whose hashes are not those recorded.
+    pub(crate) fn difference(&self, recorded: &[[u32; 2]]) -> Option<Difference> {
+        let living = self.known.iter().enumerate().filter(|(_, hashes)| **hashes != [0; 2]);
+        for (index, own) in living {
+            let other = recorded.get(index).copied().unwrap_or_default();
+            let field =
+                if own[0] == other[0] { ObjectField::Pairs } else { ObjectField::Description };
+            if *own != other {
+                return Some(Difference::Object { index, field });
+            }
+        }
+        None
+    }
+
+    /// By index: a hash of the pairs in which an object is the first.
+    fn pair_digests<N: Recordable<D>, const D: usize, T>(
+        &mut self,
+        world: &CollisionWorld<N, D, T>,
+    ) -> Vec<Digest> {
+        let reach = world.collision_objects().last().map_or(0, |object| object.handle().uid() + 1);
+        let mut digests = vec![Digest::new(); reach];
+        for (object1, object2, pair) in world.contact_pairs() {
+            let digest = &mut digests[object1.handle().uid()];
+            digest.index(object2.handle().uid());
+            self.contacts(pair, digest);
+        }
+        for (object1, object2, pair) in world.proximity_pairs() {
+            let digest = &mut digests[object1.handle().uid()];
+            digest.index(object2.handle().uid());
+            digest.word(proximity_number(pair.proximity()));
+        }
+        digests
+    }
+
+    /// All manifolds of a pair, in their order.
+    fn contacts<N: Recordable<D>, const D: usize>(
+        &mut self,
+        pair: ContactPair<'_, N, D>,
+        digest: &mut Digest,
+    ) {
+        for view in pair.views() {
+            digest.index(view.len());
+            view.contacts().for_each(|point| self.point(&point, digest));
+        }
+    }
+
+    /// Geometry, id, features and parts of a contact.
+    fn point<N: Recordable<D>, const D: usize>(
+        &mut self,
+        point: &ContactPoint<N, D>,
+        digest: &mut Digest,
+    ) {
+        let contact = &point.contact;
+        digest.numbers(contact.world1.coords.as_slice());
+        digest.numbers(contact.world2.coords.as_slice());
+        digest.numbers(contact.normal.as_slice());
+        digest.numbers(&[contact.depth]);
+        let [pair, number] = id_parts(point.id);
+        digest.word(pair.wrapping_sub(*self.first_pair.get_or_insert(pair)));
+        digest.word(number);
+        digest.feature(point.feature1);
+        digest.feature(point.feature2);
+        digest.word(u64::from(point.part1));
+        digest.word(u64::from(point.part2));
+    }
+}
+
+/// Position, groups and query type: what calls have made of an object.
+fn description_digest<N: Recordable<D>, const D: usize, T>(
+    object: &CollisionObject<N, D, T>,
+) -> Digest {
+    let mut digest = Digest::new();
+    digest.numbers(&N::isometry_numbers(object.position()));
+    let groups = object.collision_groups();
+    for mask in [groups.membership_mask(), groups.whitelist_mask(), groups.blacklist_mask()] {
+        digest.word(u64::from(mask));
+    }
+    digest.word(u64::from(groups.can_interact_with_self()));
+    match object.query_type() {
+        GeometricQueryType::Contacts(linear, angular) => digest.numbers(&[linear, angular]),
+        GeometricQueryType::Proximity(margin) => digest.numbers(&[margin]),
+    }
+    digest
+}
+
+/// The events of the last update, in order.
+fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> u64 {
+    let mut digest = Digest::new();
+    for event in world.contact_events() {
+        let (object1, object2) = event.handles();
+        digest.word(u64::from(matches!(event, ContactEvent::Started(..))));
+        digest.index(object1.uid());
+        digest.index(object2.uid());
+    }
+    for ProximityEvent { collider1, collider2, prev_status, new_status } in world.proximity_events()
+    {
+        digest.index(collider1.uid());
+        digest.index(collider2.uid());
+        digest.word(proximity_number(*prev_status));
+        digest.word(proximity_number(*new_status));
+    }
+    digest.finish()
+}
+
+/// A number for each status that does not depend on the order of the library's variants.
+const fn proximity_number(proximity: Proximity) -> u64 {
+    match proximity {
+        Proximity::Intersecting => 2,
+        Proximity::WithinMargin => 3,
+        Proximity::Disjoint => 4,
+    }
+}

@@ -1,0 +1,7 @@
+//! Recordings: the same bits when replayed, in every direction, and errors for all other bytes.
+
+mod damage;
+mod golden;
+mod refusals;
+mod roundtrip;
+mod scene;
