@@ -106,6 +106,7 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
     fn half_space(&mut self, plane: &Plane<N, D>) {
         let extent = self.options.half_space_extent;
         let [u, v] = (N::tables().tangents)(plane.normal()).map(|tangent| tangent * extent);
+        // Counter-clockwise seen from outside; in 2D the second tangent is zero, and so are two sides.
         let corners = [u + v, v - u, -u - v, u - v].map(Point::from);
         self.ring(&corners);
         self.fan(&corners);

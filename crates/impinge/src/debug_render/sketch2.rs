@@ -66,6 +66,7 @@ fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Poin
     let normal = |(a, b): (&Point<N, 2>, &Point<N, 2>)| {
         unit(&(b - a)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| -perp(&along))
     };
+    // Of each side the unit normal to its right, which is outwards.
     let next = corners.iter().cycle().skip(1);
     let normals: Vec<_> = corners.iter().zip(next).map(normal).collect();
     let before = normals.iter().cycle().skip(normals.len().saturating_sub(1));

@@ -38,6 +38,7 @@ pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>)
         }
         Kind::Cuboid(solid) => cuboid(sketch, solid),
         Kind::Polytope(hull) => {
+            // Edges as the hull has them: a face with many corners has no diagonals.
             let ends = hull.edges().iter().map(|edge| edge.vertices);
             for [a, b] in ends.map(|ends| ends.map(|end| &hull.vertices()[end as usize])) {
                 sketch.line([a, b]);
@@ -55,6 +56,7 @@ pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>)
     }
 }
 
+/// Adds the triangles of a surface, without lines.
 fn surface<N: Real>(sketch: &mut Sketch<N, 3>, surface: &TriangleSurface<N>) {
     for [a, b, c] in surface.corners() {
         sketch.triangle([&a, &b, &c]);
@@ -85,6 +87,7 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());
     let (u, v) = orthonormal_basis(&axis);
     let [radius1, radius2] = capsule.radii();
+    // The capsule in 2D whose revolution it is: sizes beyond the range of the scalar give no outline.
     let flat = TaperedCapsule::<N, 2>::try_new(capsule.half_height(), radius1, radius2);
     for (flat, across) in flat.iter().flat_map(|flat| [(flat, u), (flat, v)]) {
         let outline = plane::tapered_capsule(flat, parts).points;
@@ -161,6 +164,7 @@ fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &dyn RoundedSolid<N, 3>) {
         Kind::Polytope(hull) => faces(hull, hull.faces().len()),
         _ => Vec::new(),
     };
+    // The triangles are closed over the edges too, which the lines leave out.
     sampled(sketch, solid);
     if faces.is_empty() {
         great_circles(sketch, |direction| solid.support_point(direction));

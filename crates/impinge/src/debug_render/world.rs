@@ -35,6 +35,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.proximities(world, renderer);
     }
 
+    /// The boxes of the broad phase's nodes, which are in the way of nothing that is drawn after them.
     fn tree_nodes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         if let Some(style) = &self.options.tree_node {
             let mut draw = |aabb: &Aabb<N, D>| draw_box(aabb, style, Drawn::TreeNode, renderer);
@@ -59,6 +60,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
+    /// The contacts of all pairs, by handles: views come in the order of the memory.
     fn manifolds<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         let DebugOptions { contact_point, contact_normal, manifold, .. } = self.options;
         if contact_point.or(contact_normal).or(manifold).is_none() {
@@ -72,6 +74,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
+    /// A line for each pair that is near or intersects, by handles.
     fn proximities<T>(
         &self,
         world: &CollisionWorld<N, D, T>,

@@ -142,7 +142,7 @@ fn triangles_are_counter_clockwise() {
 fn edges_of_boxes<N: Space<D>, const D: usize>(expected: usize) {
     let half = Vector::<N, D>::from_fn(|axis, _| N::lit([1.0, 2.0, 3.0][axis]));
     let mesh = mesh_of(&Cuboid::new(half));
-    assert_eq!((mesh.vertices.len(), mesh.lines.len()), (1 << D, expected), "corners and edges");
+    assert_eq!((mesh.vertices.len(), mesh.lines.len()), (1 << D, expected), "corners, edges");
     let mut along = [0; D];
     for ends in &mesh.lines {
         let [a, b] = ends.map(|end| mesh.vertices[end as usize]);
@@ -420,7 +420,7 @@ fn queries<N: Space<D>, const D: usize>() {
     let (a, b) = (Point::origin(), Point::from(vector::<N, D>(&[3.0])));
     let mut drawn = Lines(Vec::new());
     drawing.closest_points(&ClosestPoints::WithinMargin(a, b), &mut drawn);
-    assert_eq!((drawn.0[0].ends, drawn.0.len()), ([a, b], 1 + 2 * D), "a line and two crosses");
+    assert_eq!((drawn.0[0].ends, drawn.0.len()), ([a, b], 1 + 2 * D), "and two crosses");
     drawing.closest_points(&ClosestPoints::Intersecting, &mut drawn);
     assert_eq!(drawn.0.len(), 1 + 2 * D, "nothing between solids that touch");
 }
