@@ -11,8 +11,9 @@
 //! 7. [`groups`]: which pairs a world looks at.
 //! 8. [`events`]: what began and ended.
 //! 9. [`queries`]: rays, casts, points and distances, with or without a world.
-//! 10. [`performance`]: what a step costs, and what makes it cheaper.
-//! 11. [`guarantees`]: what you can rely on, to which precision.
+//! 10. `drawing`: seeing what the library sees, with the feature `debug_render`.
+//! 11. [`performance`]: what a step costs, and what makes it cheaper.
+//! 12. [`guarantees`]: what you can rely on, to which precision.
 //!
 //! [`coming_from`] translates programs that use ncollide, parry, rapier or Box2D.
 //!
@@ -49,6 +50,8 @@ chapter!(contacts, "contacts.md");
 chapter!(groups, "groups.md");
 chapter!(events, "events.md");
 chapter!(queries, "queries.md");
+#[cfg(feature = "debug_render")]
+chapter!(drawing, "drawing.md");
 chapter!(performance, "performance.md");
 chapter!(guarantees, "guarantees.md");
 chapter!(coming_from, "coming-from.md");
