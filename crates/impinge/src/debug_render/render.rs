@@ -1,7 +1,7 @@
 //! What a back end can do.
 
 use super::{Color, ShapeMesh};
-use crate::math::{Point, Real, Space, Vector, max};
+use crate::math::{Point, Space, Vector, unit};
 
 /// What a line, point or text belongs to, so that a back end can have layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -70,8 +70,9 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
     fn arrow(&mut self, from: &Point<N, D>, to: &Point<N, D>, color: Color, what: Drawn) {
         self.line([*from, *to], color, what);
         let along = to - from;
-        for side in (N::tables().tangents)(&unit_of(&along)) {
-            let wing = side * (along.norm() * N::lit(0.1));
+        let Some((direction, length)) = unit(&along) else { return };
+        for side in (N::tables().tangents)(&direction) {
+            let wing = side * (length * N::lit(0.1));
             let root = to - along * N::lit(0.2);
             if wing != Vector::<N, D>::zeros() {
                 self.line([root + wing, *to], color, what);
@@ -112,15 +113,4 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
 
     /// A frame is complete; nothing unless overridden.
     fn end_frame(&mut self) {}
-}
-
-/// The direction of a vector; the zero vector of one without.
-fn unit_of<N: Real, const D: usize>(v: &Vector<N, D>) -> Vector<N, D> {
-    let size = v.iter().fold(N::ZERO, |size, x| max(size, x.abs()));
-    if size > N::ZERO && size.is_finite_number() {
-        let v = v / size;
-        v / v.norm()
-    } else {
-        Vector::<N, D>::zeros()
-    }
 }
