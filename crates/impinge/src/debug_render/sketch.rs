@@ -10,7 +10,7 @@ use crate::shape::{CompositeShape, Geometry, Kind, Plane};
 /// How many marks there are from the middle of a half-space's square to its side.
 const MARKS: i32 = 2;
 
-/// A mesh as it grows. Points at one position are one vertex; what is not finite is left out.
+/// A mesh as it grows. Points at one position are one vertex; points that are not finite are left out.
 pub(crate) struct Sketch<N: Real, const D: usize> {
     options: MeshOptions<N>,
     /// Where what is added lies in the frame of the whole shape.

@@ -1,11 +1,11 @@
-//! Outlines of the solids of the plane, and what fills them.
+//! Outlines of 2D solids, and the triangles that fill them.
 
 use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, cross2, perp, unit};
 use crate::procedural::plane;
 use crate::shape::{Ball, Kind, RoundedSolid, SupportMap};
 
-/// Adds a convex solid of the plane.
+/// Adds a convex solid in 2D.
 pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
     let outline = outline(solid, sketch.parts_of_turn());
     sketch.ring(&outline);

@@ -1,4 +1,4 @@
-//! Surfaces and lines of the solids of space.
+//! Surfaces and lines of 3D solids.
 
 use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, orthonormal_basis, unit_or};
@@ -8,7 +8,7 @@ use crate::shape::{
     SupportMap, TaperedCapsule,
 };
 
-/// Adds a convex solid of space.
+/// Adds a convex solid in 3D.
 pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>) {
     let parts = sketch.parts_of_turn();
     match solid {
