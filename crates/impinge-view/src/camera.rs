@@ -1,6 +1,7 @@
 //! Where a picture is seen from.
 
 use impinge::dim3::math::{Point, Real, Vector};
+use impinge::math::unit;
 
 /// A direction of view and a projection; the place follows from what is to be seen.
 ///
@@ -106,14 +107,9 @@ impl Camera {
     }
 }
 
-/// The direction of a vector of any size; none of zero and of what is not finite.
+/// The direction of a vector of any size; `None` for zero, infinite and NaN.
 fn unit_of(v: &Vector<f64>) -> Option<Vector<f64>> {
-    let size = v.iter().fold(0.0, |size: f64, x| if x.abs() > size { x.abs() } else { size });
-    let is_finite = v.iter().all(|x| x.is_finite());
-    (is_finite && size > 0.0).then(|| {
-        let v = v / size;
-        v / v.norm()
-    })
+    unit(v).map(|(direction, _)| direction)
 }
 
 /// The direction of the product of two unit vectors, unless these are parallel up to rounding.
