@@ -19,10 +19,20 @@
 //!
 //! This module is part of the documentation alone: a program has no `impinge::guide`.
 
+/// A picture of a line of text.
+macro_rules! in_the_book {
+    () => {
+        "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' width='440' height='28'%3E%3Crect width='440' \
+         height='28' rx='4' fill='%23e8e6e0'/%3E%3Ctext x='12' y='19' font-family='sans-serif' font-size='14' \
+         fill='%2330363f'%3EThis picture is in the book of the guide, in the repository.%3C/text%3E%3C/svg%3E"
+    };
+}
+
 /// A chapter. Its links name the files that it is made of; the first definition of a name holds, so here they
-/// lead to the modules.
+/// lead to the modules. The pictures in lines are part of the page; those in pixels are not in the package,
+/// and a line of text stands in for them.
 macro_rules! chapter {
-    ($name:ident, $file:literal) => {
+    ($name:ident, $file:literal $(, $picture:literal)*) => {
         #[doc = "[composites]: self::composites"]
         #[doc = "[composites#shapes-that-touch-themselves]: self::composites#shapes-that-touch-themselves"]
         #[doc = "[composites#surfaces-have-no-inner-edges]: self::composites#surfaces-have-no-inner-edges"]
@@ -35,6 +45,13 @@ macro_rules! chapter {
         #[doc = "[performance]: self::performance"]
         #[doc = "[queries]: self::queries"]
         #[doc = "[queries#about-two-shapes-that-move]: self::queries#about-two-shapes-that-move"]
+        $(#[doc = concat!(
+            "[", $picture, ".svg]: <", include_str!(concat!("../guide/pictures/", $picture, ".uri")), ">"
+        )])*
+        #[doc = concat!("[manifold3.png]: <", in_the_book!(), ">")]
+        #[doc = concat!("[pile.png]: <", in_the_book!(), ">")]
+        #[doc = concat!("[shapes3.png]: <", in_the_book!(), ">")]
+        #[doc = concat!("[terrain.png]: <", in_the_book!(), ">")]
         #[doc = ""]
         #[doc = include_str!(concat!("../guide/", $file))]
         pub mod $name {}
@@ -42,17 +59,17 @@ macro_rules! chapter {
 }
 
 chapter!(introduction, "introduction.md");
-chapter!(pipeline, "pipeline.md");
-chapter!(shapes, "shapes.md");
-chapter!(composites, "composites.md");
-chapter!(own_shapes, "own-shapes.md");
-chapter!(contacts, "contacts.md");
-chapter!(groups, "groups.md");
-chapter!(events, "events.md");
-chapter!(queries, "queries.md");
+chapter!(pipeline, "pipeline.md", "broad-phase");
+chapter!(shapes, "shapes.md", "shapes2");
+chapter!(composites, "composites.md", "internal-edges", "sides");
+chapter!(own_shapes, "own-shapes.md", "lens");
+chapter!(contacts, "contacts.md", "contacts2");
+chapter!(groups, "groups.md", "groups");
+chapter!(events, "events.md", "events");
+chapter!(queries, "queries.md", "rays", "shape-cast", "starts", "nearest");
 #[cfg(feature = "debug_render")]
 chapter!(drawing, "drawing.md");
-chapter!(performance, "performance.md");
+chapter!(performance, "performance.md", "tree");
 chapter!(guarantees, "guarantees.md");
 chapter!(coming_from, "coming-from.md");
 

@@ -35,6 +35,7 @@ mod mesh;
 mod options;
 mod query;
 mod render;
+mod rounded3;
 mod sketch;
 mod sketch2;
 mod sketch3;

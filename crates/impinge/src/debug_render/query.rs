@@ -85,7 +85,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
                 let tip = from + contact.normal.into_inner() * style.size;
                 renderer.line([*from, contact.world2], style.color, what);
                 renderer.arrow(from, &tip, style.color, what);
-                renderer.text(from, &contact.depth.to_string(), style.color, what);
+                renderer.text(from, &shortened(contact.depth), style.color, what);
             }
         }
     }
@@ -193,6 +193,15 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 }
 
+/// A length with four significant digits.
+fn shortened<N: Real>(length: N) -> String {
+    let length = length.as_f64();
+    // Parsed again, so that zeros at the end are gone. A sum with zero has no negative zero.
+    let rounded = format!("{length:.3e}").parse().unwrap_or(length) + 0.0;
+    let is_tiny = rounded != 0.0 && rounded.abs() < 1e-4;
+    if is_tiny { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
 /// A number from 0 to 4 that grows with the angle of a vector from x: along the square of the points
 /// whose coordinates sum to 1. Zero for the zero vector.
 fn diamond_angle<N: Real>(x: N, y: N) -> N {
@@ -202,5 +211,19 @@ fn diamond_angle<N: Real>(x: N, y: N) -> N {
         (false, false) => part,
         (true, _) => N::TWO - part,
         (false, true) => N::TWO + N::TWO + part,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_are_short() {
+        assert_eq!(shortened(0.019_999_999_999_574_f64), "0.02");
+        assert_eq!(shortened(0.1_f32 + 0.2), "0.3");
+        assert_eq!(shortened(-1234.56_f64), "-1235", "four digits");
+        assert_eq!(shortened(4.44e-16_f64), "4.44e-16", "not a row of zeros");
+        assert_eq!(shortened(-0.0_f32), "0");
     }
 }

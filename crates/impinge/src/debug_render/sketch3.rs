@@ -1,5 +1,6 @@
 //! Surfaces and lines of 3D solids.
 
+use super::rounded3::inflated;
 use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, orthonormal_basis, unit_or};
 use crate::procedural::{TriangleSurface, plane, space};
@@ -156,7 +157,7 @@ fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Featu
     (0..).map(face).take(count).collect()
 }
 
-/// The faces of what is rounded, moved outwards; of what has none, circles of support points.
+/// What is rounded and has flat faces, exactly; of other solids, and flat boxes, circles of support points.
 fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &dyn RoundedSolid<N, 3>) {
     let faces = match solid.inner().0 {
         Kind::Cuboid(cuboid) => faces(cuboid, 6),
@@ -164,15 +165,9 @@ fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &dyn RoundedSolid<N, 3>) {
         Kind::Polytope(hull) => faces(hull, hull.faces().len()),
         _ => Vec::new(),
     };
-    // The triangles are closed over the edges too, which the lines leave out.
-    sampled(sketch, solid);
-    if faces.is_empty() {
+    if !inflated(sketch, &faces, solid.radius()) {
+        sampled(sketch, solid);
         great_circles(sketch, |direction| solid.support_point(direction));
-    }
-    for face in &faces {
-        let outward = face.normal.unwrap_or_else(Vector::<N, 3>::zeros) * solid.radius();
-        let moved: Vec<_> = face.vertices.iter().map(|corner| corner + outward).collect();
-        sketch.ring(&moved);
     }
 }
 

@@ -74,6 +74,16 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
     }
 
+    /// The names of those that refuse a pair, sorted.
+    pub(super) fn refusing(
+        &self,
+        co1: &CollisionObject<N, D, T>,
+        co2: &CollisionObject<N, D, T>,
+    ) -> Vec<&str> {
+        let refusing = self.filters.iter().filter(|(_, filter)| !filter.is_pair_valid(co1, co2));
+        refusing.map(|(name, _)| name.as_str()).collect()
+    }
+
     /// The names, sorted.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.filters.iter().map(|(name, _)| name.as_str())

@@ -19,6 +19,7 @@ mod objects;
 mod of_object;
 mod pairs;
 mod queries;
+mod reasons;
 mod step;
 mod validate;
 

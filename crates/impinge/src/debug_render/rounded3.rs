@@ -1,0 +1,216 @@
+//! Polyhedra inflated by a radius: moved faces, parts of cylinders around edges, parts of balls around corners.
+//!
+//! Every vertex is a corner plus the radius times a unit vector between the normals of the faces at that
+//! corner (the Gauss map of the polyhedron), so it lies on the surface up to rounding. Neighbouring parts
+//! compute a common vertex from the same numbers, so it has the same bits in both.
+
+use std::collections::BTreeMap;
+
+use super::sketch::Sketch;
+use crate::math::{Point, Real, Vector, cross, unit, unit_or};
+use crate::shape::Feature;
+
+/// The flat faces of a solid and which of them meet at each side.
+struct Inflation<'a, N: Real> {
+    faces: &'a [Feature<N, 3>],
+    /// The face that has a side from the first to the second of two points, known by their bits.
+    face_of_side: BTreeMap<[[u64; 3]; 2], usize>,
+    radius: N,
+    /// The cosine of the largest angle between neighbouring directions of an arc.
+    cosine: N,
+}
+
+/// Adds the surface of a polyhedron inflated by a radius, with the outlines of its faces and the arcs at the
+/// ends of its edges. False, and nothing is added, unless each side of a face is one of exactly two
+/// and no corner is as sharp as a needle.
+pub(super) fn inflated<N: Real>(
+    sketch: &mut Sketch<N, 3>,
+    faces: &[Feature<N, 3>],
+    radius: N,
+) -> bool {
+    let (_, cosine) =
+        (N::lit(core::f64::consts::TAU / f64::from(sketch.parts_of_turn()))).sine_cosine();
+    let keyed = faces
+        .iter()
+        .enumerate()
+        .flat_map(|(index, face)| sides(face).map(move |[a, b]| ([a, b].map(bits), index)));
+    let count = faces.iter().map(|face| face.vertices.len()).sum::<usize>();
+    let solid = Inflation { faces, face_of_side: keyed.collect(), radius, cosine };
+    if count == 0 || solid.face_of_side.len() < count || !solid.is_closed() {
+        return false;
+    }
+    let corners = solid.corners();
+    if corners.iter().any(|(_, around)| middle_of(around).is_none()) {
+        return false;
+    }
+    // Nothing fails from here on.
+    for (index, face) in faces.iter().enumerate() {
+        let moved: Vec<_> = face.vertices.iter().map(|v| solid.moved(v, &normal(face))).collect();
+        sketch.ring(&moved);
+        sketch.fan(&moved);
+        for side in sides(face) {
+            solid.around_edge(sketch, index, side);
+        }
+    }
+    for (corner, around) in &corners {
+        solid.patch(sketch, corner, around);
+    }
+    true
+}
+
+/// The direction in the middle of those around a corner; none if they are about a whole circle, as at the end
+/// of a needle, where their sum is mostly rounding.
+fn middle_of<N: Real>(around: &[Vector<N, 3>]) -> Option<Vector<N, 3>> {
+    let sum = around.iter().fold(Vector::<N, 3>::zeros(), |sum, direction| sum + direction);
+    let (direction, length) = unit(&sum)?;
+    (length > N::lit(around.len() as f64 / 64.0)).then_some(direction)
+}
+
+/// The sides of a face, counter-clockwise.
+fn sides<N: Real>(face: &Feature<N, 3>) -> impl Iterator<Item = [Point<N, 3>; 2]> + '_ {
+    let next = face.vertices.iter().cycle().skip(1);
+    face.vertices.iter().zip(next).map(|(a, b)| [*a, *b])
+}
+
+/// What tells corners apart: the faces of a solid repeat theirs to the bit.
+fn bits<N: Real>(point: Point<N, 3>) -> [u64; 3] {
+    // Zeros lose their sign.
+    [0, 1, 2].map(|axis| (point[axis] + N::ZERO).bits())
+}
+
+/// The outward unit normal.
+fn normal<N: Real>(face: &Feature<N, 3>) -> Vector<N, 3> {
+    face.normal.unwrap_or_else(Vector::<N, 3>::zeros)
+}
+
+impl<N: Real> Inflation<'_, N> {
+    /// Whether the reverse of each side is a side, and none has no length.
+    fn is_closed(&self) -> bool {
+        self.face_of_side.keys().all(|[a, b]| a != b && self.face_of_side.contains_key(&[*b, *a]))
+    }
+
+    /// The point of the surface above a corner in a direction.
+    fn moved(&self, corner: &Point<N, 3>, direction: &Vector<N, 3>) -> Point<N, 3> {
+        corner + direction * self.radius
+    }
+
+    /// The face beyond a side of a face.
+    fn beyond(&self, [a, b]: [Point<N, 3>; 2]) -> Option<usize> {
+        self.face_of_side.get(&[bits(b), bits(a)]).copied()
+    }
+
+    /// The directions from the normal of a face to that of the face beyond a side: the same to the bit from
+    /// either face.
+    fn arc(&self, face: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
+        let Some(other) = self.beyond(side) else { return Vec::new() };
+        let [first, last] = [face, other].map(|index| normal(&self.faces[index]));
+        // Two sides of one flat solid have opposite normals: half-way is away from the solid.
+        let along = side[1] - side[0];
+        let outward = unit_or(&cross(&along, &first), first);
+        let middle =
+            if first.dot(&last) < -N::HALF { outward } else { unit_or(&(first + last), outward) };
+        let mut arc = vec![first];
+        self.bisect(first, middle, &mut arc);
+        self.bisect(middle, last, &mut arc);
+        arc
+    }
+
+    /// Adds the directions between two, without the first, each half-way between its neighbours.
+    fn bisect(&self, first: Vector<N, 3>, last: Vector<N, 3>, arc: &mut Vec<Vector<N, 3>>) {
+        let middle = unit_or(&(first + last), last);
+        // A right angle has at most six halvings at the finest option. Directions that are equal, or opposite
+        // so that there is none half-way, have none.
+        let apart = first.dot(&last);
+        let is_between = middle.dot(&first) > apart && middle.dot(&last) > apart;
+        if apart < self.cosine && is_between {
+            self.bisect(first, middle, arc);
+            self.bisect(middle, last, arc);
+        } else {
+            arc.push(last);
+        }
+    }
+
+    /// The part of a cylinder around a side, once for both faces.
+    fn around_edge(&self, sketch: &mut Sketch<N, 3>, face: usize, [a, b]: [Point<N, 3>; 2]) {
+        if self.beyond([a, b]).is_none_or(|other| other <= face) {
+            return;
+        }
+        for pair in self.arc(face, [a, b]).windows(2) {
+            let [a1, a2] = [0, 1].map(|index| self.moved(&a, &pair[index]));
+            let [b1, b2] = [0, 1].map(|index| self.moved(&b, &pair[index]));
+            // The face is on the left of the side from `a` to `b`, this part on its right.
+            sketch.triangle([&b1, &a1, &a2]);
+            sketch.triangle([&b1, &a2, &b2]);
+            sketch.line([&a1, &a2]);
+            sketch.line([&b1, &b2]);
+        }
+    }
+
+    /// All corners, each with the directions around it.
+    fn corners(&self) -> Vec<(Point<N, 3>, Vec<Vector<N, 3>>)> {
+        let mut begun = BTreeMap::new();
+        for (index, face) in self.faces.iter().enumerate() {
+            for side in sides(face) {
+                begun.entry(bits(side[0])).or_insert((index, side));
+            }
+        }
+        let corner =
+            |(face, side): (usize, [Point<N, 3>; 2])| (side[0], self.directions_around(face, side));
+        begun.into_values().map(corner).collect()
+    }
+
+    /// The directions around the start of a side of a face, clockwise seen from outside: from face to face,
+    /// each beyond the side that leaves the corner.
+    fn directions_around(&self, start: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
+        let (mut face, mut side, mut around) = (start, side, Vec::new());
+        for _ in 0..self.face_of_side.len() {
+            // Its last direction is the first of the next.
+            let mut arc = self.ordered_arc(face, side);
+            arc.pop();
+            around.extend(arc);
+            let Some(other) = self.beyond(side) else { break };
+            let leaving = sides(&self.faces[other]).find(|[from, _]| bits(*from) == bits(side[0]));
+            let Some(next) = leaving else { break };
+            (face, side) = (other, next);
+            if face == start {
+                break;
+            }
+        }
+        around
+    }
+
+    /// An arc computed from the face with the lower number, as the part of the cylinder is.
+    fn ordered_arc(&self, face: usize, [a, b]: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
+        match self.beyond([a, b]) {
+            Some(other) if other < face => self.arc(other, [b, a]).into_iter().rev().collect(),
+            _ => self.arc(face, [a, b]),
+        }
+    }
+
+    /// The part of a ball around a corner inside a loop of directions: rings from their middle.
+    fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &Point<N, 3>, around: &[Vector<N, 3>]) {
+        let Some(middle) = middle_of(around) else { return };
+        let steps = |direction: &Vector<N, 3>| {
+            let mut arc = Vec::new();
+            self.bisect(middle, *direction, &mut arc);
+            arc.len()
+        };
+        let rings = around.iter().map(steps).max().unwrap_or(1);
+        let on_ring = |direction: &Vector<N, 3>, ring: usize| {
+            let part = N::lit(ring as f64 / rings as f64);
+            let between = middle * (N::ONE - part) + direction * part;
+            let direction = if ring == rings { *direction } else { unit_or(&between, middle) };
+            self.moved(corner, &direction)
+        };
+        let next = around.iter().cycle().skip(1);
+        for (p, q) in around.iter().zip(next) {
+            for ring in 0..rings {
+                let [p1, p2] = [ring, ring + 1].map(|ring| on_ring(p, ring));
+                let [q1, q2] = [ring, ring + 1].map(|ring| on_ring(q, ring));
+                // The loop is clockwise. Next to the middle the second triangle has no area and is left out.
+                sketch.triangle([&p1, &q2, &p2]);
+                sketch.triangle([&p1, &q1, &q2]);
+            }
+        }
+    }
+}
